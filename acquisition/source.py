@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+"""What every source of samples offers: channels, a rate, and blocks until it ends."""
+
+from collections.abc import Iterator
+from typing import Protocol
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.records import Channel
+
+
+class Source(Protocol):
+    """A chassis, a simulated bench or a replayed file; opened by a context manager."""
+
+    @property
+    def name(self) -> str:
+        """What the session file calls it, for example ``"sim:two-body?seed=1"``."""
+        ...
+
+    @property
+    def simulated(self) -> bool:
+        """True where no hardware is behind it."""
+        ...
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """The channels, in the order of the rows of every block."""
+        ...
+
+    @property
+    def sample_rate(self) -> float:
+        """Samples per second and channel [Hz]."""
+        ...
+
+    def blocks(self) -> Iterator[FloatArray]:
+        """Yield successive samples in SI units, shape (n_channels, block)."""
+        ...
