@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: MIT
+"""The command line: names, options and exit codes; the work is done elsewhere.
+
+Every command imports what it needs when it runs, so that ``--help`` stays instant.
+"""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from typer.exceptions import TyperException
+
+from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
+
+EXIT_USAGE = 2
+EXIT_BAD_DATA = 3
+EXIT_INSTRUMENT = 4
+EXIT_QUALITY = 5
+EXIT_INTERRUPTED = 130
+
+COLUMNS_HELP = (
+    "Roles and units of a plain table's columns, for example "
+    "'time:s,force:N,acceleration:m/s^2' or 'x:um,z:um'."
+)
+Files = Annotated[list[Path], typer.Argument(help="Files to read.", show_default=False)]
+Columns = Annotated[str | None, typer.Option("--columns", help=COLUMNS_HELP)]
+Json = Annotated[
+    str | None,
+    typer.Option("--json", metavar="PATH", help="Write results as JSON; '-' = stdout."),
+]
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite existing output.")]
+
+app = typer.Typer(
+    name="jointbench",
+    help="Measure, identify and explain the joints of machines.",
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+
+def run() -> None:
+    """Run the command line and leave with its exit code."""
+    if len(sys.argv) == 1:
+        sys.argv.append("--help")
+    sys.exit(exit_code(app, debug="--debug" in sys.argv[1:]))
+
+
+def exit_code(command: Callable[..., object], *, debug: bool) -> int:
+    """Call `command` and turn what it raises into the contract's exit code."""
+    try:
+        result = command(standalone_mode=False)
+    except TyperException as error:
+        return _fail(error.format_message(), EXIT_USAGE)
+    except JointbenchError as error:
+        if debug:
+            raise
+        return _fail(str(error), code_of(error))
+    except (KeyboardInterrupt, typer.Abort):
+        return _fail("interrupted; finished files are whole", EXIT_INTERRUPTED)
+    except OSError as error:
+        if debug:
+            raise
+        return _fail(f"{error.strerror or error}: {error.filename}", EXIT_BAD_DATA)
+    return result if isinstance(result, int) else 0
+
+
+def code_of(error: JointbenchError) -> int:
+    """Return the exit code of an error's family."""
+    if isinstance(error, UsageError):
+        return EXIT_USAGE
+    return EXIT_INSTRUMENT if isinstance(error, InstrumentError) else EXIT_BAD_DATA
+
+
+def _fail(message: str, code: int) -> int:
+    line = " ".join(message.split())
+    sys.stderr.write(f"jointbench: error: {line}\n")
+    return code
+
+
+@app.command(name="demo")
+def demo_command(
+    out: Annotated[Path, typer.Option(help="Folder for all results.")] = Path(
+        "demo-out"
+    ),
+    seed: Annotated[int, typer.Option(help="Seed of the simulated bench.")] = 1,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Measure and identify a joint on the embedded simulated bench.
+
+    Example: jointbench demo --out demo-out
+    """
+    from jointbench.station.demo import run_demo
+
+    run_demo(out, seed=seed, json_target=json)
+
+
+@app.command(name="import")
+def import_command(
+    files: Files,
+    out: Annotated[Path, typer.Option(help="Session file to write.")],
+    columns: Columns = None,
+    point: Annotated[str, typer.Option(help="Where the hammer struck.")] = "1",
+    force: Force = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Bring hits and surface heights from foreign files into one session file.
+
+    Example: jointbench import hit1.npy hit2.npy --out session.h5 --columns
+    'time:s,force:N,acceleration:m/s^2'
+    """
+    from jointbench.station.import_files import run_import
+
+    run_import(
+        files, out, columns=columns, point=point, overwrite=force, json_target=json
+    )
+
+
+@app.command(name="modal")
+def modal_command(
+    files: Files,
+    columns: Columns = None,
+    point: Annotated[str, typer.Option(help="Where the hammer struck.")] = "1",
+    band: Annotated[
+        str | None, typer.Option(help="Band to fit, for example '50:5000' [Hz].")
+    ] = None,
+    order: Annotated[
+        int | None, typer.Option(help="Highest model order; chosen when left out.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Results file; beside a session by default.")
+    ] = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Estimate the FRFs and the modes of a session or of hit files.
+
+    Example: jointbench modal session.h5 --json modes.json
+    """
+    from jointbench.station.modal import run_modal
+
+    run_modal(
+        files,
+        columns=columns,
+        point=point,
+        band=band,
+        order=order,
+        out=out,
+        json_target=json,
+    )
+
+
+@app.command(name="surface")
+def surface_command(
+    files: Files, columns: Columns = None, json: Json = None, debug: Debug = False
+) -> None:
+    """Fit the fractal parameters D and G of measured surfaces.
+
+    Example: jointbench surface face-a.csv face-b.csv --json surfaces.json
+    """
+    from jointbench.station.surface import run_surface
+
+    run_surface(files, columns=columns, json_target=json)
+
+
+@app.command(name="contact")
+def contact_command(
+    load: Annotated[
+        list[str], typer.Option(help="Preload with unit, '25 kN'; may be repeated.")
+    ],
+    modulus: Annotated[str, typer.Option(help="Composite modulus E*, '29.3 GPa'.")],
+    hardness: Annotated[str, typer.Option(help="Hardness, '1.5 GPa'.")],
+    dimension: Annotated[
+        float | None, typer.Option(help="Profile fractal dimension, 1 < D < 2.")
+    ] = None,
+    roughness: Annotated[
+        str | None, typer.Option(help="Fractal roughness G with unit, '1e-9 m'.")
+    ] = None,
+    surface: Annotated[
+        list[Path] | None,
+        typer.Option(help="Surface file of one face; give it twice for a joint."),
+    ] = None,
+    columns: Columns = None,
+    poisson: Annotated[float, typer.Option(help="Poisson's ratio [-].")] = 0.25,
+    model: Annotated[
+        list[str] | None, typer.Option(help="Contact model; may be repeated.")
+    ] = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Predict a rough joint's stiffness from D, G, material and preload.
+
+    Example: jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus
+    '29.3 GPa' --hardness '1.5 GPa' --load '1 kN' --load '25 kN'
+    """
+    from jointbench.station.contact import run_contact
+
+    run_contact(
+        model or ["ke_3d_modified"],
+        loads=load,
+        modulus=modulus,
+        hardness=hardness,
+        poisson=poisson,
+        dimension=dimension,
+        roughness=roughness,
+        surfaces=surface or [],
+        columns=columns,
+        json_target=json,
+    )
+
+
+@app.command(name="identify")
+def identify_command(
+    model: Annotated[Path, typer.Argument(help="Bench model, TOML.")],
+    sessions: Annotated[list[Path], typer.Argument(help="Session files.")],
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Identify the links of a lumped bench from its measured modes.
+
+    Example: jointbench identify bench.toml session.h5 --json joint.json
+    """
+    from jointbench.station.identify import run_identify
+
+    run_identify(model, sessions, json_target=json)
+
+
+@app.command(name="report")
+def report_command(
+    session: Annotated[Path, typer.Argument(help="Session file.")],
+    out: Annotated[
+        Path | None, typer.Option(help="HTML file; beside the session by default.")
+    ] = None,
+    model: Annotated[
+        Path | None, typer.Option(help="Bench model (TOML): adds contact and joint.")
+    ] = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Write one offline HTML page about a session.
+
+    Example: jointbench report session.h5 --out report.html
+    """
+    from jointbench.station.report_command import run_report
+
+    run_report(session, out=out, model=model, json_target=json)
+
+
+@app.command(name="inspect")
+def inspect_command(
+    file: Annotated[Path, typer.Argument(help="Session or results file.")],
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Say what is in a file: channels, hits and verdicts, surfaces, provenance.
+
+    Example: jointbench inspect session.h5
+    """
+    from jointbench.station.inspect_file import run_inspect
+
+    run_inspect(file, json_target=json)

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""What a command shows: progress and tables on the terminal, JSON for programs.
+
+Tables go to standard output, unless the JSON goes there; progress to standard error.
+"""
+
+import json
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from math import floor, isfinite, log10
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+Jsonable = Mapping[str, object]
+
+
+def console(json_target: str | None = None) -> Console:
+    """Return the console for tables: standard error when JSON takes standard output."""
+    return Console(stderr=json_target == "-", highlight=False, soft_wrap=False)
+
+
+@contextmanager
+def working(message: str) -> Iterator[None]:
+    """Show on a terminal what is being done, for as long as it takes."""
+    progress = Console(stderr=True, highlight=False)
+    if not progress.is_terminal:
+        yield
+        return
+    with progress.status(f"{message} ..."):
+        yield
+
+
+def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """Return a table whose first column is left-aligned, the others right-aligned."""
+    result = Table(title=title, title_justify="left", title_style="bold", box=None)
+    for number, column in enumerate(columns):
+        result.add_column(column, justify="left" if number == 0 else "right")
+    for row in rows:
+        result.add_row(*row)
+    return result
+
+
+def write_json(target: str | None, content: Jsonable) -> None:
+    """Write `content` to a file, or to standard output when `target` is ``-``."""
+    if target is None:
+        return
+    text = json.dumps(_plain(content), indent=2, allow_nan=False) + "\n"
+    if target == "-":
+        sys.stdout.write(text)
+    else:
+        Path(target).write_text(text, encoding="utf-8")
+
+
+def _plain(value: object) -> object:
+    """Turn numbers that JSON cannot hold into null, and keys into text."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return value if isfinite(value) else None
+    return value
+
+
+def with_sd(value: float, sd: float | None, *, digits: int = 2) -> str:
+    """Write a value and its standard deviation with as many digits as it deserves.
+
+    >>> with_sd(810.2314, 0.021)
+    '810.231 ± 0.021'
+    >>> with_sd(6.2e7, 1.1e6)
+    '6.20e+07 ± 1.1e+06'
+    """
+    if sd is None or not (isfinite(sd) and sd > 0):
+        return f"{value:.6g}"
+    last = floor(log10(sd)) - digits + 1
+    if last > 0 or (value != 0 and abs(value) >= 1e6) or abs(value) < 1e-3:
+        lead = floor(log10(abs(value))) if value else 0
+        return f"{value:.{max(lead - last, 0)}e} ± {sd:.{digits - 1}e}"
+    return f"{value:.{-last}f} ± {sd:.{-last}f}"
+
+
+def engineering(value: float, unit: str) -> str:
+    """Write a value with an SI prefix.
+
+    >>> engineering(3.2e-9, "m")
+    '3.2 nm'
+    """
+    if value == 0 or not isfinite(value):
+        return f"{value:g} {unit}"
+    prefixes = {-15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M"}
+    prefixes |= {9: "G", 12: "T"}
+    power = min(max(3 * floor(log10(abs(value)) / 3), -15), 12)
+    return f"{value / 10**power:.4g} {prefixes[power]}{unit}"

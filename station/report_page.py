@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""A report as data, and its rendering to one HTML file that needs no network."""
+
+import json
+import secrets
+from dataclasses import dataclass, field
+from importlib.resources import files
+from pathlib import Path
+from typing import Literal
+
+from jointbench.station.figures import Figure
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """One headline number."""
+
+    label: str
+    value: str
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """One paragraph; a notice is set apart."""
+
+    text: str
+    kind: Literal["text", "notice"] = "text"
+
+
+@dataclass(frozen=True, slots=True)
+class DataTable:
+    """A table; cells found in `bad_words` are shown as failures."""
+
+    caption: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    bad_words: frozenset[str] = frozenset()
+    kind: Literal["table"] = "table"
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """A figure under an identifier that is unique within the page."""
+
+    identifier: str
+    caption: str
+    figure: Figure
+    height: int = 380
+    kind: Literal["figure"] = "figure"
+
+
+Item = Text | DataTable | Plot
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A titled part of the page."""
+
+    anchor: str
+    title: str
+    items: tuple[Item, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """Everything that a page shows."""
+
+    title: str
+    lead: str
+    software: str
+    simulated: bool
+    tiles: tuple[Tile, ...]
+    sections: tuple[Section, ...] = field(default=())
+
+
+def render(report: Report) -> str:
+    """Return `report` as one self-contained HTML page."""
+    from jinja2 import Environment
+    from plotly.offline import get_plotlyjs
+
+    room = files("jointbench.station")
+    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    template = environment.from_string(
+        room.joinpath("report.html.j2").read_text(encoding="utf-8")
+    )
+    return template.render(
+        report=report,
+        style=room.joinpath("report.css").read_text(encoding="utf-8"),
+        plotly=get_plotlyjs(),
+        figures=_script_safe(_figures(report)),
+        nonce=secrets.token_urlsafe(16),
+    )
+
+
+def write_report(report: Report, path: Path) -> None:
+    """Write the rendered page to `path`."""
+    path.write_text(render(report), encoding="utf-8")
+
+
+def _figures(report: Report) -> str:
+    plots = [
+        item
+        for section in report.sections
+        for item in section.items
+        if isinstance(item, Plot)
+    ]
+    return json.dumps({plot.identifier: plot.figure for plot in plots})
+
+
+def _script_safe(text: str) -> str:
+    """Escape what could end a script element early, whatever a file's texts hold."""
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")
