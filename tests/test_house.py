@@ -1,0 +1,100 @@
+"""The house itself: packaging, the direction of imports, what starting up costs."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+ROOMS = ("acquisition", "signal", "analysis", "simulators", "station")
+MAY_IMPORT = {
+    "acquisition": set(),
+    "signal": {"acquisition"},
+    "analysis": {"acquisition", "signal"},
+    "simulators": {"acquisition"},
+    "station": {"acquisition", "signal", "analysis", "simulators"},
+}
+ONE_HOME = {"filterpy", "nidaqmx", "serial"}
+NOT_AT_START = (
+    "scipy",
+    "numba",
+    "plotly",
+    "matplotlib",
+    "filterpy",
+    "grpc",
+    "h5py",
+    "pydantic",
+)
+
+
+def sources(room: str) -> list[Path]:
+    """Return the modules of a room."""
+    return sorted((ROOT / room).rglob("*.py"))
+
+
+def imported(path: Path) -> set[str]:
+    """Return the absolute names that a module imports anywhere."""
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names.add(node.module)
+    return names
+
+
+def rooms_of(names: set[str]) -> set[str]:
+    """Return the rooms among imported names."""
+    return {n.split(".")[1] for n in names if n.startswith("jointbench.")}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_holds_no_init_and_is_typed(room: str) -> None:
+    """An `__init__.py` would shadow the standard library's `signal`."""
+    assert not (ROOT / room / "__init__.py").exists()
+    assert (ROOT / room / "py.typed").exists()
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_room_imports_only_what_stands_to_its_left(room: str) -> None:
+    """Acquisition, signal, analysis, station; simulators know acquisition alone."""
+    modules = sources(room)
+    assert modules
+    for path in modules:
+        foreign = rooms_of(imported(path)) - {room}
+        assert foreign <= MAY_IMPORT[room], f"{path.name} imports {foreign}"
+
+
+@pytest.mark.parametrize("package", sorted(ONE_HOME))
+def test_a_heavy_dependency_has_at_most_one_home(package: str) -> None:
+    """Filterpy, nidaqmx and pyserial are each imported by one module at the most."""
+    homes = [
+        path
+        for room in ROOMS
+        for path in sources(room)
+        if package in {name.split(".")[0] for name in imported(path)}
+    ]
+    assert len(homes) <= 1, homes
+
+
+def test_the_standard_library_signal_is_not_shadowed_at_the_root() -> None:
+    """Subprocess and asyncio import `signal` and must find the real one."""
+    code = "import signal, subprocess, asyncio; signal.SIGINT"
+    subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=True)
+
+
+def test_help_imports_nothing_heavy() -> None:
+    """Starting up must stay instant: no SciPy, numba, plotting or HDF5."""
+    code = (
+        "import sys\n"
+        "from jointbench.station.main import app, exit_code\n"
+        "sys.argv = ['jointbench', '--help']\n"
+        "assert exit_code(app, debug=True) == 0\n"
+        f"heavy = [m for m in {NOT_AT_START!r} if m in sys.modules]\n"
+        "assert not heavy, heavy\n"
+    )
+    subprocess.run(
+        [sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True
+    )
