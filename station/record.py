@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Record everything a source delivers; hits are judged afterwards, none is thrown away."""
+"""Record everything a source delivers; hits are judged later, none is thrown away."""
 
 from collections.abc import Callable
 
