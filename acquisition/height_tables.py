@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: MIT
+"""Heights from plain tables: x and z in columns, or x, y and z of points on a grid."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import BoolArray, FloatArray, IntArray
+from jointbench.acquisition.columns import (
+    SURFACE_EXAMPLES,
+    Column,
+    only_roles,
+    parse_columns,
+)
+from jointbench.acquisition.errors import (
+    FormatError,
+    SamplingError,
+    UnitError,
+    UsageError,
+)
+from jointbench.acquisition.even_steps import fit_even_steps
+from jointbench.acquisition.records import Provenance, Step, step
+from jointbench.acquisition.surfaces import Areal, Profile, Surface
+from jointbench.acquisition.tables import Table
+from jointbench.acquisition.text_files import named, shown
+
+# A coordinate may lie this far from its grid line [step], and two readings nearer
+# than `_SAME_LINE` of a typical step are the same line.
+_OFF_GRID = 0.25
+_SAME_LINE = 0.5
+_LEAST_FILLED = 0.5
+_AREAL_COLUMNS = 3
+# A value met at least twice and this far outside the range of all others [range] is
+# taken for a code that means "no point".
+_FAR_OUTSIDE = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class _Axis:
+    """Grid lines of one coordinate.
+
+    Attributes:
+        index: number of the grid line of each point, shape (n,).
+        count: number of grid lines.
+        step: their distance [unit of the file].
+    """
+
+    index: IntArray
+    count: int
+    step: float
+
+
+def surface_columns(spec: str) -> tuple[Column, ...]:
+    """Read ``--columns`` of a table of heights; see `parse_columns`.
+
+    Raises:
+        UsageError: x or z is not among them, or something else is.
+        UnitError: a unit is missing or is no length.
+    """
+    columns = parse_columns(spec)
+    only_roles(columns, ("x", "y", "z"), "a table of heights")
+    roles = {column.role for column in columns}
+    for role in ("x", "z"):
+        if role not in roles:
+            raise UsageError(
+                f"--columns {spec!r} names no {role!r}; write for example "
+                + " or ".join(repr(example) for example in SURFACE_EXAMPLES)
+            )
+    return columns
+
+
+def surface_from_table(
+    table: Table, columns: Sequence[Column] | None, origin: Step, name: str
+) -> Surface:
+    """Make a profile or an areal map of a table.
+
+    Args:
+        table: as read.
+        columns: what its columns are; None is refused with what to type.
+        origin: what is known of the file, put first into the provenance.
+        name: of the surface.
+
+    Returns:
+        A `Profile` where there is no y, or only one; else an `Areal` with x along
+        its columns and y along its rows, in whichever order the points were scanned.
+
+    Raises:
+        UnitError: `columns` is None.
+        FormatError: the number of columns differs, or the points form no grid.
+        SamplingError: x is missing or not in even steps.
+    """
+    if columns is None:
+        raise UnitError(_what_to_type(table))
+    if len(columns) != table.values.shape[0]:
+        raise FormatError(
+            f"{named(table.path)} has {table.values.shape[0]} columns, --columns names "
+            f"{len(columns)}; name each, '-' for one that is not wanted"
+        )
+    place = {column.role: i for i, column in enumerate(columns)}
+    heights, valid = _heights(table, place["z"], columns[place["z"]])
+    provenance = (origin, _describe(table, columns, valid))
+    if "y" in place:
+        return _areal(table, columns, place, heights, valid, provenance, name)
+    return _profile(table, columns, place["x"], heights, valid, provenance, name)
+
+
+def _what_to_type(table: Table) -> str:
+    count = table.values.shape[0]
+    header = next((line for line in reversed(table.header) if line.strip()), "")
+    seen = f"; its header reads {shown(header.strip())}" if header else ""
+    example = SURFACE_EXAMPLES[1 if count == _AREAL_COLUMNS else 0]
+    rest = ", with '-' for each of the others" if count > _AREAL_COLUMNS else ""
+    return (
+        f"{named(table.path)} has {count} columns and does not say their units{seen}; "
+        f"say what they are, for example --columns '{example}'{rest}"
+    )
+
+
+def _describe(table: Table, columns: Sequence[Column], valid: BoolArray) -> Step:
+    return step(
+        "recognise",
+        format="table of heights",
+        reason="no known instrument format; columns as given",
+        layout=table.layout,
+        columns=",".join(f"{c.role}:{c.unit}" for c in columns),
+        missing_points=int(np.sum(~valid)),
+    )
+
+
+def _heights(table: Table, index: int, column: Column) -> tuple[FloatArray, BoolArray]:
+    """Return heights [m], 0 where missing, and the mask of those that are there."""
+    values = table.values[index]
+    missing = np.isnan(values)
+    if column.code is not None:
+        missing |= values == column.code
+    else:
+        _refuse_unsaid_code(table, values[~missing], column)
+    infinite = np.flatnonzero(np.isinf(values) & ~missing)
+    if infinite.size:
+        raise FormatError(
+            f"{named(table.path)}: {table.where(int(infinite[0]))}: height is "
+            "infinite; leave the cell of a missing point empty"
+        )
+    return np.where(missing, 0.0, values) * column.factor, ~missing
+
+
+def _refuse_unsaid_code(table: Table, values: FloatArray, column: Column) -> None:
+    """Refuse a number that stands for "no point" but was not said to."""
+    finite = values[np.isfinite(values)]
+    if finite.size == 0:
+        return
+    for extreme in (finite.min(), finite.max()):
+        others = finite[finite != extreme]
+        times = finite.size - others.size
+        if times < 2 or others.size < 2 or np.ptp(others) == 0:
+            continue
+        if np.abs(others - extreme).min() > _FAR_OUTSIDE * np.ptp(others):
+            raise FormatError(
+                f"{named(table.path)}: height {extreme:.9g} stands {times} times far "
+                f"outside all others ({others.min():.6g} to {others.max():.6g}); if it "
+                f"means a missing point write z:{column.unit}!{extreme:.9g}, if it is "
+                f"a height write z:{column.unit}!nan"
+            )
+
+
+def _profile(
+    table: Table,
+    columns: Sequence[Column],
+    index: int,
+    heights: FloatArray,
+    valid: BoolArray,
+    provenance: Provenance,
+    name: str,
+) -> Profile:
+    """Lay heights on an even line; rounded x are put back to length / (n - 1)."""
+    x = table.values[index]
+    order = slice(None, None, -1 if x[-1] < x[0] else 1)
+    last = x.size - 1
+    try:
+        steps = fit_even_steps(
+            x[order],
+            what="x",
+            unit=columns[index].unit,
+            where=lambda i: table.where(last - i if order.step == -1 else i),
+            printed=lambda: table.printed_units(index)[order],
+        )
+    except SamplingError as error:
+        raise SamplingError(f"{named(table.path)}: {error}") from error
+    return Profile(
+        name=name,
+        heights=heights[order],
+        spacing=steps.step * columns[index].factor,
+        valid=valid[order],
+        provenance=provenance,
+    )
+
+
+def _areal(
+    table: Table,
+    columns: Sequence[Column],
+    place: dict[str, int],
+    heights: FloatArray,
+    valid: BoolArray,
+    provenance: Provenance,
+    name: str,
+) -> Surface:
+    """Sort points onto the grid that their coordinates form."""
+    axes = {role: _axis(table, place[role], role) for role in ("y", "x")}
+    shape = (axes["y"].count, axes["x"].count)
+    if heights.size < _LEAST_FILLED * shape[0] * shape[1]:
+        raise FormatError(
+            f"{named(table.path)}: {heights.size} points lie on {shape[1]} values of x "
+            f"and {shape[0]} of y, which is no filled grid; export the map on a "
+            "regular grid, or name the columns in their right order"
+        )
+    cell = axes["y"].index * shape[1] + axes["x"].index
+    _require_single(table, cell)
+    grid, mask = np.zeros(shape), np.zeros(shape, dtype=np.bool_)
+    grid.flat[cell] = heights
+    mask.flat[cell] = valid
+    spacing = {role: axes[role].step * columns[place[role]].factor for role in axes}
+    if 1 in shape:
+        along = "x" if shape[0] == 1 else "y"
+        return Profile(
+            name=name,
+            heights=grid.ravel(),
+            spacing=spacing[along],
+            valid=mask.ravel(),
+            provenance=provenance,
+        )
+    return Areal(
+        name=name,
+        heights=grid,
+        spacing=(spacing["y"], spacing["x"]),
+        valid=mask,
+        provenance=(*provenance, step("grid", empty_cells=int(grid.size - cell.size))),
+    )
+
+
+def _axis(table: Table, index: int, role: str) -> _Axis:
+    """Find the grid lines of a coordinate from all values met."""
+    values = table.values[index]
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise SamplingError(
+            f"{named(table.path)}: {table.where(int(bad[0]))}: {role} is "
+            f"{values[bad[0]]}; every point needs its place"
+        )
+    met, inverse = np.unique(values, return_inverse=True)
+    line = _group_lines(met)
+    centres = np.bincount(line, weights=met) / np.bincount(line)
+    number, spacing = _number_lines(centres, table, role)
+    return _Axis(number[line[inverse]], int(number[-1]) + 1, spacing)
+
+
+def _group_lines(met: FloatArray) -> IntArray:
+    """Put readings of one grid line together that differ by the encoder's noise."""
+    gaps = np.diff(met)
+    if gaps.size == 0:
+        return np.zeros(met.size, dtype=np.int64)
+    typical = float(np.median(gaps[gaps > _OFF_GRID * gaps.max()]))
+    return np.concatenate(([0], np.cumsum(gaps > _SAME_LINE * typical))).astype(
+        np.int64
+    )
+
+
+def _number_lines(
+    centres: FloatArray, table: Table, role: str
+) -> tuple[IntArray, float]:
+    """Number the grid lines from 0; a whole line that is missing keeps its number."""
+    if centres.size == 1:
+        return np.zeros(1, dtype=np.int64), 1.0
+    try:
+        steps = fit_even_steps(centres, what=role, unit="", where=str)
+    except SamplingError:
+        pass
+    else:
+        return np.arange(centres.size), steps.step
+    gaps = np.diff(centres)
+    typical = float(np.median(gaps))
+    number = np.concatenate(([0], np.cumsum(np.rint(gaps / typical)))).astype(np.int64)
+    spacing = float(centres[-1] - centres[0]) / float(number[-1])
+    off = np.abs(centres - centres[0] - number * spacing)
+    if off.max() > _OFF_GRID * spacing:
+        raise FormatError(
+            f"{named(table.path)}: {role} = {centres[np.argmax(off)]:.9g} lies off the "
+            f"even grid of step {spacing:.6g} that the other values form; export the "
+            "map on a regular grid"
+        )
+    return number, spacing
+
+
+def _require_single(table: Table, cell: IntArray) -> None:
+    order = np.argsort(cell, kind="stable")
+    repeated = np.flatnonzero(np.diff(cell[order]) == 0)
+    if repeated.size:
+        first, second = order[repeated[0]], order[repeated[0] + 1]
+        raise FormatError(
+            f"{named(table.path)}: {table.where(int(second))} repeats the point of "
+            f"{table.where(int(first))}; each point of the grid may appear once"
+        )

@@ -1,0 +1,310 @@
+# SPDX-License-Identifier: MIT
+"""Plain tables of numbers: delimited text of any common layout, and .npy arrays."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.errors import FormatError, HostileFile
+from jointbench.acquisition.text_files import (
+    decode,
+    file_size,
+    named,
+    read_bytes,
+    shown,
+    text_lines,
+)
+
+MAX_ROWS = 20_000_000
+MAX_COLUMNS = 512
+MAX_CELLS = 100_000_000
+MAX_HEADER_LINES = 1000
+NPY_MAGIC = b"\x93NUMPY"
+_DELIMITERS = ("\t", ";", ",", "|", None)
+_NAMES = {"\t": "tab", None: "blanks"}
+_COMMENT = ("#", "%", "//")
+MISSING_WORDS = frozenset({"", "nan", "bad", "n/a", "na", "null", "-", "--", "---"})
+NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.I)
+DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """Numbers of a plain table and where they stood.
+
+    Attributes:
+        path: the file.
+        values: one row for each column of the file, shape (n_columns, n_rows); NaN
+            where a cell is empty or says that there is no value.
+        lines: number of the line of each row, from 1; None for an array file.
+        header: the lines above the numbers.
+        layout: what was recognised, for provenance.
+        rows: the text of each row; empty for an array file.
+        delimiter: what separates the columns; None for blanks.
+    """
+
+    path: Path
+    values: FloatArray
+    lines: IntArray | None
+    header: tuple[str, ...]
+    layout: str
+    rows: Sequence[str] = ()
+    delimiter: str | None = None
+
+    def where(self, row: int) -> str:
+        """Name a row as the user finds it: by line, or by index in an array."""
+        if self.lines is None:
+            return f"index {row}"
+        return f"line {self.lines[row]}"
+
+    def printed_units(self, column: int) -> FloatArray:
+        """Return the unit of the last printed digit of each number of a column.
+
+        Returns:
+            ``"2.50E-04"`` gives 1e-6; 0 for an array file, shape (n_rows,).
+        """
+        if not self.rows:
+            return np.zeros(self.values.shape[1])
+        cells = (split_row(row, self.delimiter)[column] for row in self.rows)
+        return np.array([_last_digit(cell) for cell in cells])
+
+
+@dataclass(frozen=True, slots=True)
+class _Start:
+    """Where the numbers begin and how they are told apart."""
+
+    line: int
+    delimiter: str | None
+    columns: int
+
+
+def read_table(path: Path | str, *, columns: int | None = None) -> FloatArray:
+    """Read the numbers of a table.
+
+    Args:
+        path: a .npy file, or delimited text with or without header lines.
+        columns: how many columns are expected; tells (n, 3) from (3, n) in an array.
+
+    Returns:
+        One row for each column of the file, shape (n_columns, n_rows); NaN where a
+        cell is empty or says that there is no value.
+
+    Raises:
+        BadData: the file cannot be opened.
+        FormatError: it is no such table, or its rows differ in length.
+        HostileFile: it is larger than any measurement.
+    """
+    return load_table(path, columns=columns).values
+
+
+def load_table(path: Path | str, *, columns: int | None = None) -> Table:
+    """Read a table and remember the line of each row; see `read_table`."""
+    path = Path(path)
+    if is_array_file(path):
+        return _load_array(path, columns)
+    text, encoding = decode(read_bytes(path), path)
+    return parse_table(text_lines(text, path), path, encoding)
+
+
+def is_array_file(path: Path) -> bool:
+    """Tell by its first bytes whether a file is a .npy array."""
+    file_size(path)
+    return read_head(path, len(NPY_MAGIC)) == NPY_MAGIC
+
+
+def read_head(path: Path, count: int) -> bytes:
+    """Return the first `count` bytes of a file, fewer where it is shorter."""
+    try:
+        with path.open("rb") as file:
+            return file.read(count)
+    except OSError as error:
+        raise FormatError(f"{named(path)} cannot be read: {error.strerror}") from error
+
+
+def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
+    """Find the numbers in the lines of a text and read them; see `read_table`."""
+    start = _find_start(lines, path)
+    numbers = [
+        i
+        for i in range(start.line, len(lines))
+        if lines[i].strip(" \t\x1a\f") and not lines[i].lstrip().startswith(_COMMENT)
+    ]
+    if len(numbers) > MAX_ROWS or len(numbers) * start.columns > MAX_CELLS:
+        raise HostileFile(
+            f"{named(path)} has {len(numbers)} rows of {start.columns} columns; "
+            f"at most {MAX_ROWS} rows and {MAX_CELLS} cells are read: cut it"
+        )
+    rows = [lines[i] for i in numbers]
+    values = _parse_fast(rows, start)
+    if values is None:
+        values = _parse_carefully(rows, numbers, start, path)
+    delimiter = _NAMES.get(start.delimiter, start.delimiter)
+    return Table(
+        path=path,
+        values=_without_empty_tail(values),
+        lines=np.asarray(numbers, dtype=np.int64) + 1,
+        header=tuple(lines[: start.line]),
+        layout=f"text, {encoding}, columns separated by {delimiter}",
+        rows=rows,
+        delimiter=start.delimiter,
+    )
+
+
+def split_row(line: str, delimiter: str | None) -> list[str]:
+    """Split a line into cells without quotes and blanks."""
+    return [cell.strip().strip('"').strip() for cell in line.split(delimiter)]
+
+
+def _last_digit(cell: str) -> float:
+    mantissa, _, exponent = cell.lower().partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    return float(10.0 ** (int(exponent or 0) - decimals))
+
+
+def _find_start(lines: Sequence[str], path: Path) -> _Start:
+    """Find the first two lines of numbers in a row that agree in layout."""
+    seen: _Start | None = None
+    for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
+        if not line.strip(" \t\x1a\f"):
+            continue
+        start = _numeric_layout(i, line)
+        if start and seen and _same_layout(start, seen):
+            return seen
+        seen = start
+    if seen is not None:  # a table of one row
+        return seen
+    for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
+        if any(
+            DECIMAL_COMMA.fullmatch(cell)
+            for delimiter in ("\t", ";", None)
+            for cell in split_row(line, delimiter)
+        ):
+            raise FormatError(
+                f"{named(path)}: line {i + 1}: {shown(line.strip())} has decimal "
+                "commas; replace them by points and separate the columns by ';' or tab"
+            )
+    raise FormatError(
+        f"{named(path)} holds no table of numbers: no line of its first "
+        f"{MAX_HEADER_LINES} is numbers only; its first reads {shown(lines[0].strip())}"
+    )
+
+
+def _numeric_layout(index: int, line: str) -> _Start | None:
+    """Return how a line of numbers is split, or None if it is no such line."""
+    for delimiter in _DELIMITERS:
+        if delimiter is not None and delimiter not in line:
+            continue
+        cells = split_row(line, delimiter)
+        numeric = sum(NUMBER.fullmatch(cell) is not None for cell in cells)
+        missing = sum(cell.lower() in MISSING_WORDS for cell in cells)
+        if numeric and numeric + missing >= len(cells) and len(cells) <= MAX_COLUMNS:
+            return _Start(index, delimiter, len(cells))
+    return None
+
+
+def _same_layout(one: _Start, other: _Start) -> bool:
+    return one.delimiter == other.delimiter and one.columns == other.columns
+
+
+def _parse_fast(rows: list[str], start: _Start) -> FloatArray | None:
+    """Let NumPy read what has a number in every cell; None where one has not."""
+    try:
+        table = np.loadtxt(
+            rows, delimiter=start.delimiter, comments=None, quotechar='"', ndmin=2
+        )
+    except ValueError:
+        return None
+    return np.ascontiguousarray(table.T)
+
+
+def _parse_carefully(
+    rows: list[str], numbers: list[int], start: _Start, path: Path
+) -> FloatArray:
+    """Read row by row: empty cells become NaN, anything else names its line."""
+    values = np.empty((start.columns, len(rows)))
+    for j, row in enumerate(rows):
+        cells = split_row(row, start.delimiter)
+        if len(cells) != start.columns:
+            raise FormatError(
+                f"{named(path)}: line {numbers[j] + 1} has {len(cells)} columns, the "
+                f"table began with {start.columns}: {shown(row.strip())}; the file is "
+                "cut short or mixed, export it again"
+            )
+        values[:, j] = [parse_cell(cell, numbers[j] + 1, path) for cell in cells]
+    return values
+
+
+def parse_cell(cell: str, line: int, path: Path) -> float:
+    """Read one cell; NaN where it is empty or a word for "no value".
+
+    Raises:
+        FormatError: it is no number; the message names the line.
+    """
+    if NUMBER.fullmatch(cell):
+        return float(cell)
+    if cell.lower() in MISSING_WORDS:
+        return float("nan")
+    if DECIMAL_COMMA.fullmatch(cell):
+        raise FormatError(
+            f"{named(path)}: line {line}: {shown(cell)} has a decimal comma; replace "
+            "commas by points and separate the columns by ';' or tab"
+        )
+    raise FormatError(
+        f"{named(path)}: line {line}: {shown(cell)} is not a number; every line below "
+        "the header must hold numbers only"
+    )
+
+
+def _without_empty_tail(values: FloatArray) -> FloatArray:
+    """Drop columns that only a separator at the end of every line made."""
+    keep = values.shape[0]
+    while keep > 1 and np.all(np.isnan(values[keep - 1])):
+        keep -= 1
+    return values[:keep]
+
+
+def _columns(array: NDArray[Any]) -> int:
+    return 1 if array.ndim == 1 else min(array.shape)
+
+
+def _load_array(path: Path, columns: int | None) -> Table:
+    """Map a .npy file and copy it, once its shape and type are known to be sane."""
+    try:
+        array = np.lib.format.open_memmap(path, mode="r")
+    except (ValueError, OSError, OverflowError, EOFError, TypeError) as error:
+        raise FormatError(
+            f"{named(path)} is not a whole .npy array of numbers "
+            f"({shown(error)}); save it again with numpy.save"
+        ) from error
+    if array.dtype.kind not in "fiu":
+        raise FormatError(
+            f"{named(path)} holds values of type {array.dtype}, real numbers are needed"
+        )
+    if array.ndim not in {1, 2} or not array.size or _columns(array) > MAX_COLUMNS:
+        raise FormatError(
+            f"{named(path)} has shape {array.shape}; a table has shape "
+            f"(n_columns, n_rows) or (n_rows, n_columns) with at most {MAX_COLUMNS} "
+            "columns"
+        )
+    if array.size > MAX_CELLS:
+        raise HostileFile(
+            f"{named(path)} holds {array.size} numbers, at most {MAX_CELLS} are read; "
+            "cut it"
+        )
+    values = np.atleast_2d(np.array(array, dtype=np.float64))
+    lying = values.shape[0] <= values.shape[1]
+    if columns in values.shape:
+        lying = values.shape[0] == columns
+    return Table(
+        path=path,
+        values=np.ascontiguousarray(values if lying else values.T),
+        lines=None,
+        header=(),
+        layout=f"npy, {array.dtype}, shape {array.shape}",
+    )

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""Files as text: opened with a limit, decoded without loss, named in every message."""
+
+import codecs
+import hashlib
+import re
+import stat
+from pathlib import Path
+
+from jointbench.acquisition.errors import BadData, FormatError, HostileFile
+
+MAX_TEXT_BYTES = 256 * 2**20
+MAX_LINE_CHARACTERS = 2**20
+_SHOWN = 60
+_SHOWN_PATH = 160
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+# What a text never holds: control characters other than tab, line and page ends and
+# the Ctrl-Z that old programs put at the end.
+_BINARY = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f\x7f]")
+
+
+def shown(text: object) -> str:
+    """Return `text` in quotes on one line, cut short, for a message."""
+    plain = str(text)
+    return repr(plain if len(plain) <= _SHOWN else plain[:_SHOWN] + "...")
+
+
+def named(path: Path | str) -> str:
+    """Return a path in quotes on one line for a message; a long one keeps its end."""
+    plain = str(path)
+    return repr(plain if len(plain) <= _SHOWN_PATH else "..." + plain[-_SHOWN_PATH:])
+
+
+def file_size(path: Path | str) -> int:
+    """Return the size of an ordinary file [bytes].
+
+    Raises:
+        BadData: there is no such file, or it is a folder, a device or a pipe.
+    """
+    try:
+        info = Path(path).stat()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise BadData(f"{named(path)}: {reason}; check the name of the file") from error
+    if stat.S_ISDIR(info.st_mode):
+        raise BadData(f"{named(path)} is a folder; name the file inside it")
+    if not stat.S_ISREG(info.st_mode):
+        raise BadData(f"{named(path)} is a device or a pipe; give an ordinary file")
+    return info.st_size
+
+
+def file_digest(path: Path | str) -> str:
+    """Return the SHA-256 of a file as hexadecimal text."""
+    file_size(path)
+    try:
+        with Path(path).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
+
+
+def read_bytes(path: Path | str, *, limit: int = MAX_TEXT_BYTES) -> bytes:
+    """Return the content of a file that is not larger than `limit` [bytes].
+
+    Raises:
+        BadData: it cannot be opened.
+        FormatError: it is empty.
+        HostileFile: it is larger than `limit`.
+    """
+    size = file_size(path)
+    if size == 0:
+        raise FormatError(f"{named(path)} is empty; export it again")
+    if size > limit:
+        raise HostileFile(
+            f"{named(path)} has {size} bytes, at most {limit} are read as text; "
+            "split it, or save the numbers as .npy"
+        )
+    try:
+        with Path(path).open("rb") as file:
+            return file.read(limit)
+    except OSError as error:
+        raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
+
+
+def decode(data: bytes, path: Path | str) -> tuple[str, str]:
+    r"""Decode UTF-8, UTF-16 or Windows-1252, whichever fits without a loss.
+
+    Args:
+        data: the content.
+        path: the file it came from, for messages.
+
+    Returns:
+        The text with ``\n`` at the line ends, and the name of the encoding.
+
+    Raises:
+        FormatError: it is none of the three, or is no text at all.
+    """
+    for encoding in _candidates(data):
+        try:
+            text = data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        junk = _BINARY.search(text)
+        if junk is None:
+            return text.replace("\r\n", "\n").replace("\r", "\n"), encoding
+    raise FormatError(
+        f"{named(path)} is not text in UTF-8, UTF-16 or Windows-1252; it looks like a "
+        "binary file: export it as text, or convert it to .npy"
+    )
+
+
+def text_lines(text: str, path: Path | str) -> list[str]:
+    """Split a text into lines, none of them endless.
+
+    Raises:
+        HostileFile: a line has more than a million characters.
+    """
+    lines = text.split("\n")
+    longest = max(range(len(lines)), key=lambda i: len(lines[i]))
+    if len(lines[longest]) > MAX_LINE_CHARACTERS:
+        raise HostileFile(
+            f"{named(path)}: line {longest + 1} has {len(lines[longest])} characters; "
+            f"at most {MAX_LINE_CHARACTERS} are read: write one row a line"
+        )
+    return lines
+
+
+def _candidates(data: bytes) -> tuple[str, ...]:
+    for mark, encoding in _BOMS:
+        if data.startswith(mark):
+            return (encoding,)
+    head = data[:400]
+    # Digits in UTF-16 are every other byte zero, with or without a mark in front.
+    if head and head[1::2].count(0) > 0.8 * len(head[1::2]):
+        return ("utf-16-le",)
+    if head and head[0::2].count(0) > 0.8 * len(head[0::2]):
+        return ("utf-16-be",)
+    return ("utf-8", "cp1252")
