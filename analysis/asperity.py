@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+"""One asperity of a fractal surface: geometry, load and stiffness by regime.
+
+The joint is the sum of these laws over the contact-area distribution; the closed form
+of that sum is in `contact_sums`.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.contact_material import ContactMaterial, yield_ratio
+from jointbench.analysis.contact_models import (
+    REGIME_BOUNDS,
+    AsperityLaw,
+    ContactModel,
+    FullyPlastic,
+    regime_laws,
+)
+
+# A critical area beyond exp(700) m^2, near the largest double, means "all plastic".
+_LARGEST_LOG_AREA = 700.0
+# Far above every regime bound; a power of it must not overflow.
+_LARGEST_LOG_RATIO = 300.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FractalSurface:
+    """Numbers of one or many fractal surfaces, broadcast against each other.
+
+    Attributes:
+        dimension: fractal dimension as the model's topography wants it [-].
+        roughness: fractal roughness G [m].
+        hardness: [Pa].
+        gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
+    """
+
+    dimension: FloatArray
+    roughness: FloatArray
+    hardness: FloatArray
+    gamma: float = 1.5
+
+
+def excess(model: ContactModel, surface: FractalSurface) -> FloatArray:
+    """Return e = D - lowest dimension of the topography [-], 0 < e < 1."""
+    return np.asarray(surface.dimension - model.topography.lowest_dimension)
+
+
+def log_critical_area(
+    model: ContactModel, surface: FractalSurface, material: ContactMaterial
+) -> FloatArray:
+    """Return ln of the contact area below which an asperity yields.
+
+    Args:
+        model: topography and yield criterion count.
+        surface: dimension, roughness, hardness.
+        material: modulus and what else the yield criterion needs.
+
+    Returns:
+        ln(a_c / m^2), at most 700.
+
+    Source:
+        Appl. Sci. 2023, 13, 11680, eqs. (23) and (41); from a = g R delta and
+        delta_c = kappa^2 R. Note: eq. (41) as printed counts pi^(2/(2-D)) twice.
+    """
+    e = excess(model, surface)
+    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    log_c = model.topography.log_interference(e, surface.roughness, surface.gamma)
+    log_area = 2 * log_c + math.log(model.topography.shape) - 2 * np.log(kappa)
+    return np.asarray(np.minimum(log_area / e, _LARGEST_LOG_AREA))
+
+
+def interference(
+    model: ContactModel, surface: FractalSurface, area: FloatArray
+) -> FloatArray:
+    """Return the interference delta of contacts of `area` [m]."""
+    e = excess(model, surface)
+    log_c = model.topography.log_interference(e, surface.roughness, surface.gamma)
+    return np.asarray(np.exp(log_c + (1 - e) / 2 * np.log(area)))
+
+
+def interference_ratio(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    log_area: FloatArray,
+) -> FloatArray:
+    """Return delta / delta_c = (a_c / a)^e of contacts of exp(`log_area`) m^2 [-]."""
+    e = excess(model, surface)
+    distance = log_critical_area(model, surface, material) - log_area
+    return np.asarray(np.exp(np.minimum(e * distance, _LARGEST_LOG_RATIO)))
+
+
+def asperity_load(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    log_area: FloatArray,
+) -> FloatArray:
+    """Return the load on one contact of exp(`log_area`) m^2 [N].
+
+    Args:
+        model: laws of the regimes.
+        surface: dimension, roughness, hardness.
+        material: effective modulus and yield properties.
+        log_area: ln(a / m^2), any shape that broadcasts with `surface`.
+
+    Returns:
+        Load [N], of the broadcast shape.
+
+    Source:
+        Kogut and Etsion 2002; Appl. Sci. 2023, 13, 11680, eqs. (16)-(22), where the
+        elastic factor 4/3 E R^(1/2) delta^(3/2) has lost its exponent.
+    """
+    ratio = interference_ratio(model, surface, material, log_area)
+    area = np.exp(log_area)
+    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    # P_c = 4/3 E R^(1/2) delta_c^(3/2) with delta_c = kappa^2 R and a = g R delta.
+    critical = 4 / 3 * material.effective_modulus * kappa * area
+    critical = critical / (model.topography.shape * ratio)
+    loads = [
+        law.pressure_factor * surface.hardness * area
+        if isinstance(law, FullyPlastic)
+        else law.coefficient * critical * np.clip(ratio, lower, upper) ** law.exponent
+        for law, upper, lower in _laws_with_bounds(model)
+    ]
+    return _choose(ratio, loads)
+
+
+def asperity_stiffness(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    log_area: FloatArray,
+) -> FloatArray:
+    """Return dP/d(approach) of one contact of exp(`log_area`) m^2 [N/m].
+
+    The radius is held while the interference grows.
+
+    Args:
+        model: laws of the regimes.
+        surface: dimension, roughness, hardness.
+        material: effective modulus and yield properties.
+        log_area: ln(a / m^2), any shape that broadcasts with `surface`.
+
+    Returns:
+        Stiffness [N/m]: exponent times load over interference; 0 where plastic.
+
+    Source:
+        Hertz; Appl. Sci. 2023, 13, 11680, eqs. (30) and (32), corrected.
+    """
+    ratio = interference_ratio(model, surface, material, log_area)
+    load = asperity_load(model, surface, material, log_area)
+    slope = load / interference(model, surface, np.exp(log_area))
+    return _choose(
+        ratio,
+        [
+            0.0 * slope if isinstance(law, FullyPlastic) else law.exponent * slope
+            for law in regime_laws(model)
+        ],
+    )
+
+
+def _laws_with_bounds(
+    model: ContactModel,
+) -> list[tuple[AsperityLaw, float, float]]:
+    """Return law, upper and lower interference ratio of each regime."""
+    return list(
+        zip(regime_laws(model), REGIME_BOUNDS[:-1], REGIME_BOUNDS[1:], strict=True)
+    )
+
+
+def _choose(ratio: FloatArray, by_regime: list[FloatArray]) -> FloatArray:
+    """Return, element by element, the value of the regime that `ratio` is in."""
+    ratio, *values = np.broadcast_arrays(ratio, *by_regime)
+    regimes = [ratio > lower for lower in REGIME_BOUNDS[1:]]
+    return np.asarray(np.select(regimes, values))

@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: MIT
+"""Contact models of a rough joint as data: terms that are chosen, not code paths.
+
+A model is a topography (profile or surface), a yield criterion, a law for each of four
+deformation regimes and an interaction term. Take one with `contact_model`, and change
+a term with `dataclasses.replace(model, interaction=Interaction.NONE)`.
+"""
+
+import difflib
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import UsageError
+from jointbench.analysis.contact_material import YieldCriterion
+
+
+class Regime(StrEnum):
+    """How far an asperity is deformed; from the smallest contacts to the largest."""
+
+    PLASTIC = "plastic"
+    ELASTIC_PLASTIC_2 = "elastic_plastic_2"
+    ELASTIC_PLASTIC_1 = "elastic_plastic_1"
+    ELASTIC = "elastic"
+
+
+REGIMES = tuple(Regime)
+
+# Interference over critical interference at which one regime gives way to the next:
+# plastic above 110, second elastic-plastic stage above 6, first above 1.
+REGIME_BOUNDS = (math.inf, 110.0, 6.0, 1.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Topography:
+    """Kind of fractal surface: what sets an asperity's interference and radius.
+
+    With the excess e = D - `lowest_dimension`, both kinds obey the same formulas:
+    interference delta = c a^((1-e)/2), a = `shape` R delta, and a distribution of
+    contact areas n(a) = q a_l^q a^(-q-1) with q = (1+e)/2.
+
+    Attributes:
+        name: ``"profile"`` or ``"surface"``.
+        lowest_dimension: fractal dimension at which the kind begins [-].
+        shape: g in a = g R delta [-].
+        log_interference: ln c of excess [-], roughness G [m] and gamma [-].
+    """
+
+    name: str
+    lowest_dimension: float
+    shape: float
+    log_interference: Callable[[FloatArray, FloatArray, float], FloatArray]
+
+
+def _profile_interference(
+    excess: FloatArray, roughness: FloatArray, gamma: float
+) -> FloatArray:
+    """Return ln c of delta = c a^((2-D)/2) (Appl. Sci. 2023, 13, 11680, eq. 15)."""
+    return np.asarray(excess * np.log(roughness))
+
+
+def _surface_interference(
+    excess: FloatArray, roughness: FloatArray, gamma: float
+) -> FloatArray:
+    """Return ln c of delta = c a^((3-D)/2) (the same paper, eq. 38)."""
+    constant = (
+        (5 - 3 * excess) / 2 * math.log(2)
+        + (excess - 1) / 2 * math.log(math.pi)
+        + 0.5 * math.log(math.log(gamma))
+    )
+    return np.asarray(excess * np.log(roughness) + constant)
+
+
+PROFILE = Topography("profile", 1.0, math.pi**2, _profile_interference)
+SURFACE = Topography("surface", 2.0, math.pi, _surface_interference)
+
+
+@dataclass(frozen=True, slots=True)
+class PowerLaw:
+    """Load of an asperity as P = coefficient * P_c * (delta / delta_c)^exponent."""
+
+    coefficient: float
+    exponent: float
+
+
+@dataclass(frozen=True, slots=True)
+class FullyPlastic:
+    """Load of an asperity as P = pressure_factor * hardness * a; no stiffness."""
+
+    pressure_factor: float
+
+
+AsperityLaw = PowerLaw | FullyPlastic
+
+
+class Interaction(StrEnum):
+    """Whether asperities feel that their neighbours sink the mean surface."""
+
+    NONE = "none"
+    SELF_CONSISTENT = "self_consistent"
+
+
+@dataclass(frozen=True, slots=True)
+class ContactModel:
+    """One contact model: every field is a term that can be exchanged by itself.
+
+    Attributes:
+        name: as `predict_contact` takes it.
+        topography: profile (2D) or surface (3D).
+        yielding: what sets the critical interference.
+        elastic: law of contacts above the critical area.
+        first: law of the first elastic-plastic stage, interference ratio 1 to 6.
+        second: law of the second one, 6 to 110.
+        plastic: law beyond.
+        interaction: acts on elastic contacts only.
+        population: factor f of the contact-area distribution [-]; 1 counts one
+            contact of the largest area.
+        source: paper and chapter.
+    """
+
+    name: str
+    topography: Topography
+    yielding: YieldCriterion
+    elastic: AsperityLaw
+    first: AsperityLaw
+    second: AsperityLaw
+    plastic: FullyPlastic
+    interaction: Interaction
+    population: float
+    source: str
+
+
+HERTZ = PowerLaw(1.0, 1.5)
+KOGUT_ETSION_1 = PowerLaw(1.03, 1.425)
+# Both papers print the exponent 1.236; Kogut and Etsion (2002) have 1.263.
+KOGUT_ETSION_2 = PowerLaw(1.40, 1.263)
+PLASTIC_PROFILE = FullyPlastic(1.0)
+# In the surface geometry `a` is half the truncated area: full plasticity bears 2 H a.
+PLASTIC_SURFACE = FullyPlastic(2.0)
+
+_PAPER_2023 = "Appl. Sci. 2023, 13, 11680"
+_PAPER_2025 = "Appl. Sci. 2025, 15, 9040"
+
+
+def _model(
+    name: str,
+    topography: Topography,
+    yielding: YieldCriterion,
+    interaction: Interaction,
+    source: str,
+) -> ContactModel:
+    """Return a model with Kogut and Etsion's stages between elastic and plastic."""
+    plastic = PLASTIC_PROFILE if topography is PROFILE else PLASTIC_SURFACE
+    return ContactModel(
+        name,
+        topography,
+        yielding,
+        HERTZ,
+        KOGUT_ETSION_1,
+        KOGUT_ETSION_2,
+        plastic,
+        interaction,
+        1.0,
+        source,
+    )
+
+
+_MB_2D = ContactModel(
+    "mb_2d",
+    PROFILE,
+    YieldCriterion.HARDNESS,
+    HERTZ,
+    PLASTIC_PROFILE,
+    PLASTIC_PROFILE,
+    PLASTIC_PROFILE,
+    Interaction.NONE,
+    1.0,
+    "Majumdar and Bhushan 1991",
+)
+_WITH = Interaction.SELF_CONSISTENT
+_WITHOUT = Interaction.NONE
+_CEB = YieldCriterion.MEAN_CONTACT_PRESSURE
+
+CONTACT_MODELS: Mapping[str, ContactModel] = MappingProxyType(
+    {
+        model.name: model
+        for model in (
+            _MB_2D,
+            _model("modified_2d", PROFILE, YieldCriterion.HARDNESS, _WITH, _PAPER_2023),
+            _model("friction_3d", SURFACE, YieldCriterion.FRICTION, _WITH, _PAPER_2023),
+            _model("ke_2d", PROFILE, _CEB, _WITHOUT, _PAPER_2025),
+            _model("ke_3d", SURFACE, _CEB, _WITHOUT, _PAPER_2025),
+            _model("ke_3d_modified", SURFACE, _CEB, _WITH, _PAPER_2025),
+        )
+    }
+)
+
+
+def contact_model(name: str) -> ContactModel:
+    """Return the contact model called `name`.
+
+    Args:
+        name: one of `CONTACT_MODELS`.
+
+    Returns:
+        The model in mode ``corrected``: lost notation restored, misprints mended.
+
+    Raises:
+        UsageError: there is no such model.
+    """
+    if name in CONTACT_MODELS:
+        return CONTACT_MODELS[name]
+    near = difflib.get_close_matches(name, CONTACT_MODELS, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
+    raise UsageError(
+        f"no contact model {name!r}; {hint}known: {', '.join(CONTACT_MODELS)}"
+    )
+
+
+def interaction_share(model: ContactModel) -> float:
+    """Return x, the asperity's own share of the interference it shares [-].
+
+    The rest, 1 - x, is the sinking of the mean surface around it.
+
+    Args:
+        model: its interaction term and its topography decide.
+
+    Returns:
+        1 without interaction; else the root of (16/(9 g)) x^3 = (1 - x)^2, which
+        makes Hertz's law and the sinking F/(E sqrt a) bear the same load.
+
+    Source:
+        Appl. Sci. 2023, 13, 11680, eqs. (17)-(18), solved. Note: the papers put
+        3 pi/16 for x, at which the two expressions for the load differ by 17 %.
+    """
+    if model.interaction is Interaction.NONE:
+        return 1.0
+    cubic = 16 / (9 * model.topography.shape)
+    share = 1.0
+    for _ in range(50):  # Newton on a rising, convex-at-the-root function
+        value = cubic * share**3 - (1 - share) ** 2
+        share -= value / (3 * cubic * share**2 + 2 * (1 - share))
+    return share
+
+
+def regime_laws(model: ContactModel) -> tuple[AsperityLaw, ...]:
+    """Return the laws that act in a joint, in the order of `REGIMES`.
+
+    Args:
+        model: its four laws and its interaction term.
+
+    Returns:
+        From small contacts to large; interaction, which makes an elastic contact bear
+        x^(3/2) of what its geometric interference would, is part of the last one.
+    """
+    elastic = model.elastic
+    if isinstance(elastic, PowerLaw):
+        share = interaction_share(model)
+        elastic = PowerLaw(elastic.coefficient * share**1.5, elastic.exponent)
+    return (model.plastic, model.second, model.first, elastic)

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: MIT
+"""How uncertain a predicted joint stiffness is: draws through the contact model."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.analysis.contact import contact_curve
+from jointbench.analysis.contact_material import ContactMaterial
+from jointbench.analysis.contact_models import ContactModel, contact_model
+
+
+@dataclass(frozen=True, slots=True)
+class ContactSpread:
+    """Standard deviations of what goes into a contact model.
+
+    Attributes:
+        dimension: of the fractal dimension [-].
+        log_roughness: of ln G [-].
+        correlation: between dimension and ln G [-]; a structure-function fit has a
+            strong one.
+        preload: [N].
+        hardness: [Pa].
+    """
+
+    dimension: float = 0.0
+    log_roughness: float = 0.0
+    correlation: float = 0.0
+    preload: float = 0.0
+    hardness: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check signs and the correlation."""
+        for name in ("dimension", "log_roughness", "preload", "hardness"):
+            if not 0 <= getattr(self, name) < np.inf:
+                raise UsageError(
+                    f"spread of {name} is {getattr(self, name)!r}, it cannot be "
+                    "negative; give a standard deviation or 0"
+                )
+        if not -1 <= self.correlation <= 1:
+            raise UsageError(
+                f"correlation is {self.correlation!r}, it lies between -1 and 1"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class StiffnessInterval:
+    """Predicted normal stiffness with its uncertainty.
+
+    Attributes:
+        median: [N/m].
+        lower: lower end of the central interval [N/m].
+        upper: upper end [N/m].
+        level: probability that the interval covers [-].
+        draws: how many draws it rests on.
+        outside: share of draws whose dimension left the model's range, drawn again.
+    """
+
+    median: float
+    lower: float
+    upper: float
+    level: float
+    draws: int
+    outside: float
+
+
+def predict_interval(
+    model: str | ContactModel,
+    *,
+    dimension: float,
+    roughness: float,
+    material: ContactMaterial,
+    preload: float,
+    spread: ContactSpread,
+    gamma: float = 1.5,
+    level: float = 0.95,
+    draws: int = 2000,
+    seed: int = 0,
+) -> StiffnessInterval:
+    """Predict an interval of the normal stiffness.
+
+    Args:
+        model: name or record.
+        dimension: fractal dimension as the model wants it [-].
+        roughness: fractal roughness G [m].
+        material: composite modulus, hardness and so on.
+        preload: [N].
+        spread: how uncertain these are.
+        gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
+        level: probability of the interval [-].
+        draws: how many.
+        seed: of the draws; the same seed gives the same interval.
+
+    Returns:
+        Median and central interval over the draws. Preload and hardness are drawn
+        lognormal, so that no draw is negative; ln G normal, correlated with D.
+
+    Raises:
+        BadData: a number outside the model's range, or a dimension so uncertain that
+            fewer than half of the draws stay inside it.
+    """
+    model = contact_model(model) if isinstance(model, str) else model
+    contact_curve(  # the centre itself must be in range
+        model,
+        dimension=dimension,
+        roughness=roughness,
+        material=material,
+        preload=preload,
+        gamma=gamma,
+    )
+    random = np.random.default_rng(seed)
+    dimensions, logs, outside = _draw_surface(
+        model, dimension, spread, draws=draws, random=random
+    )
+    sums = contact_curve(
+        model,
+        dimension=dimensions,
+        roughness=roughness * np.exp(logs),
+        material=material,
+        preload=_lognormal(preload, spread.preload, draws, random),
+        hardness=_lognormal(material.hardness, spread.hardness, draws, random),
+        gamma=gamma,
+    )
+    tail = 0.5 * (1 - level)
+    stiffness = sums.stiffness.sum(axis=0)
+    lower, median, upper = np.quantile(stiffness, [tail, 0.5, 1 - tail])
+    return StiffnessInterval(
+        float(median), float(lower), float(upper), level, draws, outside
+    )
+
+
+def _draw_surface(
+    model: ContactModel,
+    dimension: float,
+    spread: ContactSpread,
+    *,
+    draws: int,
+    random: np.random.Generator,
+) -> tuple[FloatArray, FloatArray, float]:
+    """Return dimensions in range, ln(G/roughness), and the share drawn in vain."""
+    first, second = random.standard_normal((2, 4 * draws))
+    dimensions = dimension + spread.dimension * first
+    rest = np.sqrt(1 - spread.correlation**2)
+    logs = spread.log_roughness * (spread.correlation * first + rest * second)
+    low = model.topography.lowest_dimension
+    inside = (dimensions > low) & (dimensions < low + 1)
+    if inside.mean() < 0.5:
+        raise BadData(
+            f"fractal dimension {dimension:g} +- {spread.dimension:g} is mostly "
+            f"outside {low:g} to {low + 1:g} of model {model.name!r}; "
+            "measure more or longer profiles, or take another model"
+        )
+    return (
+        dimensions[inside][:draws],
+        logs[inside][:draws],
+        float(1 - inside.mean()),
+    )
+
+
+def _lognormal(
+    value: float, sd: float, draws: int, random: np.random.Generator
+) -> FloatArray:
+    """Return positive draws with median `value` and about the given sd."""
+    return value * np.exp(sd / value * random.standard_normal(draws))

@@ -1,0 +1,242 @@
+# SPDX-License-Identifier: MIT
+"""Load and stiffness of a whole joint: asperity laws summed in closed form.
+
+Every law is a power of the contact area, so with X = a_l/a_c all sums are
+A * scale * J(s; lo, hi), J the integral of x^(s-1) between the regime's bounds, both
+clipped to X. Factors are kept as logarithms: areas span hundreds of decades as the
+fractal dimension nears its ends.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.asperity import (
+    FractalSurface,
+    asperity_load,
+    excess,
+    log_critical_area,
+)
+from jointbench.analysis.contact_material import ContactMaterial, yield_ratio
+from jointbench.analysis.contact_models import (
+    REGIME_BOUNDS,
+    AsperityLaw,
+    ContactModel,
+    PowerLaw,
+    regime_laws,
+)
+
+# The solver stops when every step in ln(area) is this small: some 20 ulp of ln(area).
+_STEP_TOLERANCE = 1e-13
+_MOST_STEPS = 200
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointSums:
+    """Load and stiffness of a joint for given largest contact areas.
+
+    Attributes:
+        largest_area: area of the largest contact a_l [m^2], shape (...).
+        critical_area: area below which asperities yield a_c [m^2], shape (...).
+        real_area: sum of all contact areas [m^2], shape (...).
+        load: by regime [N], shape (4, ...), in the order of `REGIMES`.
+        stiffness: by regime [N/m], shape (4, ...).
+    """
+
+    largest_area: FloatArray
+    critical_area: FloatArray
+    real_area: FloatArray
+    load: FloatArray
+    stiffness: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sum:
+    """What all parts of one sum share: X, bounds, factors; arrays that broadcast."""
+
+    excess: FloatArray
+    log_x: FloatArray
+    log_population: FloatArray  # ln of A = f q X^q
+    log_hard: FloatArray  # ln of H a_c [N]
+    log_load: FloatArray  # ln of P_c(a_c) = 4/3 E kappa a_c / g [N]
+    log_slope: FloatArray  # ln of P_c / delta_c at a_c [N/m]
+
+    def limits(self, upper: float, lower: float) -> tuple[FloatArray, FloatArray]:
+        """Return ln of the integration limits of a regime, clipped to X."""
+        low = -math.log(upper) / self.excess
+        high = -math.log(lower) / self.excess if lower else self.log_x
+        return np.minimum(low, self.log_x), np.minimum(high, self.log_x)
+
+
+def power_integral(
+    exponent: FloatArray,
+    log_low: FloatArray,
+    log_high: FloatArray,
+    log_factor: FloatArray | float = 0.0,
+) -> FloatArray:
+    """Integrate x^(exponent - 1) from exp(`log_low`) to exp(`log_high`).
+
+    Args:
+        exponent: s, any shape; 0 gives the logarithm.
+        log_low: ln of the lower limit, finite.
+        log_high: ln of the upper limit, finite and at least `log_low`.
+        log_factor: ln of a factor, taken into the exponent against overflow.
+
+    Returns:
+        The integral, 0 where the limits meet; exact to rounding at and near s = 0.
+    """
+    # Factor out the end that weighs more: the rest lies between 0 and 1.
+    width = log_high - log_low
+    span = np.abs(exponent) * width
+    small = span < 1e-5
+    safe = np.where(small, 1.0, span)
+    mean = np.where(small, 1 - span / 2 + span**2 / 6, -np.expm1(-safe) / safe)
+    end = np.where(exponent >= 0, log_high, log_low)
+    return np.asarray(np.exp(exponent * end + log_factor) * width * mean)
+
+
+def joint_sums(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    log_largest: FloatArray,
+) -> JointSums:
+    """Sum load and stiffness over all contacts up to the largest.
+
+    Args:
+        model: the terms that act.
+        surface: dimension, roughness and hardness of one or many surfaces.
+        material: effective modulus and yield properties.
+        log_largest: ln(a_l / m^2), broadcast with the surfaces.
+
+    Returns:
+        Load and stiffness by regime; continuous in `log_largest`.
+
+    Source:
+        Appl. Sci. 2023, 13, 11680, eqs. (24)-(48), and 2025, 15, 9040, eqs. (6)-(8),
+        re-derived: there each regime and dimension has a formula of its own, with
+        misprints. Note: limits are clipped to the largest area, which the papers omit.
+    """
+    log_critical = log_critical_area(model, surface, material)
+    total = _prepare(model, surface, material, log_critical, log_largest)
+    regimes = list(
+        zip(regime_laws(model), REGIME_BOUNDS[:-1], REGIME_BOUNDS[1:], strict=True)
+    )
+    e = excess(model, surface)
+    real_area = model.population * (1 + e) / (1 - e) * np.exp(log_largest)
+    return JointSums(
+        largest_area=np.exp(log_largest + 0 * real_area),
+        critical_area=np.exp(log_critical + 0 * real_area),
+        real_area=real_area,
+        load=np.stack([_load(total, *regime) for regime in regimes]),
+        stiffness=np.stack([_stiffness(total, *regime) for regime in regimes]),
+    )
+
+
+def solve_largest_area(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    load: FloatArray,
+) -> FloatArray:
+    """Find the largest contact area that carries `load`; load rises with it strictly.
+
+    Args:
+        model: the terms that act.
+        surface: dimension, roughness and hardness.
+        material: effective modulus and yield properties.
+        load: preload [N], broadcast with the surfaces, positive.
+
+    Returns:
+        ln(a_l / m^2) of the broadcast shape, to rounding.
+    """
+    e = excess(model, surface)
+    # Where all is plastic the load is pressure times real area: a start within decades.
+    hard = model.plastic.pressure_factor * surface.hardness * model.population
+    start = np.log(load * (1 - e) / ((1 + e) * hard))
+    low, high = _bracket(model, surface, material, load, start)
+    here = 0.5 * (low + high)
+    for _ in range(_MOST_STEPS):
+        total = joint_sums(model, surface, material, here).load.sum(axis=0)
+        low = np.where(total < load, here, low)
+        high = np.where(total < load, high, here)
+        # d ln(load) / d ln(a_l): the spread grows as a_l^q, and its end moves on.
+        largest = asperity_load(model, surface, material, here)
+        slope = (1 + e) / 2 * (1 + model.population * largest / total)
+        newton = here - np.log(total / load) / slope
+        inside = (newton > low) & (newton < high)
+        following = np.where(inside, newton, 0.5 * (low + high))
+        done = np.all(np.abs(newton - here) <= _STEP_TOLERANCE)
+        here = np.where(np.abs(newton - here) <= _STEP_TOLERANCE, here, following)
+        if done:
+            break
+    return here
+
+
+def _bracket(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    load: FloatArray,
+    start: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return ln areas below and above the solution, stepping by a factor of 100."""
+    low, high = start + 0.0, start + 0.0
+    for _ in range(_MOST_STEPS):
+        heavy = joint_sums(model, surface, material, low).load.sum(axis=0) > load
+        light = joint_sums(model, surface, material, high).load.sum(axis=0) < load
+        if not (heavy.any() or light.any()):
+            break
+        low = np.where(heavy, low - math.log(100), low)
+        high = np.where(light, high + math.log(100), high)
+    return low, high
+
+
+def _prepare(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    log_critical: FloatArray,
+    log_largest: FloatArray,
+) -> _Sum:
+    """Collect the factors that all regimes share."""
+    e = excess(model, surface)
+    log_x = np.asarray(log_largest - log_critical)
+    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    stiff = math.log(4 / 3 * material.effective_modulus)
+    log_shape = math.log(model.topography.shape)
+    return _Sum(
+        excess=e,
+        log_x=log_x,
+        log_population=np.log(model.population * (1 + e) / 2) + (1 + e) / 2 * log_x,
+        log_hard=np.log(surface.hardness) + log_critical,
+        log_load=stiff + np.log(kappa) + log_critical - log_shape,
+        log_slope=np.asarray(stiff + 0.5 * (log_critical - log_shape)),
+    )
+
+
+def _load(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArray:
+    """Return the load of one regime [N]."""
+    e = total.excess
+    if isinstance(law, PowerLaw):
+        exponent = (1 + e) / 2 - law.exponent * e
+        factor = total.log_population + total.log_load + math.log(law.coefficient)
+        return power_integral(exponent, *total.limits(upper, lower), factor)
+    exponent = (1 - e) / 2
+    factor = total.log_population + total.log_hard + math.log(law.pressure_factor)
+    if math.isinf(upper):  # down to no area at all; the exponent is positive
+        high = np.minimum(-math.log(lower) / e, total.log_x)
+        return np.asarray(np.exp(factor + exponent * high) / exponent)
+    return power_integral(exponent, *total.limits(upper, lower), factor)
+
+
+def _stiffness(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArray:
+    """Return the stiffness of one regime [N/m]."""
+    if not isinstance(law, PowerLaw):
+        return np.zeros(np.broadcast(total.log_population, total.log_load).shape)
+    factor = total.log_population + total.log_slope
+    factor = factor + math.log(law.coefficient * law.exponent)
+    exponent = (1 - law.exponent) * total.excess
+    return power_integral(exponent, *total.limits(upper, lower), factor)
