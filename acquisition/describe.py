@@ -9,7 +9,6 @@ from typing import Any
 import h5py
 import numpy as np
 
-from jointbench.acquisition.errors import BadData, FormatError
 from jointbench.acquisition.guards import open_guarded
 from jointbench.acquisition.netcdf_read import (
     dimension_names,
@@ -23,14 +22,13 @@ from jointbench.acquisition.session_extras import (
     read_setup,
     read_spacing,
 )
-from jointbench.acquisition.session_file import DAMAGE, SESSION_SCHEMA
+from jointbench.acquisition.session_file import SESSION_SCHEMA, damage_named
 from jointbench.acquisition.session_streams import (
     in_order,
     number,
     read_channels,
     read_hits,
 )
-from jointbench.acquisition.text_files import named, shown
 from jointbench.acquisition.units import example_unit
 
 Description = dict[str, object]
@@ -52,23 +50,16 @@ def describe_file(path: Path | str) -> Description:
     Raises:
         BadData: it cannot be opened, is damaged, or asks for more than a measurement.
     """
-    with open_guarded(path) as file:
-        try:
-            found: Description = {
-                "file": Path(path).name,
-                "schema": read_attribute(file, "schema"),
-                "attributes": _attributes(file),
-            }
-            if found["schema"] == SESSION_SCHEMA:
-                found |= _session(file)
-            else:
-                found["groups"] = list(_groups(file))
-        except BadData:
-            raise
-        except DAMAGE as error:
-            raise FormatError(
-                f"{named(path)} is damaged ({shown(error)}); use another copy"
-            ) from error
+    with open_guarded(path) as file, damage_named(path):
+        found: Description = {
+            "file": Path(path).name,
+            "schema": read_attribute(file, "schema"),
+            "attributes": _attributes(file),
+        }
+        if found["schema"] == SESSION_SCHEMA:
+            found |= _session(file)
+        else:
+            found["groups"] = list(_groups(file))
     return {key: _plain(value) for key, value in found.items()}
 
 
@@ -86,8 +77,8 @@ def _session(file: h5py.File) -> Description:
             "masses_kg": dict(joint.masses),
             "material_si": dict(joint.material),
         },
-        "recordings": [_recording(file, g) for g in in_order(file.get("stream"))],
-        "surfaces": [_surface(group) for group in in_order(file.get("surfaces"))],
+        "recordings": [_recording(file, g) for g in in_order(file, "stream")],
+        "surfaces": [_surface(group) for group in in_order(file, "surfaces")],
         "provenance": [
             {"of": kind, "name": name, **step}
             for (kind, name), steps in read_provenance(file).items()

@@ -22,7 +22,7 @@ from jointbench.acquisition.errors import (
     UsageError,
 )
 from jointbench.acquisition.even_steps import EvenSteps, fit_even_steps, roundest
-from jointbench.acquisition.records import Channel, Quantity, Recording, step
+from jointbench.acquisition.records import Channel, Quantity, Recording, Step, step
 from jointbench.acquisition.tables import Table, load_table
 from jointbench.acquisition.text_files import file_digest, named, shown
 from jointbench.acquisition.units import to_si
@@ -78,17 +78,20 @@ def read_recording(
         sample_rate=rate,
         channels=channels,
         start_time=float(table.values[time, 0]) * second,
-        provenance=(
-            step(
-                "import",
-                file=path.name,
-                sha256=file_digest(path),
-                layout=table.layout,
-                columns=str(columns),
-                rate_from_time_span=1 / (steps.step * second),
-                time_resolution=steps.resolution * second,
-            ),
-        ),
+        provenance=(_origin(table, str(columns), steps, second),),
+    )
+
+
+def _origin(table: Table, columns: str, steps: EvenSteps, second: float) -> Step:
+    """Tell what the recording was made of; `second` is the unit of its time [s]."""
+    return step(
+        "import",
+        file=table.path.name,
+        sha256=file_digest(table.path),
+        layout=table.layout,
+        columns=columns,
+        rate_from_time_span=1 / (steps.step * second),
+        time_resolution=steps.resolution * second,
     )
 
 

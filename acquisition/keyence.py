@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import FormatError, HostileFile
+from jointbench.acquisition.errors import FormatError, HostileFile, UnitError
 from jointbench.acquisition.records import Step, step
 from jointbench.acquisition.surfaces import Areal, SurfaceInstrument
 from jointbench.acquisition.tables import DECIMAL_COMMA, MAX_CELLS, parse_cell
@@ -149,10 +149,18 @@ def _read_geometry(header: _Header, path: Path) -> tuple[int, int, float, float]
         )
     calibration = [cell for cell in header[_KEY] if cell]
     unit = calibration[1] if len(calibration) > 1 else ""
-    pitch = _number(header, _KEY, path) * to_si(unit, "length")
+    pitch = _number(header, _KEY, path) * _length_unit(unit, _KEY, path)
     if pitch <= 0:
         raise FormatError(f"{named(path)}: {_KEY!r} is {pitch:g} m, must be above zero")
-    return int(width), int(height), pitch, to_si(_text(header, "Unit"), "length")
+    heights_unit = _length_unit(_text(header, "Unit"), "Unit", path)
+    return int(width), int(height), pitch, heights_unit
+
+
+def _length_unit(unit: str, key: str, path: Path) -> float:
+    try:
+        return to_si(unit, "length")
+    except UnitError as error:
+        raise UnitError(f"{named(path)}: {key!r}: {error}") from error
 
 
 def _number(header: _Header, key: str, path: Path) -> float:

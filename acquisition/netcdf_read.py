@@ -68,6 +68,18 @@ def read_integers(dataset: h5py.Dataset) -> IntArray:
     return np.asarray(dataset[...], dtype=np.int64)
 
 
+def find_group(parent: h5py.Group, name: str) -> h5py.Group | None:
+    """Return a group, or None where there is nothing of that name.
+
+    Raises:
+        FormatError: it is a dataset.
+    """
+    found = parent.get(name)
+    if found is not None and not isinstance(found, h5py.Group):
+        raise FormatError(f"{found.name!r} must be a group, it is a dataset")
+    return found
+
+
 def dimension_names(dataset: h5py.Dataset) -> tuple[str, ...]:
     """Return the name of each axis, empty where it has none."""
     names = []

@@ -24,6 +24,7 @@ from jointbench.acquisition.netcdf import (
     write_variable,
 )
 from jointbench.acquisition.netcdf_read import (
+    find_group,
     read_array,
     read_attribute,
     read_flags,
@@ -136,7 +137,7 @@ def write_setup(file: h5py.File, joint: JointSetup | None) -> None:
 
 def read_setup(file: h5py.File) -> JointSetup | None:
     """Return how the joint was set up, or None where nobody said."""
-    group = file.get("setup")
+    group = find_group(file, "setup")
     if group is None:
         return None
     return JointSetup(
@@ -197,7 +198,7 @@ def read_provenance(file: h5py.File) -> dict[Owner, Provenance]:
     Raises:
         FormatError: the details are not what `write_provenance` writes.
     """
-    group = file.get("provenance")
+    group = find_group(file, "provenance")
     if group is None:
         return {}
     steps: dict[Owner, list[Step]] = {}

@@ -14,6 +14,8 @@ Results never go into it: they are written beside it, so that raw data can be ma
 read-only. See `session_streams` and `session_extras` for the groups.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
@@ -40,7 +42,7 @@ from jointbench.acquisition.text_files import named, shown
 
 SESSION_SCHEMA = "jointbench-session/1"
 # What damaged content makes h5py, NumPy, JSON and the records raise.
-DAMAGE = (KeyError, ValueError, TypeError, OSError, RuntimeError, OverflowError)
+_DAMAGE = (KeyError, ValueError, TypeError, OSError, RuntimeError, OverflowError)
 _TEXTS = ("uuid", "created", "software", "operator", "notes", "source")
 
 
@@ -84,16 +86,28 @@ def read_session(path: Path | str) -> Session:
         FormatError: it is no session file, of a later layout, or damaged.
         HostileFile: it asks for more than a measurement would.
     """
-    with open_guarded(path) as file:
-        try:
-            require_schema(file, SESSION_SCHEMA, path)
-            return _read(file)
-        except BadData:
+    with open_guarded(path) as file, damage_named(path):
+        require_schema(file, SESSION_SCHEMA, path)
+        return _read(file)
+
+
+@contextmanager
+def damage_named(path: Path | str) -> Iterator[None]:
+    """Turn whatever damaged content raises into one line that names the file.
+
+    Raises:
+        FormatError: in place of the error met inside.
+    """
+    try:
+        yield
+    except BadData as error:
+        if named(path) in str(error):
             raise
-        except DAMAGE as error:
-            raise FormatError(
-                f"{named(path)} is damaged ({shown(error)}); use another copy"
-            ) from error
+        raise FormatError(f"{named(path)}: {error}; use another copy") from error
+    except _DAMAGE as error:
+        raise FormatError(
+            f"{named(path)} is damaged ({shown(error)}); use another copy"
+        ) from error
 
 
 def require_schema(file: h5py.File, schema: str, path: Path | str) -> None:
@@ -124,13 +138,13 @@ def _read(file: h5py.File) -> Session:
                 group,
                 steps.get(("recording", str(read_attribute(group, "name"))), ()),
             )
-            for group in in_order(file.get("stream"))
+            for group in in_order(file, "stream")
         ),
         surfaces=tuple(
             read_surface(
                 group, steps.get(("surface", str(read_attribute(group, "name"))), ())
             )
-            for group in in_order(file.get("surfaces"))
+            for group in in_order(file, "surfaces")
         ),
         provenance=steps.get(("session", ""), ()),
     )

@@ -31,6 +31,7 @@ from jointbench.acquisition.netcdf import (
     write_variable,
 )
 from jointbench.acquisition.netcdf_read import (
+    find_group,
     read_array,
     read_attribute,
     read_flags,
@@ -62,8 +63,9 @@ def free_name(name: str, parent: h5py.Group) -> str:
     return candidate
 
 
-def in_order(parent: h5py.Group | None) -> list[h5py.Group]:
-    """Return the groups of the records below `parent` in the order written."""
+def in_order(file: h5py.File, name: str) -> list[h5py.Group]:
+    """Return the groups of the records below group `name` in the order written."""
+    parent = find_group(file, name)
     if parent is None:
         return []
     groups = [group for group in parent.values() if isinstance(group, h5py.Group)]
@@ -164,7 +166,9 @@ def read_channels(group: h5py.Group) -> tuple[Channel, ...]:
 
 def read_hits(file: h5py.File, group: h5py.Group) -> tuple[Hit, ...]:
     """Read the hits of the recording in `group`; none where none were stored."""
-    stored = file.get(f"hits/{str(group.name).rsplit('/', 1)[-1]}")
+    hits = find_group(file, "hits")
+    name = str(group.name).rsplit("/", 1)[-1]
+    stored = None if hits is None else find_group(hits, name)
     if stored is None:
         return ()
     rows = zip(

@@ -2,6 +2,7 @@
 """Plain tables of numbers: delimited text of any common layout, and .npy arrays."""
 
 import re
+import tokenize
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,6 +27,8 @@ MAX_COLUMNS = 512
 MAX_CELLS = 100_000_000
 MAX_HEADER_LINES = 1000
 NPY_MAGIC = b"\x93NUMPY"
+# What NumPy lets through where the header of an array is no Python literal.
+_HEADER_ERRORS = (EOFError, SyntaxError, tokenize.TokenError, RecursionError)
 _DELIMITERS = ("\t", ";", ",", "|", None)
 _NAMES = {"\t": "tab", None: "blanks"}
 _COMMENT = ("#", "%", "//")
@@ -130,11 +133,7 @@ def read_head(path: Path, count: int) -> bytes:
 def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
     """Find the numbers in the lines of a text and read them; see `read_table`."""
     start = _find_start(lines, path)
-    numbers = [
-        i
-        for i in range(start.line, len(lines))
-        if lines[i].strip(" \t\x1a\f") and not lines[i].lstrip().startswith(_COMMENT)
-    ]
+    numbers = [i for i in range(start.line, len(lines)) if _is_row(lines[i])]
     if len(numbers) > MAX_ROWS or len(numbers) * start.columns > MAX_CELLS:
         raise HostileFile(
             f"{named(path)} has {len(numbers)} rows of {start.columns} columns; "
@@ -171,7 +170,7 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
     """Find the first two lines of numbers in a row that agree in layout."""
     seen: _Start | None = None
     for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
-        if not line.strip(" \t\x1a\f"):
+        if not _is_row(line):
             continue
         start = _numeric_layout(i, line)
         if start and seen and _same_layout(start, seen):
@@ -193,6 +192,11 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
         f"{named(path)} holds no table of numbers: no line of its first "
         f"{MAX_HEADER_LINES} is numbers only; its first reads {shown(lines[0].strip())}"
     )
+
+
+def _is_row(line: str) -> bool:
+    """Tell whether a line is neither empty nor a comment."""
+    return bool(line.strip(" \t\x1a\f")) and not line.lstrip().startswith(_COMMENT)
 
 
 def _numeric_layout(index: int, line: str) -> _Start | None:
@@ -277,7 +281,7 @@ def _load_array(path: Path, columns: int | None) -> Table:
     """Map a .npy file and copy it, once its shape and type are known to be sane."""
     try:
         array = np.lib.format.open_memmap(path, mode="r")
-    except (ValueError, OSError, OverflowError, EOFError, TypeError) as error:
+    except (ValueError, OSError, OverflowError, TypeError, *_HEADER_ERRORS) as error:
         raise FormatError(
             f"{named(path)} is not a whole .npy array of numbers "
             f"({shown(error)}); save it again with numpy.save"

@@ -169,5 +169,7 @@ def _split(text: str, *, example: str) -> tuple[float, str]:
 
 def _complaint(unit: str, kind: str) -> str:
     others = [other for other in _UNITS if other != kind and is_unit(unit, other)]
+    if not unit.strip():
+        return f"no unit is given; write a {kind} in one of {', '.join(_UNITS[kind])}"
     of = f"a unit of {' or '.join(others)}, not" if others else "not a unit"
     return f"{unit!r} is {of} of {kind}; write one of {', '.join(_UNITS[kind])}"
