@@ -82,7 +82,7 @@ def write_surface(file: h5py.File, surface: Surface, position: int) -> None:
     )
 
 
-def read_surface(group: h5py.Group, provenance: Provenance) -> Surface:
+def surface_from_group(group: h5py.Group, provenance: Provenance) -> Surface:
     """Read a profile or a map, bit for bit as written."""
     common: dict[str, Any] = {
         "name": str(read_attribute(group, "name")),

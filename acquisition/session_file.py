@@ -28,14 +28,14 @@ from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_extras import (
     read_provenance,
     read_setup,
-    read_surface,
+    surface_from_group,
     write_provenance,
     write_setup,
     write_surface,
 )
 from jointbench.acquisition.session_streams import (
     in_order,
-    read_recording,
+    recording_from_group,
     write_recording,
 )
 from jointbench.acquisition.text_files import named, shown
@@ -133,7 +133,7 @@ def _read(file: h5py.File) -> Session:
         simulated=bool(read_attribute(file, "simulated")),
         joint=read_setup(file),
         recordings=tuple(
-            read_recording(
+            recording_from_group(
                 file,
                 group,
                 steps.get(("recording", str(read_attribute(group, "name"))), ()),
@@ -141,7 +141,7 @@ def _read(file: h5py.File) -> Session:
             for group in in_order(file, "stream")
         ),
         surfaces=tuple(
-            read_surface(
+            surface_from_group(
                 group, steps.get(("surface", str(read_attribute(group, "name"))), ())
             )
             for group in in_order(file, "surfaces")

@@ -132,7 +132,7 @@ def write_recording(file: h5py.File, recording: Recording, position: int) -> Non
         _write_hits(file, group, recording)
 
 
-def read_recording(
+def recording_from_group(
     file: h5py.File, group: h5py.Group, provenance: Provenance
 ) -> Recording:
     """Read a recording and its hits, bit for bit as written."""
