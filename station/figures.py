@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.acquisition.arrays import FloatArray
-
 Trace = Mapping[str, object]
 Figure = Mapping[str, object]
+Values = NDArray[np.floating[Any]]
 
 PALETTE = ("#0b5cab", "#d1495b", "#2a9d8f", "#e09f3e", "#7b4b94", "#5b6b7b")
 GREY = "#8a97a5"
@@ -142,12 +141,13 @@ def figure(
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "#ffffff",
         "hovermode": "closest",
+        "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "#b8c2cc"},
         "legend": {"orientation": "h", "x": 0, "y": 1.02, "yanchor": "bottom"},
     }
     return {"data": list(data), "layout": layout | more}
 
 
-def thin(x: FloatArray, y: FloatArray, most: int) -> tuple[FloatArray, FloatArray]:
+def thin(x: Values, y: Values, most: int) -> tuple[Values, Values]:
     """Thin a long line to about `most` points and keep its envelope (min and max)."""
     if x.size <= most:
         return x, y

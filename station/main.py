@@ -89,14 +89,14 @@ def demo_command(
     seed: Annotated[int, typer.Option(help="Seed of the simulated bench.")] = 1,
     json: Json = None,
     debug: Debug = False,
-) -> None:
+) -> int:
     """Measure and identify a joint on the embedded simulated bench.
 
     Example: jointbench demo --out demo-out
     """
     from jointbench.station.demo import run_demo
 
-    run_demo(out, seed=seed, json_target=json)
+    return run_demo(out, seed=seed, json_target=json)
 
 
 @app.command(name="import")

@@ -11,15 +11,20 @@ from contextlib import contextmanager
 from math import floor, isfinite, log10
 from pathlib import Path
 
-from rich.console import Console
+from rich.console import Console, Group, RenderableType
 from rich.table import Table
+from rich.text import Text
 
 Jsonable = Mapping[str, object]
+WIDTH_WITHOUT_TERMINAL = 120
 
 
 def console(json_target: str | None = None) -> Console:
     """Return the console for tables: standard error when JSON takes standard output."""
-    return Console(stderr=json_target == "-", highlight=False, soft_wrap=False)
+    screen = Console(stderr=json_target == "-", highlight=False)
+    if not screen.is_terminal:
+        screen.width = WIDTH_WITHOUT_TERMINAL
+    return screen
 
 
 @contextmanager
@@ -33,14 +38,19 @@ def working(message: str) -> Iterator[None]:
         yield
 
 
-def table(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
-    """Return a table whose first column is left-aligned, the others right-aligned."""
-    result = Table(title=title, title_justify="left", title_style="bold", box=None)
+def table(
+    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]
+) -> RenderableType:
+    """Return a titled table, its first column left-aligned, the others right-aligned.
+
+    Cells are texts as they stand: square brackets are units, not markup.
+    """
+    result = Table(box=None, pad_edge=False)
     for number, column in enumerate(columns):
-        result.add_column(column, justify="left" if number == 0 else "right")
+        result.add_column(Text(column), justify="left" if number == 0 else "right")
     for row in rows:
-        result.add_row(*row)
-    return result
+        result.add_row(*(Text(cell) for cell in row))
+    return Group(Text(), Text(title, style="bold"), result)
 
 
 def write_json(target: str | None, content: Jsonable) -> None:
@@ -71,14 +81,16 @@ def with_sd(value: float, sd: float | None, *, digits: int = 2) -> str:
     >>> with_sd(810.2314, 0.021)
     '810.231 ± 0.021'
     >>> with_sd(6.2e7, 1.1e6)
-    '6.20e+07 ± 1.1e+06'
+    '(6.20 ± 0.11)e+07'
     """
     if sd is None or not (isfinite(sd) and sd > 0):
         return f"{value:.6g}"
     last = floor(log10(sd)) - digits + 1
     if last > 0 or (value != 0 and abs(value) >= 1e6) or abs(value) < 1e-3:
         lead = floor(log10(abs(value))) if value else 0
-        return f"{value:.{max(lead - last, 0)}e} ± {sd:.{digits - 1}e}"
+        scale = 10.0**lead
+        decimals = max(lead - last, 0)
+        return f"({value / scale:.{decimals}f} ± {sd / scale:.{decimals}f})e{lead:+03d}"
     return f"{value:.{-last}f} ± {sd:.{-last}f}"
 
 

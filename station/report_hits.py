@@ -17,8 +17,8 @@ from jointbench.station.report_page import DataTable, Plot, Section
 
 BEFORE_TRIGGER = 1.5e-3
 """Time shown before the trigger in the picture of the pulses [s]."""
-AFTER_TRIGGER = 8e-3
-"""Time shown after the trigger in the picture of the pulses [s]."""
+AFTER_TRIGGER = 60e-3
+"""Time shown after the trigger, long enough for a bounce to be seen [s]."""
 MOST_POINTS = 1600
 REJECTED = frozenset(v.value for v in Verdict if v is not Verdict.OK)
 UNITS = {

@@ -10,6 +10,9 @@ from typing import Literal
 
 from jointbench.station.figures import Figure
 
+PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
+"""Columns of words, which read from the left."""
+
 
 @dataclass(frozen=True, slots=True)
 class Tile:
@@ -86,6 +89,7 @@ def render(report: Report) -> str:
     )
     return template.render(
         report=report,
+        prose=PROSE_COLUMNS,
         style=room.joinpath("report.css").read_text(encoding="utf-8"),
         plotly=get_plotlyjs(),
         figures=_script_safe(_figures(report)),

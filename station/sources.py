@@ -23,7 +23,7 @@ def open_source(url: str) -> Source:
     """
     scheme = url.partition(":")[0]
     if scheme == "sim":
-        from jointbench.simulators.bench import bench_from_url
+        from jointbench.simulators.bench_url import bench_from_url
 
         return bench_from_url(url)
     near = get_close_matches(scheme, SCHEMES)

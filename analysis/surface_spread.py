@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""From a fractal fit to what a contact model needs: D, G, and how far they are sure."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from jointbench.acquisition.errors import BadData
+from jointbench.analysis.contact_models import ContactModel
+from jointbench.analysis.contact_spread import ContactSpread
+from jointbench.signal.structure_constant import log_roughness
+from jointbench.signal.surface_verdict import FractalFit, Scaling
+
+_STEP = 1e-5
+"""Step of the numerical derivative by D [-]; the constant is smooth in D."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactSurface:
+    """A rough face, or two faces as one, as a contact model takes it.
+
+    Attributes:
+        dimension: of a line on the surface, 1 < D < 2 [-].
+        roughness: fractal roughness G of that line [m].
+        spread: standard deviations of D and ln G, and their correlation.
+    """
+
+    dimension: float
+    roughness: float
+    spread: ContactSpread = field(default_factory=ContactSpread)
+
+    def dimension_for(self, model: ContactModel) -> float:
+        """Return D as `model` wants it: of a line (2D) or of the surface, D + 1."""
+        return self.dimension + model.topography.lowest_dimension - 1
+
+
+def contact_surface(fit: FractalFit) -> ContactSurface:
+    """Turn a fit into the input of a contact model, uncertainty included.
+
+    Args:
+        fit: of one face, or of the sum S_a + S_b of two.
+
+    Returns:
+        D, G and their joint spread, propagated from (D, ln S at the pivot).
+
+    Raises:
+        BadData: the surface has no scaling range; the fit's reason is passed on.
+
+    Source:
+        ln G = (ln S_p - ln C(D) - (4 - 2D) ln tau_p) / (2 (D - 1)), from Appl. Sci.
+        2025, 15, 9040, eq. (9).
+    """
+    if fit.scaling is None:
+        raise BadData(f"no contact prediction: {fit.verdict.value}; {fit.reason}")
+    scaling = fit.scaling
+    slope = np.array([_by_dimension(scaling), 0.5 / (scaling.dimension - 1)])
+    log_sd = float(np.sqrt(slope @ scaling.covariance @ slope))
+    together = float((scaling.covariance @ slope)[0])
+    dimension = float(np.sqrt(scaling.covariance[0, 0]))
+    correlation = together / (log_sd * dimension) if dimension > 0 else 0.0
+    return ContactSurface(
+        scaling.dimension,
+        scaling.roughness,
+        ContactSpread(
+            dimension=dimension,
+            log_roughness=log_sd,
+            correlation=float(np.clip(correlation, -1, 1)),
+        ),
+    )
+
+
+def _by_dimension(scaling: Scaling) -> float:
+    """Return d ln G / d D at fixed S of the pivot [-]."""
+    level = float(np.log(scaling.pivot_value))
+    up, down = (
+        log_roughness(scaling.dimension + step, level, scaling.pivot)
+        for step in (_STEP, -_STEP)
+    )
+    return (up - down) / (2 * _STEP)

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench demo``: the whole main job on the embedded simulated bench."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from jointbench.acquisition.records import Verdict
+from jointbench.acquisition.session_file import read_session, write_session
+from jointbench.analysis.identification import identification_json
+from jointbench.station.bench_model import BenchModel
+from jointbench.station.contact import contact_json
+from jointbench.station.demo_bench import DemoTruth, DemoVisit, visit_bench
+from jointbench.station.demo_truth import compare_with_truth
+from jointbench.station.identify import show_joint
+from jointbench.station.modal import modal_json, show_modal
+from jointbench.station.output import console, table, working, write_json
+from jointbench.station.report_command import compose, joint_link
+from jointbench.station.report_joint import side_by_side
+from jointbench.station.report_page import DataTable, Section, write_report
+from jointbench.station.results_file import results_path, write_results
+from jointbench.station.session_analysis import SessionAnalysis, analyse_session
+from jointbench.station.surface import show_surfaces, surface_json
+from jointbench.station.toml_file import read_toml
+from jointbench.station.truth import Comparison, as_json
+
+EXIT_QUALITY = 5
+MODEL_FILE = """\
+# The demo's two-body bench: weighed masses, unknown links.
+[bodies.base]
+mass = "{base:.6g} kg"
+mass_sd = "{base_sd:.2g} kg"
+channel = "a0"
+
+[bodies.top]
+mass = "{top:.6g} kg"
+mass_sd = "{top_sd:.2g} kg"
+channel = "a1"
+
+[links.support]
+between = ["ground", "base"]
+
+[links.joint]
+between = ["base", "top"]
+
+# Marble on marble, as in Zhou et al. 2025: 55 GPa and 0.25 for either plate.
+[contact]
+link = "joint"
+preload = "{preload:.6g} N"
+modulus = "29.33 GPa"
+hardness = "1.5 GPa"
+poisson = 0.25
+"""
+
+
+def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
+    """Measure, identify and report a joint on the simulated bench.
+
+    Args:
+        out: folder for session, results, model, report and summary.
+        seed: of the bench.
+        json_target: where the summary goes besides ``summary.json``.
+
+    Returns:
+        0, or 5 if an estimate misses the truth by more than the demo allows.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    screen = console(json_target)
+    with working("measuring two faces and a dozen hits on the simulated bench"):
+        visit = visit_bench(out, seed=seed)
+    session_file = out / "session.h5"
+    write_session(visit.session, session_file, overwrite=True)
+    model_file = _write_model(out / "bench.toml", visit)
+    # From here on everything comes from the files, as it would for any user's own.
+    bench = read_toml(model_file, BenchModel)
+    analysis = analyse_session(read_session(session_file), bench)
+    comparisons = compare_with_truth(visit.truth, analysis)
+    _show(analysis, bench, comparisons, json_target)
+    _write_files(out, session_file, analysis, bench, comparisons, visit.truth, seed)
+    write_json(json_target, _summary(analysis, bench, comparisons, seed))
+    screen.print(f"\nreport: {out / 'report.html'}   summary: {out / 'summary.json'}")
+    return 0 if all(c.passed for c in comparisons) else EXIT_QUALITY
+
+
+def _write_model(path: Path, visit: DemoVisit) -> Path:
+    text = MODEL_FILE.format(
+        base=visit.masses["base"],
+        top=visit.masses["top"],
+        base_sd=visit.mass_sds["base"],
+        top_sd=visit.mass_sds["top"],
+        preload=visit.truth.bench.preload,
+    )
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def _show(
+    analysis: SessionAnalysis,
+    bench: BenchModel,
+    comparisons: tuple[Comparison, ...],
+    json_target: str | None,
+) -> None:
+    screen = console(json_target)
+    if analysis.modal is not None:
+        show_modal(analysis.modal, json_target)
+    show_surfaces(analysis.surfaces, json_target)
+    if analysis.joint is not None:
+        show_joint(analysis.joint, json_target)
+    if analysis.contact is not None:
+        sentence = side_by_side(analysis.contact, analysis.joint, joint_link(bench))
+        screen.print(sentence, markup=False)
+    for remark in analysis.remarks:
+        screen.print(remark, markup=False)
+    content = truth_table(comparisons)
+    screen.print(table(content.caption, content.columns, content.rows))
+
+
+def truth_table(comparisons: tuple[Comparison, ...]) -> DataTable:
+    """Return truth and estimate side by side as a table."""
+    rows = tuple(
+        (
+            c.quantity,
+            c.unit,
+            f"{c.truth:.6g}",
+            "-" if c.estimate is None else f"{c.estimate:.6g}",
+            "-" if c.sd is None else f"{c.sd:.2g}",
+            _error(c, c.error),
+            _error(c, c.limit),
+            "ok" if c.passed else "missed",
+        )
+        for c in comparisons
+    )
+    return DataTable(
+        "Truth of the simulated bench and what the station found",
+        ("quantity", "unit", "truth", "estimate", "sd", "error", "allowed", "verdict"),
+        rows,
+        frozenset({"missed"}),
+    )
+
+
+def _error(comparison: Comparison, error: float | None) -> str:
+    if error is None:
+        return "-"
+    return f"{error:.3g}" if comparison.absolute else f"{100 * error:.3g} %"
+
+
+def _write_files(
+    out: Path,
+    session_file: Path,
+    analysis: SessionAnalysis,
+    bench: BenchModel,
+    comparisons: tuple[Comparison, ...],
+    truth: DemoTruth,
+    seed: int,
+) -> None:
+    if analysis.modal is not None:
+        write_results(results_path(session_file), analysis.modal, [session_file])
+    section = Section("truth", "Truth and estimate", (truth_table(comparisons),))
+    page = compose(
+        analysis, bench, title="Two bodies on a bolted joint", extra=(section,)
+    )
+    write_report(page, out / "report.html")
+    summary = _summary(analysis, bench, comparisons, seed)
+    write_json(str(out / "summary.json"), summary)
+
+
+def _summary(
+    analysis: SessionAnalysis,
+    bench: BenchModel,
+    comparisons: tuple[Comparison, ...],
+    seed: int,
+) -> Mapping[str, object]:
+    summary: dict[str, object] = {
+        "seed": seed,
+        "simulated": True,
+        "passed": all(c.passed for c in comparisons),
+        "comparisons": as_json(comparisons),
+        "remarks": list(analysis.remarks),
+        "surfaces": [surface_json(chain) for chain in analysis.surfaces],
+    }
+    if analysis.modal is not None:
+        summary["modal"] = modal_json(analysis.modal)
+        summary["accepted_hits"] = sum(
+            hit.verdict is Verdict.OK
+            for recording in analysis.modal.recordings
+            for hit in recording.hits
+        )
+    if analysis.contact is not None:
+        curve = (analysis.contact.at, *analysis.contact.curve)
+        summary["contact"] = contact_json(curve, analysis.contact.surface)
+    if analysis.joint is not None:
+        summary["joint"] = identification_json(analysis.joint)
+        summary["joint_link"] = joint_link(bench)
+    return summary

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench import``: foreign files into one session file."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from jointbench.acquisition.records import Channel, Recording
+from jointbench.acquisition.session import Session, new_session
+from jointbench.acquisition.session_file import write_session
+from jointbench.acquisition.surfaces import Surface
+from jointbench.station.inputs import named_apart, read_foreign
+from jointbench.station.output import console, table, working, write_json
+
+
+def run_import(
+    files: Sequence[Path],
+    out: Path,
+    *,
+    columns: str | None,
+    point: str,
+    overwrite: bool,
+    json_target: str | None,
+) -> Session:
+    """Import `files` into the session file `out` and say what came in.
+
+    Raises:
+        BadData: a file cannot be read; nothing is written then.
+    """
+    recordings: list[Recording] = []
+    surfaces: list[Surface] = []
+    for path in files:
+        with working(f"reading {path.name}"):
+            record = read_foreign(path, columns=columns, point=point)
+        if isinstance(record, Recording):
+            name = _free(record.name, [r.name for r in recordings])
+            recordings.append(replace(record, name=name))
+        else:
+            name = _free(record.name, [s.name for s in surfaces])
+            surfaces.append(replace(record, name=name))
+    session = new_session(
+        source="import",
+        simulated=False,
+        recordings=recordings,
+        surfaces=surfaces,
+    )
+    write_session(session, out, overwrite=overwrite)
+    _show(session, out, json_target)
+    return session
+
+
+def _free(name: str, taken: list[str]) -> str:
+    """Return `name`, numbered where it is taken: files of two folders may agree."""
+    wanted, number = name, 2
+    while name in taken:
+        name, number = f"{wanted}-{number}", number + 1
+    return name
+
+
+def _show(session: Session, out: Path, json_target: str | None) -> None:
+    records = named_apart(session)
+    screen = console(json_target)
+    screen.print(table(f"{out}", ("record", "holds"), list(records.items())))
+    channels = [
+        _channel(recording.name, channel)
+        for recording in session.recordings
+        for channel in recording.channels
+    ]
+    write_json(
+        json_target, {"session": str(out), "channels": channels, "records": records}
+    )
+
+
+def _channel(recording: str, channel: Channel) -> dict[str, object]:
+    return {
+        "recording": recording,
+        "name": channel.name,
+        "quantity": channel.quantity.value,
+        "unit": channel.unit,
+        "point": channel.point,
+    }

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Whatever files a command is given: sessions, hit tables and surfaces, told apart."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jointbench.acquisition.columns import SURFACE_EXAMPLES, parse_columns
+from jointbench.acquisition.errors import BadData, UnitError
+from jointbench.acquisition.import_hits import read_recording
+from jointbench.acquisition.import_surfaces import read_surface
+from jointbench.acquisition.records import Recording
+from jointbench.acquisition.session import Session
+from jointbench.acquisition.session_file import read_session
+from jointbench.acquisition.surfaces import Surface
+
+SESSION_SUFFIXES = (".h5", ".hdf5")
+
+
+def is_session_name(path: Path) -> bool:
+    """Return whether a path is named like an HDF5 file."""
+    return path.suffix.lower() in SESSION_SUFFIXES
+
+
+def read_foreign(path: Path, *, columns: str | None, point: str) -> Recording | Surface:
+    """Read one foreign file as hits or as a surface.
+
+    Args:
+        path: of the file.
+        columns: what the columns of a plain table hold; a ``time`` makes it hits.
+            Formats that state their units do without.
+        point: where the hammer struck.
+
+    Returns:
+        A recording or a surface, named after the file.
+
+    Raises:
+        BadData: the file is neither, or its units are missing; the message says what
+            to type.
+    """
+    if columns is not None and "time" in {c.role for c in parse_columns(columns)}:
+        return read_recording(path, columns=columns, point=point)
+    try:
+        return read_surface(path, columns=columns)
+    except UnitError as surface_error:
+        if columns is not None:
+            raise
+        try:
+            return read_recording(path, columns=None, point=point)
+        except UnitError as error:
+            heights = " or ".join(f"'{example}'" for example in SURFACE_EXAMPLES)
+            raise UnitError(
+                f"{error}; for heights --columns {heights}"
+            ) from surface_error
+
+
+def read_recordings(
+    files: Sequence[Path], *, columns: str | None, point: str
+) -> tuple[Recording, ...]:
+    """Read the recordings of sessions and hit files.
+
+    Raises:
+        BadData: a file cannot be read, or none holds a recording.
+    """
+    found: list[Recording] = []
+    for path in files:
+        if is_session_name(path):
+            found += read_session(path).recordings
+        else:
+            found.append(read_recording(path, columns=columns, point=point))
+    if not found:
+        names = ", ".join(path.name for path in files)
+        raise BadData(f"no recording in {names}; 'jointbench inspect' shows what is")
+    return tuple(found)
+
+
+def read_surfaces(
+    files: Sequence[Path], *, columns: str | None
+) -> tuple[tuple[Path, Surface], ...]:
+    """Read the surfaces of sessions and surface files, each with its file.
+
+    Raises:
+        BadData: a file cannot be read, or none holds a surface.
+    """
+    found: list[tuple[Path, Surface]] = []
+    for path in files:
+        if is_session_name(path):
+            found += [(path, surface) for surface in read_session(path).surfaces]
+        else:
+            found.append((path, read_surface(path, columns=columns)))
+    if not found:
+        names = ", ".join(path.name for path in files)
+        raise BadData(f"no surface in {names}; 'jointbench inspect' shows what is")
+    return tuple(found)
+
+
+def named_apart(session: Session) -> dict[str, str]:
+    """Return one line for each record of a session, by its name."""
+    recordings = {
+        r.name: (
+            f"{len(r.channels)} channels, {r.samples.shape[1]} samples at "
+            f"{r.sample_rate:g} Hz"
+        )
+        for r in session.recordings
+    }
+    surfaces = {
+        s.name: f"{' x '.join(map(str, s.heights.shape))} heights"
+        for s in session.surfaces
+    }
+    return recordings | surfaces

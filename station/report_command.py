@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench report``: one offline page about a session."""
+
+from pathlib import Path
+
+from jointbench.acquisition.records import Step, Verdict
+from jointbench.acquisition.session_file import read_session
+from jointbench.station.bench_model import BenchModel
+from jointbench.station.output import console, engineering, with_sd, write_json
+from jointbench.station.report_hits import hits_section
+from jointbench.station.report_joint import joint_section
+from jointbench.station.report_modal import modal_sections
+from jointbench.station.report_page import (
+    DataTable,
+    Report,
+    Section,
+    Text,
+    Tile,
+    write_report,
+)
+from jointbench.station.report_surface import surface_section
+from jointbench.station.session_analysis import SessionAnalysis, analyse_session
+from jointbench.station.toml_file import read_toml
+
+MODES_IN_TILE = 3
+LONGEST_DETAIL = 300
+
+
+def run_report(
+    session: Path, *, out: Path | None, model: Path | None, json_target: str | None
+) -> Path:
+    """Analyse `session` and write the page beside it, or to `out`."""
+    content = read_session(session)
+    bench = None if model is None else read_toml(model, BenchModel)
+    analysis = analyse_session(content, bench)
+    target = out or session.with_suffix(".html")
+    write_report(compose(analysis, bench, title=session.stem), target)
+    console(json_target).print(f"report: {target}")
+    write_json(json_target, {"report": str(target), "remarks": list(analysis.remarks)})
+    return target
+
+
+def compose(
+    analysis: SessionAnalysis,
+    bench: BenchModel | None,
+    *,
+    title: str,
+    extra: tuple[Section, ...] = (),
+) -> Report:
+    """Arrange an analysis as a page; `extra` sections come first."""
+    session = analysis.session
+    sections = list(extra)
+    if analysis.remarks:
+        notes = tuple(Text(remark, "notice") for remark in analysis.remarks)
+        sections.append(Section("remarks", "Remarks", notes))
+    if analysis.modal is not None:
+        sections.append(hits_section(analysis.modal.recordings))
+        sections += modal_sections(analysis.modal)
+    if analysis.surfaces:
+        sections.append(surface_section(analysis.surfaces))
+    if analysis.contact is not None or analysis.joint is not None:
+        link = joint_link(bench)
+        sections.append(joint_section(analysis.contact, analysis.joint, link))
+    sections.append(_provenance(analysis))
+    return Report(
+        title=title,
+        lead=_lead(analysis),
+        software=session.software,
+        simulated=session.simulated,
+        tiles=_tiles(analysis, bench),
+        sections=tuple(sections),
+    )
+
+
+def joint_link(bench: BenchModel | None) -> str:
+    """Return the link that the contact law speaks of, else the last one."""
+    if bench is None:
+        return ""
+    return bench.contact.link if bench.contact else list(bench.links)[-1]
+
+
+def _lead(analysis: SessionAnalysis) -> str:
+    session = analysis.session
+    parts = [session.notes, f"Recorded {session.created}", f"Source {session.source}"]
+    if session.operator:
+        parts.append(f"Operator {session.operator}")
+    parts.append(f"Session {session.uuid}")
+    return ". ".join(part.rstrip(".") for part in parts if part) + "."
+
+
+def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, ...]:
+    tiles: list[Tile] = []
+    if analysis.modal is not None:
+        tiles += [_hits_tile(analysis), *_mode_tiles(analysis)]
+    for chain in analysis.surfaces:
+        scaling = chain.fit.scaling
+        value = (
+            "-" if scaling is None else with_sd(scaling.dimension, scaling.dimension_sd)
+        )
+        tiles.append(Tile(f"D of {chain.surface.name}", value, chain.fit.verdict.value))
+    if analysis.joint is not None:
+        stiffness = analysis.joint.parameter(f"{joint_link(bench)}.stiffness")
+        value = engineering(stiffness.value, "N/m")
+        sd = "" if stiffness.sd is None else f"± {engineering(stiffness.sd, 'N/m')}"
+        tiles.append(Tile("joint stiffness, from modes", value, sd))
+    if analysis.contact is not None:
+        state = analysis.contact.at.state
+        value = engineering(state.normal_stiffness, "N/m")
+        tiles.append(Tile("joint stiffness, contact law", value, state.model))
+    return tuple(tiles)
+
+
+def _hits_tile(analysis: SessionAnalysis) -> Tile:
+    recordings = analysis.modal.recordings if analysis.modal else ()
+    verdicts = [hit.verdict for recording in recordings for hit in recording.hits]
+    good = sum(verdict is Verdict.OK for verdict in verdicts)
+    return Tile("hits accepted", f"{good} of {len(verdicts)}", _why_not(verdicts))
+
+
+def _why_not(verdicts: list[Verdict]) -> str:
+    bad = [verdict.value for verdict in verdicts if verdict is not Verdict.OK]
+    return ", ".join(f"{bad.count(word)} {word}" for word in dict.fromkeys(bad))
+
+
+def _mode_tiles(analysis: SessionAnalysis) -> list[Tile]:
+    if analysis.modal is None:
+        return []
+    model = analysis.modal.result.model
+    count = model.natural_frequency.size
+    tiles = [
+        Tile(
+            f"mode {number + 1}",
+            f"{frequency:.2f} Hz",
+            f"± {model.frequency_sd[number]:.2g} Hz, "
+            f"damping {100 * model.damping_ratio[number]:.3g} %",
+        )
+        for number, frequency in enumerate(model.natural_frequency[:MODES_IN_TILE])
+    ]
+    if count > MODES_IN_TILE:
+        tiles.append(Tile("further modes", str(count - MODES_IN_TILE), "see the table"))
+    return tiles
+
+
+def _provenance(analysis: SessionAnalysis) -> Section:
+    records = [*analysis.session.recordings, *analysis.session.surfaces]
+    rows = [
+        (record.name, step.name, _detail(step))
+        for record in records
+        for step in record.provenance
+    ]
+    if analysis.modal is not None:
+        rows += [
+            ("modes", step.name, _detail(step)) for step in analysis.modal.provenance
+        ]
+    for chain in analysis.surfaces:
+        rows += [
+            (f"{chain.surface.name}, fit", step.name, _detail(step))
+            for step in chain.fit.provenance
+        ]
+    table = DataTable(
+        "Every step from the instrument to the numbers above.",
+        ("of", "step", "detail"),
+        tuple(dict.fromkeys(rows)),
+    )
+    return Section("provenance", "Provenance", (table,))
+
+
+def _detail(step: Step) -> str:
+    text = ", ".join(
+        f"{key} {value:.6g}" if isinstance(value, float) else f"{key} {value}"
+        for key, value in step.detail
+    )
+    return text if len(text) <= LONGEST_DETAIL else text[: LONGEST_DETAIL - 3] + "..."

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""The results file beside a session: its layout, written in one place.
+
+It names its inputs by SHA-256 and can be deleted and made again at any time.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import h5py
+
+from jointbench.acquisition.netcdf import (
+    new_file,
+    write_attributes,
+    write_complex,
+    write_flags,
+    write_texts,
+    write_variable,
+)
+from jointbench.acquisition.session import software_version
+from jointbench.acquisition.text_files import file_digest
+from jointbench.signal.frf import Frf, FrfKind
+from jointbench.signal.modal_model import ModalModel
+from jointbench.signal.modes import ModalResult
+from jointbench.station.chain import ModalChain
+
+SCHEMA = "jointbench-results/1"
+FRF_UNITS = {
+    FrfKind.RECEPTANCE: "m N-1",
+    FrfKind.MOBILITY: "m s-1 N-1",
+    FrfKind.ACCELERANCE: "m s-2 N-1",
+}
+PAIR = ("output", "input", "frequency")
+
+
+def results_path(session: Path) -> Path:
+    """Return where the results of a session file go."""
+    return session.with_suffix(".results.h5")
+
+
+def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None:
+    """Write FRF, poles of all orders and modes, replacing earlier results.
+
+    Args:
+        path: file to write.
+        chain: what was found.
+        inputs: files it was found in, named in the results by their SHA-256.
+    """
+    with new_file(
+        path, schema=SCHEMA, title="Results of jointbench", overwrite=True
+    ) as file:
+        write_attributes(
+            file,
+            {
+                "software": software_version(),
+                "input_files": "\n".join(p.name for p in inputs),
+                "input_sha256": "\n".join(file_digest(p) for p in inputs),
+            },
+        )
+        _write_frf(file.create_group("frf"), chain.frf)
+        _write_frf(file.create_group("synthesis"), chain.result.synthesis)
+        _write_stabilisation(file.create_group("stabilisation"), chain.result)
+        _write_modes(file.create_group("modes"), chain.result.model)
+        _write_provenance(file.create_group("provenance"), chain)
+
+
+def _write_frf(group: h5py.Group, frf: Frf) -> None:
+    units = FRF_UNITS[frf.kind]
+    _axis(group, "frequency", frf.frequency, "Hz")
+    write_texts(group, "output_label", frf.outputs, "output", long_name="channel@point")
+    write_texts(group, "input_label", frf.inputs, "input", long_name="hit point")
+    write_complex(
+        group, "frf", frf.response, PAIR, units=units, long_name=frf.kind.value
+    )
+    if frf.coherence is not None:
+        write_variable(
+            group, "coherence", frf.coherence, PAIR, units="1", long_name="coherence"
+        )
+    if frf.variance is not None:
+        write_variable(
+            group,
+            "variance",
+            frf.variance,
+            PAIR,
+            units=f"({units})2",
+            long_name="variance of the average",
+        )
+    write_attributes(
+        group,
+        {
+            "kind": frf.kind.value,
+            "added_decay_rate_per_s": frf.added_decay_rate,
+            "averages": frf.averages,
+        },
+    )
+
+
+def _axis(group: h5py.Group, name: str, values: object, units: str) -> None:
+    write_variable(group, name, values, (name,), units=units, long_name=name)
+
+
+def _write_stabilisation(group: h5py.Group, result: ModalResult) -> None:
+    poles = result.stabilisation
+    for name, values, units in (
+        ("order", poles.order, "1"),
+        ("natural_frequency", poles.frequency, "Hz"),
+        ("damping_ratio", poles.damping_ratio, "1"),
+    ):
+        write_variable(
+            group,
+            name,
+            values,
+            ("pole",),
+            units=units,
+            long_name=name.replace("_", " "),
+        )
+    write_flags(
+        group,
+        "stable",
+        poles.stable.astype("i1"),
+        ("pole",),
+        meanings=("no", "yes"),
+        long_name="stable in frequency, damping and shape",
+    )
+
+
+def _write_modes(group: h5py.Group, model: ModalModel) -> None:
+    for name, values, units in (
+        ("natural_frequency", model.natural_frequency, "Hz"),
+        ("natural_frequency_sd", model.frequency_sd, "Hz"),
+        ("damping_ratio", model.damping_ratio, "1"),
+        ("damping_ratio_sd", model.damping_ratio_sd, "1"),
+    ):
+        write_variable(
+            group,
+            name,
+            values,
+            ("mode",),
+            units=units,
+            long_name=name.replace("_", " "),
+        )
+    write_texts(
+        group, "output_label", model.outputs, "output", long_name="channel@point"
+    )
+    write_texts(group, "input_label", model.inputs, "input", long_name="hit point")
+    write_complex(
+        group,
+        "residue",
+        model.residues,
+        ("mode", "output", "input"),
+        units="m s-1 N-1",
+        long_name="residue of the receptance",
+    )
+
+
+def _write_provenance(group: h5py.Group, chain: ModalChain) -> None:
+    steps = chain.provenance
+    write_texts(group, "step_name", [s.name for s in steps], "step", long_name="what")
+    details = ["; ".join(f"{k}={v}" for k, v in s.detail) or "-" for s in steps]
+    write_texts(group, "detail", details, "step", long_name="how and why")

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench surface``: structure function and fractal parameters of surfaces."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from jointbench.acquisition.records import Step
+from jointbench.acquisition.surfaces import Surface
+from jointbench.signal.fractal import fit_fractal
+from jointbench.signal.structure_function import StructureFunction, structure_function
+from jointbench.signal.surface_verdict import FractalFit
+from jointbench.station.inputs import read_surfaces
+from jointbench.station.output import (
+    console,
+    engineering,
+    table,
+    with_sd,
+    working,
+    write_json,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceChain:
+    """A surface, its structure function and what it says."""
+
+    surface: Surface
+    structure: StructureFunction
+    fit: FractalFit
+
+
+def analyse_surface(surface: Surface) -> SurfaceChain:
+    """Take a surface to its fractal parameters, or to the reason why it has none."""
+    structure = structure_function(surface)
+    return SurfaceChain(surface, structure, fit_fractal(structure))
+
+
+def run_surface(
+    files: Sequence[Path], *, columns: str | None, json_target: str | None
+) -> tuple[SurfaceChain, ...]:
+    """Fit every surface in `files` and show the verdicts."""
+    chains = []
+    results: list[dict[str, object]] = []
+    for path, surface in read_surfaces(files, columns=columns):
+        with working(f"fitting {surface.name}"):
+            chain = analyse_surface(surface)
+        chains.append(chain)
+        results.append({"file": str(path)} | surface_json(chain))
+    show_surfaces(chains, json_target)
+    write_json(json_target, {"files": results})
+    return tuple(chains)
+
+
+def show_surfaces(chains: Sequence[SurfaceChain], json_target: str | None) -> None:
+    """Print verdict, D, G and the reason of each surface."""
+    screen = console(json_target)
+    rows = [(chain.surface.name, *_numbers(chain.fit)) for chain in chains]
+    columns = ("surface", "verdict", "D [-]", "G", "fit band")
+    screen.print(table("Surfaces (± one standard deviation)", columns, rows))
+    for chain in chains:
+        screen.print(f"  {chain.surface.name}: {chain.fit.reason}", markup=False)
+        screen.print(f"  {chain.surface.name}: {_origin(chain)}", markup=False)
+
+
+def _numbers(fit: FractalFit) -> tuple[str, str, str, str]:
+    if fit.scaling is None or fit.fit_band is None:
+        return fit.verdict.value, "-", "-", "-"
+    low, high = (engineering(end, "m") for end in fit.fit_band)
+    return (
+        fit.verdict.value,
+        with_sd(fit.scaling.dimension, fit.scaling.dimension_sd),
+        engineering(fit.scaling.roughness, "m"),
+        f"{low} to {high}",
+    )
+
+
+def _origin(chain: SurfaceChain) -> str:
+    """Say in one line what the file was taken for."""
+    known = [s for s in chain.surface.provenance if s.name == "recognise"]
+    if not known:
+        return "made in memory"
+    detail = dict(known[0].detail)
+    return f"read as {detail.get('format', 'a table')} ({_why(known[0])})"
+
+
+def _why(recognised: Step) -> str:
+    detail = dict(recognised.detail)
+    return str(detail.get("reason", "no reason kept"))
+
+
+def surface_json(chain: SurfaceChain) -> dict[str, object]:
+    """Return what the contract promises of ``surface``, and more."""
+    fit = chain.fit
+    return {
+        "surface": chain.surface.name,
+        "verdict": fit.verdict.value,
+        "reason": fit.reason,
+        "dimension": fit.dimension,
+        "dimension_sd": fit.dimension_sd,
+        "roughness_m": fit.roughness,
+        "roughness_interval_m": fit.roughness_interval,
+        "fit_band_m": fit.fit_band,
+        "instrument": fit.instrument,
+        "instrument_parameters": [
+            {"name": p.name, "value_m": p.value, "sd_m": p.sd}
+            for p in fit.instrument_parameters
+        ],
+        "chi2_per_dof": fit.chi2_per_dof,
+        "pivot_m": fit.pivot,
+        "pivot_value_m2": fit.pivot_value,
+        "local_slope": {
+            "lag_m": fit.local_slope.lag.tolist(),
+            "slope": fit.local_slope.slope.tolist(),
+            "sd": fit.local_slope.sd.tolist(),
+        },
+        "provenance": [{"step": s.name, **dict(s.detail)} for s in fit.provenance],
+    }
