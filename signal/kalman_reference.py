@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+"""The Kalman models as filterpy runs them: slow, and the measure of `kalman`.
+
+filterpy keeps its state in public attributes of changing shape; here that ends: arrays
+of fixed shape in, arrays of fixed shape out. This is the only file that imports it.
+"""
+
+import numpy as np
+from filterpy.common import Q_discrete_white_noise
+from filterpy.kalman import KalmanFilter
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.signal.kalman_model import StateModel
+
+
+def reference_process_noise() -> FloatArray:
+    """Return filterpy's process noise for level and slope, one sample, variance 1."""
+    return np.asarray(Q_discrete_white_noise(dim=2, dt=1.0, var=1.0), np.float64)
+
+
+def reference_states(
+    model: StateModel, samples: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Filter and smooth one channel sample by sample in filterpy.
+
+    Args:
+        model: from `kalman_model.state_model`.
+        samples: shape (n_samples,).
+
+    Returns:
+        Filtered and smoothed states, each of shape (n_samples, n).
+    """
+    size = model.observation.size
+    kalman = KalmanFilter(dim_x=size, dim_z=1)
+    kalman.F = model.transition.copy()
+    kalman.H = model.observation[None, :].copy()
+    kalman.Q = model.process.copy()
+    kalman.R = np.eye(1)
+    kalman.P = model.start.copy()
+    kalman.x = (samples[0] * model.observation)[:, None]
+    states, covariances = [], []
+    for sample in samples:
+        kalman.predict()
+        kalman.update(np.array([[sample]]))
+        states.append(kalman.x.copy())
+        covariances.append(kalman.P.copy())
+    smoothed, *_ = kalman.rts_smoother(np.array(states), np.array(covariances))
+    shape = (samples.size, size)
+    return np.array(states).reshape(shape), np.asarray(smoothed).reshape(shape)

@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: MIT
+"""Poles by least squares on a right matrix fraction, all orders in one go (LSCF).
+
+The FRF is written as H = B(z) A(z)^-1 with z on the unit circle: A has one column an
+input (poly-reference), B one row an output. Eliminating B leaves one small Hermitian
+matrix, made of Toeplitz blocks that an FFT fills; its Cholesky factor nests, so that
+every order is a leading block of the largest.
+
+Two choices differ from the textbook and matter:
+
+- the band is laid around almost the whole circle, with complex coefficients, instead
+  of half the circle with real ones: one pole a mode instead of two, and a band far from
+  zero is conditioned as well as one that starts there;
+- the constant coefficient of A is the identity, not the highest. The poles made of
+  noise then fall outside the circle, and what is left inside is nearly all structure
+  (Cauberghe, Applied frequency-domain system identification, 2004, ch. 4).
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+import scipy.linalg
+from scipy.linalg import toeplitz
+
+from jointbench.acquisition.arrays import ComplexArray, FloatArray
+
+# Share of the circle left open between the ends of the band.
+_GAP = 0.05
+# Keeps the normal equations definite where clean data leave them singular.
+_RIDGE = 1e-14
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OrderPoles:
+    """Poles of one order inside the band, by ascending frequency.
+
+    Attributes:
+        order: degree of the polynomial; times the number of inputs = poles found.
+        pole: [rad/s], shape (n_poles,), those with positive damping only.
+        shape: response at each pole, unit length, shape (n_poles, n_outputs).
+    """
+
+    order: int
+    pole: ComplexArray
+    shape: ComplexArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Reduced:
+    """Normal equations of the largest order, before B is eliminated.
+
+    Attributes:
+        factor: lower Cholesky factor of R, shape (n + 1, n + 1).
+        cross: factor^-1 S for each output, shape (n_outputs, n + 1, (n + 1) n_inputs).
+        square: sum of T over outputs, shape ((n + 1) n_inputs,) * 2.
+        n_inputs: columns of A.
+    """
+
+    factor: ComplexArray
+    cross: ComplexArray
+    square: ComplexArray
+    n_inputs: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Circle:
+    """The map between frequency and the unit circle, z = exp((s - j centre) period)."""
+
+    centre: float
+    period: float
+
+    @classmethod
+    def around(cls, frequency: FloatArray) -> "_Circle":
+        """Lay a band around the circle but for a small gap, at an FFT's pitch."""
+        low, high = 2.0 * np.pi * frequency[[0, -1]]
+        points = scipy.fft.next_fast_len(math.ceil(frequency.size * (1.0 + _GAP)))
+        pitch = (high - low) / (frequency.size - 1)
+        return cls(0.5 * (low + high), 2.0 * np.pi / (points * pitch))
+
+    def angle(self, frequency: FloatArray) -> FloatArray:
+        """Return the angle of z at frequencies [Hz]."""
+        return (2.0 * np.pi * frequency - self.centre) * self.period
+
+    def pole(self, root: ComplexArray) -> ComplexArray:
+        """Return the pole [rad/s] of a root of A."""
+        return np.asarray(np.log(root) / self.period + 1j * self.centre)
+
+
+def fit_poles(
+    frequency: FloatArray,
+    response: ComplexArray,
+    orders: Sequence[int],
+    *,
+    weight: FloatArray | None = None,
+    added_decay_rate: float = 0.0,
+) -> tuple[OrderPoles, ...]:
+    """Fit poles of several orders at once.
+
+    Args:
+        frequency: lines of the band [Hz], shape (n_lines,).
+        response: FRF on them, any kind, shape (n_outputs, n_inputs, n_lines).
+        orders: degrees, each at least 1; ascending.
+        weight: of each line [-], shape (n_lines,), or None for all alike.
+        added_decay_rate: of the exponential window [1/s], taken off the poles.
+
+    Returns:
+        For each order the poles inside the band with positive damping.
+
+    Source:
+        Peeters, Van der Auweraer, Guillaume and Leuridan, Shock and Vibration 11
+        (2004) 395, eq. (9) to (19).
+    """
+    circle = _Circle.around(frequency)
+    largest = max(orders)
+    scale = np.sqrt(np.mean(np.abs(response) ** 2, axis=(1, 2), keepdims=True))
+    scaled = response / np.where(scale > 0.0, scale, 1.0)
+    line_weight = np.ones_like(frequency) if weight is None else weight
+    reduced = _normal_equations(circle.angle(frequency), scaled, line_weight, largest)
+    band = (float(frequency[0]), float(frequency[-1]))
+    return tuple(
+        _order_poles(order, reduced, matrix, circle, band, added_decay_rate, scale)
+        for order, matrix in _nested(reduced, orders)
+    )
+
+
+def _order_poles(
+    order: int,
+    reduced: _Reduced,
+    matrix: ComplexArray,
+    circle: _Circle,
+    band: tuple[float, float],
+    added_decay_rate: float,
+    scale: ComplexArray,
+) -> OrderPoles:
+    """Solve one order and keep the poles that can be modes."""
+    denominator = _denominator(matrix, reduced.n_inputs)
+    roots = _roots(denominator)
+    pole = circle.pole(roots) + added_decay_rate
+    frequency = pole.imag / (2.0 * np.pi)
+    kept = (pole.real < 0.0) & (frequency >= band[0]) & (frequency <= band[1])
+    kept &= np.abs(pole) <= 2.0 * np.pi * band[1]
+    chosen = np.flatnonzero(kept)
+    chosen = chosen[np.argsort(frequency[chosen])]
+    shape = _shapes(reduced, denominator, roots[chosen]) * scale.ravel()
+    length = np.linalg.norm(shape, axis=1, keepdims=True)
+    return OrderPoles(order, pole[chosen], shape / np.where(length > 0, length, 1.0))
+
+
+def _normal_equations(
+    angle: FloatArray, response: ComplexArray, weight: FloatArray, order: int
+) -> _Reduced:
+    """Fill R, S and T and eliminate R."""
+    n_outputs, n_inputs, n_lines = response.shape
+    size = order + 1
+    inner = np.einsum("oil,ojl->ijl", response.conj(), response).reshape(-1, n_lines)
+    rows = (np.ones((1, n_lines), complex), response.reshape(-1, n_lines), inner)
+    moments = _moments(angle, np.asarray(np.concatenate(rows) * weight, complex), order)
+    factor = np.asarray(np.linalg.cholesky(_regular(_block(moments[0], size))))
+    n_frf = n_outputs * n_inputs
+    blocks = np.array([-_block(m, size) for m in moments[1 : n_frf + 1]])
+    blocks = blocks.reshape(n_outputs, n_inputs, size, size)
+    cross = blocks.transpose(2, 0, 3, 1).reshape(size, -1)
+    cross = scipy.linalg.solve_triangular(factor, cross, lower=True)
+    square = np.array([_block(m, size) for m in moments[n_frf + 1 :]])
+    square = square.reshape(n_inputs, n_inputs, size, size).transpose(2, 0, 3, 1)
+    return _Reduced(
+        factor,
+        np.ascontiguousarray(
+            cross.reshape(size, n_outputs, size * n_inputs).transpose(1, 0, 2)
+        ),
+        square.reshape(size * n_inputs, size * n_inputs),
+        n_inputs,
+    )
+
+
+def _moments(angle: FloatArray, series: ComplexArray, order: int) -> ComplexArray:
+    """Return sum over lines of series times z^k, k = -order..order, one row a series.
+
+    Evenly spaced lines take one FFT; others the sum itself.
+    """
+    lags = np.arange(-order, order + 1)
+    pitch = np.diff(angle)
+    even = bool(np.ptp(pitch) < 1e-9 * pitch[0] * angle.size)
+    if not even:
+        return np.asarray(series @ np.exp(1j * np.outer(angle, lags)))
+    points = round(2.0 * np.pi / float(pitch.mean()))
+    sums = points * scipy.fft.ifft(series, points, axis=1)[:, lags % points]
+    return np.asarray(sums * np.exp(1j * angle[0] * lags))
+
+
+def _block(moment: ComplexArray, size: int) -> ComplexArray:
+    """Return the Toeplitz block with entry (a, b) = moment of z^(b - a)."""
+    return np.asarray(toeplitz(moment[:size][::-1], moment[size - 1 :]))
+
+
+def _regular(matrix: ComplexArray) -> ComplexArray:
+    """Return the matrix with a ridge far below anything that was measured."""
+    ridge = _RIDGE * np.trace(matrix).real
+    return np.asarray(matrix + ridge * np.eye(matrix.shape[0]))
+
+
+def _nested(
+    reduced: _Reduced, orders: Sequence[int]
+) -> Iterator[tuple[int, ComplexArray]]:
+    """Yield each order with its reduced matrix, growing by one row of B a step."""
+    wanted = set(orders)
+    eliminated = np.zeros_like(reduced.square)
+    for row in range(max(orders) + 1):
+        rows = reduced.cross[:, row]
+        eliminated += rows.conj().T @ rows
+        if row in wanted:
+            size = (row + 1) * reduced.n_inputs
+            yield row, (reduced.square - eliminated)[:size, :size]
+
+
+def _denominator(matrix: ComplexArray, n_inputs: int) -> ComplexArray:
+    """Return A with identity as its constant, shape (order + 1, n_inputs, n_inputs)."""
+    known = matrix[n_inputs:, :n_inputs]
+    unknown = _regular(matrix[n_inputs:, n_inputs:])
+    rest = scipy.linalg.solve(unknown, -known, assume_a="her")
+    stacked = np.concatenate((np.eye(n_inputs), rest))
+    return np.asarray(stacked.reshape(-1, n_inputs, n_inputs), np.complex128)
+
+
+def _roots(denominator: ComplexArray) -> ComplexArray:
+    """Return the roots of det A from the companion matrix of the reversed A."""
+    order, n_inputs = denominator.shape[0] - 1, denominator.shape[1]
+    companion = np.eye(order * n_inputs, k=n_inputs, dtype=complex)
+    last = -denominator[:0:-1].transpose(1, 0, 2).reshape(n_inputs, -1)
+    companion[-n_inputs:] = last
+    inverse = np.linalg.eigvals(companion)
+    tiny = np.finfo(float).tiny
+    return np.asarray(1.0 / np.where(np.abs(inverse) > tiny, inverse, tiny))
+
+
+def _shapes(
+    reduced: _Reduced, denominator: ComplexArray, roots: ComplexArray
+) -> ComplexArray:
+    """Return B(z) v for each root z, where A(z) v = 0; shape (n_roots, n_outputs)."""
+    size, n_inputs, _ = denominator.shape
+    n_outputs = reduced.cross.shape[0]
+    if roots.size == 0 or n_outputs == 1:
+        return np.ones((roots.size, n_outputs), complex)
+    powers = roots[:, None] ** np.arange(size)
+    null = np.linalg.svd(np.einsum("rk,kij->rij", powers, denominator))[2][:, -1].conj()
+    moved = reduced.cross[:, :size, : size * n_inputs] @ denominator.reshape(
+        -1, n_inputs
+    )
+    numerator = -scipy.linalg.solve_triangular(
+        reduced.factor[:size, :size].conj().T,
+        moved.transpose(1, 0, 2).reshape(size, -1),
+        lower=False,
+    ).reshape(size, n_outputs, n_inputs)
+    return np.asarray(np.einsum("rk,koi,ri->ro", powers, numerator, null))

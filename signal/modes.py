@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""Modes of a structure from its FRF: the whole way, from lines to a modal model."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from jointbench.acquisition.arrays import BoolArray, FloatArray, freeze
+from jointbench.acquisition.errors import NoModeFound
+from jointbench.acquisition.records import step
+from jointbench.signal.band import choose_band
+from jointbench.signal.frf import Frf
+from jointbench.signal.kalman import stage_gain_of
+from jointbench.signal.kalman_model import StageGain
+from jointbench.signal.lscf import fit_poles
+from jointbench.signal.lsfd import Lines, lines_of
+from jointbench.signal.modal_model import ModalModel, build_model
+from jointbench.signal.selection import FittedModes, fit_modes
+from jointbench.signal.stabilisation import (
+    Stabilisation,
+    StabilityLimits,
+    candidates,
+    stabilise,
+)
+
+_LOWEST_ORDER = 2
+_HIGHEST_ORDER = 100
+_ORDERS_TRIED = 50
+# An order needs at least this many lines for each coefficient it adds.
+_LINES_PER_ORDER = 6
+
+
+@dataclass(frozen=True, slots=True)
+class ModalSettings:
+    """How modes are looked for.
+
+    Attributes:
+        band: lowest and highest frequency [Hz], or None for the automatic choice.
+        highest_order: of the fit, or None for 100 over the number of inputs.
+        stability: when a pole counts as stable.
+        refine: whether poles are refined by nonlinear least squares.
+    """
+
+    band: tuple[float, float] | None = None
+    highest_order: int | None = None
+    stability: StabilityLimits = field(default_factory=StabilityLimits)
+    refine: bool = True
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModalResult:
+    """What `identify_modes` found and how far it goes.
+
+    Attributes:
+        model: the modes.
+        stabilisation: poles of all orders.
+        synthesis: FRF of the model on the lines of the band.
+        synthesis_error: rms over all pairs of what the synthesis misses, as a share of
+            the rms of the FRF on that line [-], shape (n_lines,).
+        settings: as asked for.
+        band: lowest and highest line that was fitted [Hz].
+        stage_gain: what the Kalman stage did at each mode, or None without one.
+    """
+
+    model: ModalModel
+    stabilisation: Stabilisation
+    synthesis: Frf
+    synthesis_error: FloatArray
+    settings: ModalSettings
+    band: tuple[float, float]
+    stage_gain: StageGain | None = None
+
+    def __post_init__(self) -> None:
+        """Make the error read-only."""
+        freeze(self, "synthesis_error")
+
+
+def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResult:
+    """Identify the modes of an FRF without being told where they are.
+
+    Poles of all orders (LSCF), those that keep still (stabilisation), those that the
+    FRF needs (selection), refined by nonlinear least squares, then residues (LSFD).
+
+    Standard uncertainties are linearised at the optimum from the line variances, times
+    the factor by which the residual around each mode exceeds them (noise is the least
+    of it on real hits: leakage and small local modes dominate, and they are correlated
+    from line to line). A jackknife over hits was not chosen: the hits of one session
+    share those errors, so it calls them exact. A pole that could not be refined gets
+    the scatter over orders on top.
+
+    Args:
+        frf: any kind, any number of outputs and inputs.
+        settings: see `ModalSettings`; None for the defaults.
+
+    Returns:
+        The modal model with the evidence for it.
+
+    Raises:
+        NoModeFound: no pole is stable and needed.
+        BadData: the band holds too few lines.
+    """
+    settings = settings or ModalSettings()
+    keep, reason = choose_band(frf, settings.band)
+    orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
+    poles = fit_poles(
+        frf.frequency[keep],
+        frf.response[:, :, keep],
+        orders,
+        added_decay_rate=frf.added_decay_rate,
+    )
+    table = stabilise(poles, settings.stability)
+    found = candidates(table, settings.stability)
+    lines = lines_of(frf, keep)
+    start = np.array([c.pole for c in found], complex)
+    fitted = fit_modes(lines, start, _scatter(frf, keep), refine=settings.refine)
+    if fitted.chosen.size == 0:
+        raise NoModeFound(
+            f"none of {start.size} stable poles rises above the noise, orders "
+            f"{orders[0]} to {orders[-1]}, {reason}; give another band or more hits"
+        )
+    done = step(
+        "identify_modes",
+        band=reason,
+        highest_order=orders[-1],
+        candidates=start.size,
+        modes=fitted.chosen.size,
+        model_error=fitted.model_error,
+        unrefined=int(np.count_nonzero(~fitted.poles.converged)),
+    )
+    model = build_model(frf, fitted, found, (*frf.provenance, done))
+    return ModalResult(
+        model=model,
+        stabilisation=table,
+        synthesis=_synthesis(frf, keep, fitted),
+        synthesis_error=_missed(lines, fitted),
+        settings=settings,
+        band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
+        stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
+    )
+
+
+def orders_to_try(
+    settings: ModalSettings, n_lines: int, n_inputs: int
+) -> tuple[int, ...]:
+    """Return the orders of the fit, about fifty at most.
+
+    Args:
+        settings: `highest_order` is taken as it is where given.
+        n_lines: lines in the band.
+        n_inputs: each order has as many poles as there are inputs.
+
+    Returns:
+        Ascending orders.
+    """
+    highest = settings.highest_order or max(
+        _LOWEST_ORDER + 4,
+        min(round(_HIGHEST_ORDER / n_inputs), n_lines // (_LINES_PER_ORDER * n_inputs)),
+    )
+    pitch = max(1, -(-(highest - _LOWEST_ORDER) // _ORDERS_TRIED))
+    return tuple(range(highest, _LOWEST_ORDER - 1, -pitch))[::-1]
+
+
+def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:
+    """Return the variance of the kept lines, one row a pair, or None."""
+    if frf.variance is None:
+        return None
+    kept = frf.variance[:, :, keep]
+    return kept.reshape(-1, kept.shape[2])
+
+
+def _synthesis(frf: Frf, keep: BoolArray, fitted: FittedModes) -> Frf:
+    """Return the FRF of the model on the kept lines."""
+    shape = (len(frf.outputs), len(frf.inputs), -1)
+    return replace(
+        frf,
+        frequency=frf.frequency[keep],
+        response=fitted.fit.synthesis.reshape(shape),
+        coherence=None,
+        variance=fitted.variance.reshape(shape),
+        provenance=(*frf.provenance, step("synthesis")),
+    )
+
+
+def _missed(lines: Lines, fitted: FittedModes) -> FloatArray:
+    """Return the rms of the residual over the rms of the FRF, line by line."""
+    missed = np.sum(np.abs(lines.response - fitted.fit.synthesis) ** 2, axis=0)
+    measured = np.sum(np.abs(lines.response) ** 2, axis=0)
+    return np.asarray(np.sqrt(missed / np.where(measured > 0.0, measured, 1.0)))

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""From candidate poles to modes: what the FRF itself has to say about each.
+
+A pole that keeps still over orders may still describe nothing: a wiggle of noise, or a
+patch on the misfit of a stronger mode. So each candidate must pay its way: leaving it
+out must cost more chi-squared than noise and the misfit around it could explain.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.stats
+
+from jointbench.acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from jointbench.signal.line_noise import (
+    line_noise,
+    local_level,
+    local_misfit,
+    model_error,
+)
+from jointbench.signal.lsfd import LinearFit, Lines, fit_residues, measured_width
+from jointbench.signal.refine import RefinedPoles, refine_poles
+
+# Relative model error taken for granted before a fit has shown its own [-].
+_FIRST_MODEL_ERROR = 0.02
+# Chance that one of many wiggles of noise passes for a mode.
+_CHANCE = 1e-9
+# A mode whose width, as measured, has an sd beyond this share of it is not known.
+_VAGUE = 0.5
+_STEPS = 30
+_ROUNDS = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FittedModes:
+    """Modes that passed, with everything the fit knows of them.
+
+    Attributes:
+        chosen: indices of the candidates that passed, shape (n_modes,).
+        poles: refined, with covariance and inflation.
+        fit: residues on the same lines.
+        variance: noise and model error of each line, shape (n_frf, n_lines).
+        significance: chi-squared lost without each mode, by the misfit around it,
+            shape (n_modes,).
+        model_error: of the fit, as a share of the local level [-].
+    """
+
+    chosen: IntArray
+    poles: RefinedPoles
+    fit: LinearFit
+    variance: FloatArray
+    significance: FloatArray
+    model_error: float
+
+
+def fit_modes(
+    lines: Lines,
+    candidates: ComplexArray,
+    scatter: FloatArray | None,
+    *,
+    refine: bool = True,
+) -> FittedModes:
+    """Refine candidate poles and keep those that the FRF needs.
+
+    The weights are worked out twice: a first fit assumes a model error of 2 % of the
+    local level beside the noise, the second takes the error the first one showed.
+
+    Args:
+        lines: what is fitted.
+        candidates: poles [rad/s], shape (n_candidates,).
+        scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
+        refine: False keeps the poles where LSCF put them.
+
+    Returns:
+        The modes, possibly none.
+    """
+    noise, level = line_noise(lines.response, scatter), local_level(lines.response)
+    variance = noise + _FIRST_MODEL_ERROR**2 * level
+    chosen = _needed(lines, candidates, noise, variance)
+    steps = _STEPS if refine else 0
+    poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
+    fit = fit_residues(lines, poles.pole, variance)
+    error = model_error(lines.response - fit.synthesis, noise, lines.response)
+    variance = noise + error**2 * level
+    kept = _needed(lines, poles.pole, noise, variance)
+    chosen, doubt = chosen[kept], poles.inflation[kept]
+    for _ in range(_ROUNDS):
+        poles = refine_poles(
+            lines, candidates[chosen], variance, doubt=doubt, steps=steps
+        )
+        fit = fit_residues(lines, poles.pole, variance)
+        significance = _significance(lines, fit, poles.pole, noise)
+        vague = _vague(lines, poles, significance)
+        if not vague.any():
+            break
+        chosen, doubt = chosen[~vague], poles.inflation[~vague]
+    return FittedModes(chosen, poles, fit, variance, significance, error)
+
+
+def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolArray:
+    """Tell which modes to give up because their width cannot be told.
+
+    Two poles laid on one peak are both vague, and the fit is as good with one: of
+    overlapping vague poles only the least significant goes, then the rest are refitted.
+    """
+    width = measured_width(lines, poles.pole)
+    sd = np.sqrt(poles.covariance[:, 0, 0] * poles.inflation)
+    vague: BoolArray = sd > _VAGUE * width
+    apart = np.abs(poles.pole.imag[:, None] - poles.pole.imag)
+    overlap = apart < 2.0 * (width[:, None] + width)
+    rival = overlap & vague & (significance < significance[:, None])
+    return np.asarray(vague & ~rival.any(axis=1))
+
+
+def _needed(
+    lines: Lines, pole: ComplexArray, noise: FloatArray, variance: FloatArray
+) -> IntArray:
+    """Drop the least needed pole until all that are left are needed; return indices."""
+    left = np.arange(pole.size)
+    limit = float(scipy.stats.chi2.isf(_CHANCE, 2 * lines.response.shape[0]))
+    while left.size:
+        fit = fit_residues(lines, pole[left], variance)
+        significance = _significance(lines, fit, pole[left], noise)
+        weak: BoolArray = significance < limit
+        if not weak.any():
+            break
+        # Weak ones may stand in for each other: only the weakest goes, unless hopeless.
+        weak &= significance <= max(0.1 * limit, float(significance.min()))
+        left = left[~weak]
+    return left
+
+
+def _significance(
+    lines: Lines, fit: LinearFit, pole: ComplexArray, noise: FloatArray
+) -> FloatArray:
+    """Judge each mode by the noise or by the misfit around it, whichever is more."""
+    misfit = local_misfit(lines.response - fit.synthesis)
+    return fit_residues(lines, pole, np.maximum(noise, misfit)).significance
