@@ -102,14 +102,6 @@ def predict_interval(
             fewer than half of the draws stay inside it.
     """
     model = contact_model(model) if isinstance(model, str) else model
-    contact_curve(  # the centre itself must be in range
-        model,
-        dimension=dimension,
-        roughness=roughness,
-        material=material,
-        preload=preload,
-        gamma=gamma,
-    )
     random = np.random.default_rng(seed)
     dimensions, logs, outside = _draw_surface(
         model, dimension, spread, draws=draws, random=random
@@ -163,4 +155,6 @@ def _lognormal(
     value: float, sd: float, draws: int, random: np.random.Generator
 ) -> FloatArray:
     """Return positive draws with median `value` and about the given sd."""
+    if not value > 0:
+        return np.full(draws, value)  # for the contact model to refuse by name
     return value * np.exp(sd / value * random.standard_normal(draws))

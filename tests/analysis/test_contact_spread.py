@@ -89,3 +89,12 @@ def test_a_spread_that_cannot_be_is_refused(bad):
     """Negative standard deviations, correlations beyond one."""
     with pytest.raises(UsageError):
         ContactSpread(**bad)
+
+
+@pytest.mark.parametrize("bad", [{"preload": 0.0}, {"dimension": 1.5}])
+def test_a_centre_the_model_cannot_take_is_refused_as_without_spread(bad):
+    """A preload of zero, a profile dimension for a surface model."""
+    with pytest.raises(BadData, match=next(iter(bad))):
+        predict_interval(
+            "ke_3d", spread=ContactSpread(0.01, preload=5.0), **{**JOINT, **bad}
+        )
