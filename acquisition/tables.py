@@ -174,6 +174,7 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
             continue
         start = _numeric_layout(i, line)
         if start and seen and _same_layout(start, seen):
+            _refuse_rows_above(lines, seen, path)
             return seen
         seen = start
     if seen is not None:  # a table of one row
@@ -192,6 +193,18 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
         f"{named(path)} holds no table of numbers: no line of its first "
         f"{MAX_HEADER_LINES} is numbers only; its first reads {shown(lines[0].strip())}"
     )
+
+
+def _refuse_rows_above(lines: Sequence[str], start: _Start, path: Path) -> None:
+    """Raise where a row of the table stands above what would pass for its header."""
+    for i in range(start.line):
+        above = _numeric_layout(i, lines[i]) if _is_row(lines[i]) else None
+        if above and _same_layout(above, start):
+            raise FormatError(
+                f"{named(path)}: line {i + 1} is a row of {start.columns} columns, but "
+                f"below it {shown(lines[i + 1].strip())} is none; mend or remove line "
+                f"{i + 2}"
+            )
 
 
 def _is_row(line: str) -> bool:
