@@ -17,6 +17,8 @@ from rich.text import Text
 
 Jsonable = Mapping[str, object]
 WIDTH_WITHOUT_TERMINAL = 120
+PLAIN_FROM, PLAIN_TO = -3, 6
+"""Powers of ten between which numbers are written without an exponent."""
 
 
 def console(json_target: str | None = None) -> Console:
@@ -86,12 +88,14 @@ def with_sd(value: float, sd: float | None, *, digits: int = 2) -> str:
     if sd is None or not (isfinite(sd) and sd > 0):
         return f"{value:.6g}"
     last = floor(log10(sd)) - digits + 1
-    if last > 0 or (value != 0 and abs(value) >= 1e6) or abs(value) < 1e-3:
-        lead = floor(log10(abs(value))) if value else 0
-        scale = 10.0**lead
-        decimals = max(lead - last, 0)
-        return f"({value / scale:.{decimals}f} ± {sd / scale:.{decimals}f})e{lead:+03d}"
-    return f"{value:.{-last}f} ± {sd:.{-last}f}"
+    lead = floor(log10(max(abs(value), sd)))
+    if PLAIN_FROM <= lead < PLAIN_TO:
+        value, sd = round(value, -last), round(sd, -last)
+        return f"{value:.{max(-last, 0)}f} ± {sd:.{max(-last, 0)}f}"
+    scale = 10.0**lead
+    return (
+        f"({value / scale:.{lead - last}f} ± {sd / scale:.{lead - last}f})e{lead:+03d}"
+    )
 
 
 def engineering(value: float, unit: str) -> str:

@@ -1,0 +1,136 @@
+"""The main job, end to end, on the embedded simulated bench."""
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from jointbench.acquisition.session_file import read_session
+from jointbench.station.bench_model import BenchModel
+from jointbench.station.demo import run_demo
+from jointbench.station.demo_bench import HITS
+from jointbench.station.identify import run_identify
+from jointbench.station.modal import run_modal
+from jointbench.station.report_page import (
+    DataTable,
+    Report,
+    Section,
+    Text,
+    render,
+)
+from jointbench.station.toml_file import read_toml
+
+
+@pytest.fixture(scope="module")
+def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Run the demo once, with a seed that no default uses."""
+    folder = tmp_path_factory.mktemp("demo")
+    assert run_demo(folder, seed=11, json_target=None) == 0
+    return folder
+
+
+@pytest.fixture(scope="module")
+def summary(demo: Path) -> dict[str, Any]:
+    """Return the demo's summary."""
+    content: dict[str, Any] = json.loads((demo / "summary.json").read_text())
+    return content
+
+
+def test_the_summary_lays_truth_beside_estimate(summary: dict[str, Any]) -> None:
+    """Frequencies within 0.1 %, damping within 10 %, D within 0.03."""
+    rows = {row["quantity"]: row for row in summary["comparisons"]}
+    for mode in range(2):
+        row = rows[f"natural_frequency[{mode}]"]
+        assert abs(row["estimate"] / row["truth"] - 1) < 1e-3
+        row = rows[f"damping_ratio[{mode}]"]
+        assert abs(row["estimate"] / row["truth"] - 1) < 0.1
+    for face in ("face-a", "face-b"):
+        row = rows[f"dimension[{face}]"]
+        assert abs(row["estimate"] - row["truth"]) < 0.03
+    for link in ("support", "joint"):
+        row = rows[f"{link}.stiffness"]
+        assert abs(row["estimate"] - row["truth"]) < 4 * row["sd"]
+
+
+def test_every_hit_is_found_and_judged_as_it_was_struck(
+    summary: dict[str, Any],
+) -> None:
+    """Doubles and overloads are rejected, and only they."""
+    rows = {row["quantity"]: row for row in summary["comparisons"]}
+    assert rows["hits_judged_right"]["estimate"] == HITS
+    verdicts = {hit["verdict"] for hit in summary["modal"]["hits"]}
+    assert "ok" in verdicts
+
+
+def test_the_session_holds_what_the_summary_speaks_of(demo: Path) -> None:
+    """The file is the evidence: three channels, all hits, both faces, no truth."""
+    session = read_session(demo / "session.h5")
+    (recording,) = session.recordings
+    assert [c.name for c in recording.channels] == ["force", "a0", "a1"]
+    assert len(recording.hits) == HITS
+    assert [s.name for s in session.surfaces] == ["face-a", "face-b"]
+    assert session.simulated
+
+
+def test_session_and_results_open_in_xarray(demo: Path) -> None:
+    """Whoever does not have jointbench still reads the data, with units."""
+    stream = xr.open_dataset(
+        demo / "session.h5", group="stream/stream", engine="h5netcdf"
+    )
+    assert stream["samples"].shape[0] == 3
+    modes = xr.open_dataset(
+        demo / "session.results.h5", group="modes", engine="h5netcdf"
+    )
+    assert modes["natural_frequency"].attrs["units"] == "Hz"
+    assert modes["natural_frequency"].size == 2
+
+
+def test_the_report_asks_nothing_of_the_network(demo: Path) -> None:
+    """No element loads a foreign address, and a policy forbids it besides."""
+    page = (demo / "report.html").read_text(encoding="utf-8")
+    assert "Content-Security-Policy" in page
+    own = re.sub(r"<script nonce.*?</script>", "", page, flags=re.DOTALL)
+    assert not re.search(r"(src|href)\s*=\s*[\"']?(https?:)?//", own)
+
+
+def test_identify_repeats_the_joint_from_the_files_alone(
+    demo: Path, summary: dict[str, Any]
+) -> None:
+    """Model and session on disk are enough; nothing is carried over in memory."""
+    found = run_identify(demo / "bench.toml", [demo / "session.h5"], json_target=None)
+    before = summary["joint"]["parameters"]["joint.stiffness"]["value"]
+    assert np.isclose(found.parameter("joint.stiffness").value, before, rtol=1e-9)
+
+
+def test_a_narrow_band_finds_only_the_mode_inside(demo: Path) -> None:
+    """--band restricts the fit."""
+    chain = run_modal(
+        [demo / "session.h5"],
+        columns=None,
+        point="1",
+        band="100:400",
+        order=None,
+        out=demo / "narrow.h5",
+        json_target=None,
+    )
+    assert chain.result.model.natural_frequency.size == 1
+
+
+def test_the_demo_writes_a_model_that_reads_back(demo: Path) -> None:
+    """The masses are weighed, not copied from the truth."""
+    model = read_toml(demo / "bench.toml", BenchModel)
+    assert set(model.bodies) == {"base", "top"}
+    assert model.bodies["top"].mass != 4.6
+    assert abs(model.bodies["top"].mass / 4.6 - 1) < 0.01
+
+
+def test_texts_from_files_cannot_become_markup() -> None:
+    """A name out of a file is shown, not run."""
+    evil = "</script><script>alert(1)</script>"
+    section = Section("s", evil, (Text(evil), DataTable(evil, ("reason",), ((evil,),))))
+    page = render(Report(evil, evil, "jointbench", False, (), (section,)))
+    assert "<script>alert" not in page
