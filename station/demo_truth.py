@@ -107,9 +107,20 @@ def _surfaces(truth: DemoTruth, analysis: SessionAnalysis) -> list[Comparison]:
                 limit=DIMENSION_LIMIT,
                 absolute=True,
             ),
-            compare_value(f"roughness[{name}]", "m", truth.roughness, fit.roughness),
+            compare_value(
+                f"roughness[{name}]",
+                "m",
+                truth.roughness,
+                fit.roughness,
+                sd=_half_width(fit.roughness_interval),
+            ),
         ]
     return rows
+
+
+def _half_width(interval: tuple[float, float] | None) -> float | None:
+    """Return the standard deviation that a 95 % interval amounts to."""
+    return None if interval is None else (interval[1] - interval[0]) / (2 * 1.96)
 
 
 def _links(truth: DemoTruth, analysis: SessionAnalysis) -> list[Comparison]:
