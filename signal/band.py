@@ -65,14 +65,16 @@ def _above_drift(frf: Frf, high: float) -> float:
     level first turns to rise; of it, only lines higher than anything beyond are left
     out. A static compliance does not fall, so a low first mode is safe.
     """
-    inside = frf.frequency <= high
-    level = median_filter(_mean_level(frf)[inside], _FLANK_LINES, mode="nearest")
+    first = _DC_LINES + 1
+    level = _mean_level(frf)[first : np.count_nonzero(frf.frequency <= high)]
+    if level.size == 0:
+        return float(frf.frequency[0])
+    level = median_filter(level, _FLANK_LINES, mode="nearest")
     lowest = np.minimum.accumulate(level)
     rising = np.flatnonzero(level > _RISEN * lowest)
     turn = int(np.argmin(level[: rising[0]])) if rising.size else 0
     towering = np.flatnonzero(level[:turn] > level[turn:].max())
-    first = int(towering[-1]) + 1 if towering.size else 0
-    return float(frf.frequency[first])
+    return float(frf.frequency[first + towering[-1] + 1] if towering.size else 0.0)
 
 
 def _mean_level(frf: Frf) -> FloatArray:

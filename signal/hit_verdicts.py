@@ -14,6 +14,11 @@ import numpy as np
 from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.acquisition.records import Recording, Verdict
 
+# The median absolute deviation of normal noise is this fraction of its sd.
+_MAD_OF_NORMAL = 0.6745
+# A crest of noise this many sd high stands out of no other.
+_NOISE_CREST = 6.0
+
 
 @dataclass(frozen=True, slots=True)
 class HitLimits:
@@ -22,7 +27,8 @@ class HitLimits:
     Attributes:
         overload_fraction: share of a channel's range that counts as overload [-].
         flat_samples: equal consecutive extreme samples that count as clipping.
-        double_ratio: second force peak over the main one [-].
+        double_ratio: second force peak over the main one [-]; more where the noise of
+            the force would reach it.
         weak_ratio: peak force over the median peak of the recording [-].
         weak_force: smallest useful peak force [N], or None.
     """
@@ -126,6 +132,12 @@ def longest_flat_top(samples: FloatArray) -> int:
     return max(runs, default=1)
 
 
+def noise_level(samples: FloatArray) -> float:
+    """Estimate the sd of the noise under sparse pulses, same unit as `samples`."""
+    centred = samples - np.median(samples)
+    return float(np.median(np.abs(centred))) / _MAD_OF_NORMAL
+
+
 def _run_at(samples: FloatArray, resolution: float) -> int:
     """Return the longest steeply left run of samples at the maximum."""
     top = float(samples.max())
@@ -209,7 +221,8 @@ def _double(
 ) -> Judged | None:
     start, trigger, stop = bound
     ratio, samples = second_peak(force[start:stop], trigger - start)
-    if ratio < limits.double_ratio:
+    limit = max(limits.double_ratio, _NOISE_CREST * noise_level(force) / peak)
+    if ratio < limit:
         return None
     between = 1e3 * samples / recording.sample_rate
     return Judged(
@@ -218,7 +231,7 @@ def _double(
         ratio,
         f"second force peak of {100 * ratio:.1f} % of the main one, "
         f"{abs(between):.2f} ms {'after' if samples > 0 else 'before'} it "
-        f"(limit {100 * limits.double_ratio:g} %)",
+        f"(limit {100 * limit:.3g} %)",
     )
 
 

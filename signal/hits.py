@@ -14,10 +14,7 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.acquisition.errors import NoHitFound
 from jointbench.acquisition.records import Hit, Quantity, Recording, Verdict, step
-from jointbench.signal.hit_verdicts import HitLimits, Judged, judge
-
-# The median absolute deviation of normal noise is this fraction of its sd.
-_MAD_OF_NORMAL = 0.6745
+from jointbench.signal.hit_verdicts import HitLimits, Judged, judge, noise_level
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,12 +122,6 @@ def trigger_indices(
                 continue
         fired.append(int(crossing))
     return tuple(fired)
-
-
-def noise_level(samples: FloatArray) -> float:
-    """Estimate the sd of the noise under sparse pulses, same unit as `samples`."""
-    centred = samples - np.median(samples)
-    return float(np.median(np.abs(centred))) / _MAD_OF_NORMAL
 
 
 def _trigger_level(force: FloatArray, criteria: HitCriteria, name: str) -> float:

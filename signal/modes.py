@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.errors import NoModeFound
-from jointbench.acquisition.records import step
+from jointbench.acquisition.records import Step, step
 from jointbench.signal.band import choose_band
 from jointbench.signal.frf import Frf
 from jointbench.signal.kalman import stage_gain_of
@@ -118,15 +118,7 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
             f"none of {start.size} stable poles rises above the noise, orders "
             f"{orders[0]} to {orders[-1]}, {reason}; give another band or more hits"
         )
-    done = step(
-        "identify_modes",
-        band=reason,
-        highest_order=orders[-1],
-        candidates=start.size,
-        modes=fitted.chosen.size,
-        model_error=fitted.model_error,
-        unrefined=int(np.count_nonzero(~fitted.poles.converged)),
-    )
+    done = _record(reason, orders, start.size, fitted)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
     return ModalResult(
         model=model,
@@ -158,6 +150,20 @@ def orders_to_try(
     )
     pitch = max(1, -(-(highest - _LOWEST_ORDER) // _ORDERS_TRIED))
     return tuple(range(highest, _LOWEST_ORDER - 1, -pitch))[::-1]
+
+
+def _record(
+    band: str, orders: tuple[int, ...], candidates_found: int, fitted: FittedModes
+) -> Step:
+    return step(
+        "identify_modes",
+        band=band,
+        highest_order=orders[-1],
+        candidates=candidates_found,
+        modes=fitted.chosen.size,
+        model_error=fitted.model_error,
+        unrefined=int(np.count_nonzero(~fitted.poles.converged)),
+    )
 
 
 def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:

@@ -86,16 +86,18 @@ def refine_poles(
     variance: FloatArray,
     *,
     doubt: FloatArray | None = None,
+    begin: ComplexArray | None = None,
     steps: int = 30,
 ) -> RefinedPoles:
     """Refine poles by Levenberg-Marquardt on the output error.
 
     Args:
         lines: what is fitted.
-        start: poles [rad/s], shape (n_modes,).
+        start: poles that the answer may not leave [rad/s], shape (n_modes,).
         variance: E|error|^2 of each line, shape (n_frf, n_lines).
         doubt: inflation met in an earlier fit, shape (n_modes,): the start weighs that
             much more against lines that were wrong by as much; None for 1.
+        begin: where the search begins, if an earlier one came close; None for `start`.
         steps: most evaluations; 0 keeps the start and only tells its covariance.
 
     Returns:
@@ -104,7 +106,8 @@ def refine_poles(
     Source:
         Golub and Pereyra, Inverse Problems 19 (2003) R1; Kaufman, BIT 15 (1975) 49.
     """
-    pole, free, damping = start.copy(), np.ones(start.size, bool), 1e-3
+    pole = start.copy() if begin is None else begin.copy()
+    free, damping = np.ones(start.size, bool), 1e-3
     here, settled = _evaluate(lines, pole, variance), False
     doubt = np.ones(start.size) if doubt is None else doubt
     prior = _Prior(start, doubt / (_TRUST * measured_width(lines, start)) ** 2)

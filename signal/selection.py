@@ -28,7 +28,6 @@ _CHANCE = 1e-9
 # A mode whose width, as measured, has an sd beyond this share of it is not known.
 _VAGUE = 0.5
 _STEPS = 30
-_ROUNDS = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,18 +82,22 @@ def fit_modes(
     error = model_error(lines.response - fit.synthesis, noise, lines.response)
     variance = noise + error**2 * level
     kept = _needed(lines, poles.pole, noise, variance)
-    chosen, doubt = chosen[kept], poles.inflation[kept]
-    for _ in range(_ROUNDS):
+    while True:
+        chosen = chosen[kept]
         poles = refine_poles(
-            lines, candidates[chosen], variance, doubt=doubt, steps=steps
+            lines,
+            candidates[chosen],
+            variance,
+            doubt=poles.inflation[kept],
+            begin=poles.pole[kept],
+            steps=steps,
         )
         fit = fit_residues(lines, poles.pole, variance)
         significance = _significance(lines, fit, poles.pole, noise)
         vague = _vague(lines, poles, significance)
         if not vague.any():
-            break
-        chosen, doubt = chosen[~vague], poles.inflation[~vague]
-    return FittedModes(chosen, poles, fit, variance, significance, error)
+            return FittedModes(chosen, poles, fit, variance, significance, error)
+        kept = np.flatnonzero(~vague)
 
 
 def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolArray:
