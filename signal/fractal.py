@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: MIT
+"""Fractal dimension D and roughness G of a surface, or why it has none."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.arrays import BoolArray
+from jointbench.signal.fractal_bands import FEWEST_LAGS, find_band
+from jointbench.signal.fractal_choice import Choice, choose, spans_decade
+from jointbench.signal.fractal_judgement import Judgement, judge
+from jointbench.signal.fractal_problem import FractalProblem, pose
+from jointbench.signal.fractal_result import accepted_fit, rejected_fit
+from jointbench.signal.local_slope import local_slope
+from jointbench.signal.structure_constant import (
+    DEFAULT_GAMMA,
+    ConstantForm,
+    structure_constant,
+)
+from jointbench.signal.structure_function import StructureFunction
+from jointbench.signal.surface_verdict import FractalFit, LocalSlope, SurfaceVerdict
+
+FIT_LAGS = 25
+"""Lags of the fit: more add cost, not knowledge [-]."""
+LONGEST_FIT_SHARE = 0.1
+"""Longest lag of the fit over the profile's length [-]: beyond, too few independent
+pairs are left for a Gaussian description of their mean."""
+MODEL_TOLERANCE = 0.02
+"""Relative misfit of S that still passes as a power law [-], tried where the
+scatter alone rejects it: real surfaces are never exact, long ones always show it."""
+
+
+@dataclass(frozen=True, slots=True)
+class FractalLine:
+    """Fractal parameters read off a straight line through lg S over lg lag.
+
+    Attributes:
+        dimension: D of a profile [-].
+        roughness: G [m].
+    """
+
+    dimension: float
+    roughness: float
+
+
+def fractal_from_line(
+    slope: float,
+    intercept: float,
+    *,
+    gamma: float = DEFAULT_GAMMA,
+    constant: ConstantForm = "corrected",
+) -> FractalLine:
+    """Turn a line lg S = slope lg lag + intercept into D and G.
+
+    Args:
+        slope: of the line, between 0 and 2 [-].
+        intercept: lg of S in m^2 at a lag of 1 m.
+        gamma: frequency ratio of the surface [-].
+        constant: ``"corrected"``, or ``"as-printed"`` to reproduce the papers.
+
+    Returns:
+        D = (4 - slope) / 2 and G = 10^((intercept - lg C) / (2 (D - 1))).
+
+    Raises:
+        UsageError: the slope is not between 0 and 2, or gamma not above 1.
+
+    Source:
+        S1 eqs. (9) and (10).
+    """
+    dimension = (4 - slope) / 2
+    level = intercept - np.log10(structure_constant(dimension, gamma, constant))
+    return FractalLine(dimension, float(10 ** (level / (2 * (dimension - 1)))))
+
+
+def fit_fractal(
+    estimate: StructureFunction,
+    *,
+    gamma: float = DEFAULT_GAMMA,
+    constant: ConstantForm = "corrected",
+) -> FractalFit:
+    """Fit D and G together with the instrument, or say why there is no D.
+
+    Generalised least squares with the exact covariance of S for Gaussian heights;
+    the smallest of five instrument models that the data support. Tried in turn: all
+    lags within their scatter; all lags with 2 % of misfit; bands of a decade or more.
+
+    Args:
+        estimate: of one surface, or of two combined.
+        gamma: frequency ratio in the constant of G [-].
+        constant: form of the constant of G.
+
+    Returns:
+        Verdict, reason and, where the surface scales, D, G and their uncertainty.
+
+    Raises:
+        UsageError: gamma not above 1 or no such constant.
+
+    Source:
+        Covariance of the increments of fractional Brownian motion: Istas and Lang,
+        Ann. Inst. H. Poincare 33 (1997) 407. Structure function and G: S1 eq. (9).
+    """
+    structure_constant(1.5, gamma, constant)  # refuse nonsense before the work
+    rough = estimate.only(estimate.value > 0)
+    for_fit, for_slope = _thinned(rough)
+    if not _worth_a_fit(rough.only(for_fit)):
+        reason = _too_short(rough.only(for_fit))
+        return rejected_fit(estimate, reason, _unfitted_slope(rough))
+    whole = pose(rough.only(for_slope))
+    problem = whole.within(for_fit[for_slope])
+    found, judgement = _search(problem)
+    slope = local_slope(whole.estimate, whole.scatter(found.fit.seen))
+    if judgement is None:
+        judgement = _not_straight(slope, problem)
+    if judgement.verdict is SurfaceVerdict.NONE:
+        return rejected_fit(estimate, judgement, slope)
+    return accepted_fit(found, judgement, slope, gamma=gamma, constant=constant)
+
+
+def _search(problem: FractalProblem) -> tuple[Choice, Judgement | None]:
+    """Return the best description of S, and its judgement if it was accepted."""
+    strict = choose(problem)
+    if strict.accepted:
+        return strict, judge(strict)
+    loose = replace(problem, tolerance=MODEL_TOLERANCE)
+    tolerant = choose(loose)
+    if tolerant.accepted:
+        return tolerant, judge(tolerant)
+    band = find_band(loose)
+    if band is None:
+        return tolerant, None
+    return band, replace(judge(band), verdict=SurfaceVerdict.BAND)
+
+
+def _thinned(estimate: StructureFunction) -> tuple[BoolArray, BoolArray]:
+    """Mark the lags of the fit, and those of the slope, which goes on beyond."""
+    share = estimate.lag / (estimate.spacing * estimate.points)
+    inside = share <= LONGEST_FIT_SHARE * (1 + 1e-9)
+    keep = np.zeros(estimate.lag.size, dtype=np.bool_)
+    allowed = np.flatnonzero(inside)
+    if allowed.size:
+        log_lag = np.log(estimate.lag[allowed])
+        wanted = np.linspace(log_lag[0], log_lag[-1], FIT_LAGS)
+        keep[allowed[np.argmin(np.abs(log_lag[:, None] - wanted), axis=0)]] = True
+    return keep, keep | ~inside
+
+
+def _worth_a_fit(estimate: StructureFunction) -> bool:
+    """Return whether the lags span a decade with lags to spare."""
+    lag = estimate.lag
+    return lag.size >= FEWEST_LAGS and spans_decade((float(lag[0]), float(lag[-1])))
+
+
+def _too_short(estimate: StructureFunction) -> Judgement:
+    """Say why there is nothing to fit."""
+    if estimate.lag.size == 0:
+        return Judgement(
+            SurfaceVerdict.NONE,
+            f"no height differences at lags up to {100 * LONGEST_FIT_SHARE:g} % of the "
+            "length: the surface is flat, or too short",
+        )
+    return Judgement(
+        SurfaceVerdict.NONE,
+        f"profiles of {estimate.points} points give {estimate.lag.size} lags up to "
+        f"{100 * LONGEST_FIT_SHARE:g} % of the length, less than a decade; "
+        "measure a longer line",
+    )
+
+
+def _unfitted_slope(estimate: StructureFunction) -> LocalSlope:
+    """Return the local slope with the scatter of a power law through the values."""
+    if estimate.lag.size < 2:
+        return local_slope(estimate, np.empty((0, 0)))
+    problem = pose(estimate)
+    return local_slope(estimate, problem.scatter(problem.straight()))
+
+
+def _not_straight(slope: LocalSlope, problem: FractalProblem) -> Judgement:
+    """Say how the slope wanders where no decade is straight."""
+    inside = slope.lag <= problem.estimate.lag[-1] * (1 + 1e-9)
+    lag, value = slope.lag[inside], slope.slope[inside]
+    marks = sorted({0, int(np.argmin(value)), int(np.argmax(value)), value.size - 1})
+    course = ", ".join(f"{value[k]:.2f} at {1e6 * lag[k]:.3g} um" for k in marks)
+    return Judgement(
+        SurfaceVerdict.NONE,
+        f"no decade of lags is straight within {100 * MODEL_TOLERANCE:g} %: "
+        f"the slope of ln S runs {course}",
+    )

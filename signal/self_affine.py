@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""Structure function of a self-affine profile as an instrument shows it."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gamma as gamma_function
+from scipy.special import hyp1f1
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.signal.structure_constant import spectral_integral
+
+_ASYMPTOTIC_FROM = 40.0
+"""Squared lag over 4 width^2 above which six terms give nine digits [-]."""
+_ASYMPTOTIC_TERMS = 6
+_FRACTION_TERMS = 60
+"""Depth of the continued fraction; gives twelve digits from pi upwards [-]."""
+
+
+class InstrumentModel(StrEnum):
+    """What the instrument adds or takes away, from the simplest on."""
+
+    NONE = "none"
+    BAND_LIMIT = "band limit"
+    NOISE = "noise"
+    PSF = "point spread"
+    PSF_AND_NOISE = "point spread and noise"
+
+    @property
+    def has_noise(self) -> bool:
+        """Whether white height noise is among the parameters."""
+        return self in {InstrumentModel.NOISE, InstrumentModel.PSF_AND_NOISE}
+
+    @property
+    def has_psf(self) -> bool:
+        """Whether a Gaussian point spread is among the parameters."""
+        return self in {InstrumentModel.PSF, InstrumentModel.PSF_AND_NOISE}
+
+
+@dataclass(frozen=True, slots=True)
+class SeenSurface:
+    """A self-affine surface and the instrument it is seen through.
+
+    Lengths are in samples, heights in any one unit.
+
+    Attributes:
+        exponent: s = 4 - 2D of the surface [-].
+        amplitude: structure function of the surface itself at a lag of one sample.
+        noise: variance of white noise of each height.
+        psf_width: standard deviation of the Gaussian point spread [samples].
+        psf_axes: 1 where it blurs along the profile only, 2 where all around.
+        band_limited: whether wavelengths under two samples are cut off sharply.
+        corner: lag at which the surface stops to grow rougher [samples].
+    """
+
+    exponent: float
+    amplitude: float
+    noise: float = 0.0
+    psf_width: float = 0.0
+    psf_axes: int = 1
+    band_limited: bool = False
+    corner: float = np.inf
+
+    def surface(self, lag: FloatArray) -> FloatArray:
+        """Return the power law of the surface itself at lags [samples]."""
+        power: FloatArray = self.amplitude * np.abs(lag) ** self.exponent
+        return power
+
+    def seen(self, lag: FloatArray) -> FloatArray:
+        """Return the structure function of what the instrument shows.
+
+        Args:
+            lag: [samples], any shape; 0 gives 0.
+        """
+        lag = np.abs(np.asarray(lag, dtype=np.float64))
+        if self.psf_width > 0:
+            shape = blurred_power(lag, self.exponent, self.psf_width, self.psf_axes)
+        elif self.band_limited:
+            shape = band_limited_power(lag, self.exponent)
+        else:
+            shape = lag**self.exponent
+        if np.isfinite(self.corner):
+            shape = rolled_off(shape, self.corner**self.exponent)
+        seen: FloatArray = self.amplitude * shape + np.where(lag > 0, 2 * self.noise, 0)
+        return seen
+
+
+def rolled_off(shape: FloatArray, ceiling: float) -> FloatArray:
+    """Return a structure function that follows `shape` and settles at `ceiling`.
+
+    Source:
+        ceiling (1 - exp(-S / ceiling)) is a structure function for every structure
+        function S: Schoenberg, Ann. Math. 39 (1938) 811. For S = lag^s it is the
+        self-affine surface of Sinha et al., Phys. Rev. B 38 (1988) 2297.
+    """
+    settled: FloatArray = -ceiling * np.expm1(-shape / ceiling)
+    return settled
+
+
+def blurred_power(
+    lag: FloatArray, exponent: float, width: float, axes: int
+) -> FloatArray:
+    """Return the structure function lag^s after a Gaussian blur of the heights.
+
+    The blur turns S into the mean of S over a Gaussian of sqrt(2) times the width,
+    less the same mean at lag 0; the mean of |lag + g|^s is a Kummer function.
+
+    Args:
+        lag: [samples], not negative.
+        exponent: s [-].
+        width: standard deviation of the blur [samples], above 0.
+        axes: 1 or 2 directions of blur; with 2 the surface is taken as isotropic.
+
+    Source:
+        Abramowitz and Stegun, 13.1.2 and 13.5.1 (far from the origin).
+    """
+    half = axes / 2
+    at_zero = (2 * width) ** exponent * float(
+        gamma_function(half + exponent / 2) / gamma_function(half)
+    )
+    argument = (lag / (2 * width)) ** 2
+    near = argument < _ASYMPTOTIC_FROM
+    mean = np.empty_like(lag)
+    mean[near] = at_zero * hyp1f1(-exponent / 2, half, -argument[near])
+    term = np.ones(int(np.count_nonzero(~near)))
+    total = term.copy()
+    for k in range(_ASYMPTOTIC_TERMS):
+        factor = (k - exponent / 2) * (k + 1 - half - exponent / 2) / (k + 1)
+        term = term * factor / argument[~near]
+        total += term
+    mean[~near] = lag[~near] ** exponent * total
+    blurred: FloatArray = mean - at_zero
+    return blurred
+
+
+def band_limited_power(lag: FloatArray, exponent: float) -> FloatArray:
+    """Return the structure function lag^s without wavelengths under two samples.
+
+    Args:
+        lag: [samples], not negative.
+        exponent: s [-].
+
+    Source:
+        S = integral of 2 P(f) (1 - cos 2 pi f lag) up to the Nyquist frequency with
+        P ~ f^(-1-s); the missing tail is a generalised exponential integral,
+        Abramowitz and Stegun, 5.1.22.
+    """
+    missing = np.zeros_like(lag)
+    some = lag > 0
+    angle = np.pi * lag[some]
+    phase = np.asarray(-1j * angle, dtype=np.complex128)
+    tail = np.real(_exponential_integral(1 + exponent, phase))
+    missing[some] = np.pi**-exponent * (1 / exponent - tail)
+    limited: FloatArray = lag**exponent - missing / spectral_integral(exponent)
+    return limited
+
+
+def _exponential_integral(
+    order: float, argument: NDArray[np.complex128]
+) -> NDArray[np.complex128]:
+    """Return E_order(argument) by its continued fraction, for |argument| > 3."""
+    value = argument + order + 2 * _FRACTION_TERMS
+    for k in range(_FRACTION_TERMS, 0, -1):
+        value = argument + order + 2 * (k - 1) - k * (order + k - 1) / value
+    result: NDArray[np.complex128] = np.exp(-argument) / value
+    return result
+
+
+def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
+    """Return what removing the mean line takes from S = t^s of a unit length.
+
+    Args:
+        share: lag over the length of the profile, between 0 and 1 [-].
+        exponent: s [-].
+
+    Returns:
+        Loss of the mean of S over all pairs of one profile, same shape [-].
+
+    Source:
+        The slope b of the line is 12 times the integral of (t - 1/2) z. With it
+        S_levelled = S - 2 lag mean(cov(dz, b)) + lag^2 var(b), and both moments
+        follow from cov = -S/2 for weights that sum to zero.
+    """
+    s = exponent
+    slope_variance = 36 * _beta(s + 3, 2) - 12 * _beta(s + 1, 4)
+
+    def moment(t: FloatArray) -> FloatArray:
+        """Integrate cov(z(t), b) from 0 to t."""
+        rest = 1 - t
+        ahead = t ** (s + 3) / (s + 3) - t ** (s + 2) / (2 * (s + 2))
+        behind = rest ** (s + 3) / (s + 3) - rest ** (s + 2) / (2 * (s + 2))
+        start = 1 / (s + 3) - 1 / (2 * (s + 2))
+        first = (ahead + behind - start) / (s + 1)
+        second = (t ** (s + 3) + rest ** (s + 3) - 1) / ((s + 2) * (s + 3))
+        integral: FloatArray = -6 * (first - second)
+        return integral
+
+    ends = moment(np.ones_like(share)) - moment(1 - share) - moment(share)
+    loss: FloatArray = 2 * share * ends / (1 - share) - share**2 * slope_variance
+    return loss
+
+
+def _beta(a: float, b: float) -> float:
+    """Return Euler's beta function."""
+    return float(gamma_function(a) * gamma_function(b) / gamma_function(a + b))
