@@ -9,7 +9,7 @@ from jointbench.acquisition.records import Channel, Recording
 from jointbench.acquisition.session import Session, new_session
 from jointbench.acquisition.session_file import write_session
 from jointbench.acquisition.surfaces import Surface
-from jointbench.station.inputs import named_apart, read_foreign
+from jointbench.station.inputs import read_foreign
 from jointbench.station.output import console, table, working, write_json
 
 
@@ -58,7 +58,7 @@ def _free(name: str, taken: list[str]) -> str:
 
 
 def _show(session: Session, out: Path, json_target: str | None) -> None:
-    records = named_apart(session)
+    records = _records(session)
     screen = console(json_target)
     screen.print(table(f"{out}", ("record", "holds"), list(records.items())))
     channels = [
@@ -79,3 +79,19 @@ def _channel(recording: str, channel: Channel) -> dict[str, object]:
         "unit": channel.unit,
         "point": channel.point,
     }
+
+
+def _records(session: Session) -> dict[str, str]:
+    """Return one line for each record of a session, by its name."""
+    recordings = {
+        r.name: (
+            f"{len(r.channels)} channels, {r.samples.shape[1]} samples at "
+            f"{r.sample_rate:g} Hz"
+        )
+        for r in session.recordings
+    }
+    surfaces = {
+        s.name: f"{' x '.join(map(str, s.heights.shape))} heights"
+        for s in session.surfaces
+    }
+    return recordings | surfaces

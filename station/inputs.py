@@ -9,7 +9,6 @@ from jointbench.acquisition.errors import BadData, UnitError
 from jointbench.acquisition.import_hits import read_recording
 from jointbench.acquisition.import_surfaces import read_surface
 from jointbench.acquisition.records import Recording
-from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_file import read_session
 from jointbench.acquisition.surfaces import Surface
 
@@ -91,19 +90,3 @@ def read_surfaces(
         names = ", ".join(path.name for path in files)
         raise BadData(f"no surface in {names}; 'jointbench inspect' shows what is")
     return tuple(found)
-
-
-def named_apart(session: Session) -> dict[str, str]:
-    """Return one line for each record of a session, by its name."""
-    recordings = {
-        r.name: (
-            f"{len(r.channels)} channels, {r.samples.shape[1]} samples at "
-            f"{r.sample_rate:g} Hz"
-        )
-        for r in session.recordings
-    }
-    surfaces = {
-        s.name: f"{' x '.join(map(str, s.heights.shape))} heights"
-        for s in session.surfaces
-    }
-    return recordings | surfaces

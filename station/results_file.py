@@ -9,6 +9,7 @@ from pathlib import Path
 
 import h5py
 
+from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.acquisition.netcdf import (
     new_file,
     write_attributes,
@@ -101,19 +102,13 @@ def _axis(group: h5py.Group, name: str, values: object, units: str) -> None:
 
 def _write_stabilisation(group: h5py.Group, result: ModalResult) -> None:
     poles = result.stabilisation
-    for name, values, units in (
+    _write_columns(
+        group,
+        "pole",
         ("order", poles.order, "1"),
         ("natural_frequency", poles.frequency, "Hz"),
         ("damping_ratio", poles.damping_ratio, "1"),
-    ):
-        write_variable(
-            group,
-            name,
-            values,
-            ("pole",),
-            units=units,
-            long_name=name.replace("_", " "),
-        )
+    )
     write_flags(
         group,
         "stable",
@@ -125,20 +120,14 @@ def _write_stabilisation(group: h5py.Group, result: ModalResult) -> None:
 
 
 def _write_modes(group: h5py.Group, model: ModalModel) -> None:
-    for name, values, units in (
+    _write_columns(
+        group,
+        "mode",
         ("natural_frequency", model.natural_frequency, "Hz"),
         ("natural_frequency_sd", model.frequency_sd, "Hz"),
         ("damping_ratio", model.damping_ratio, "1"),
         ("damping_ratio_sd", model.damping_ratio_sd, "1"),
-    ):
-        write_variable(
-            group,
-            name,
-            values,
-            ("mode",),
-            units=units,
-            long_name=name.replace("_", " "),
-        )
+    )
     write_texts(
         group, "output_label", model.outputs, "output", long_name="channel@point"
     )
@@ -151,6 +140,15 @@ def _write_modes(group: h5py.Group, model: ModalModel) -> None:
         units="m s-1 N-1",
         long_name="residue of the receptance",
     )
+
+
+def _write_columns(
+    group: h5py.Group, dim: str, *columns: tuple[str, FloatArray | IntArray, str]
+) -> None:
+    """Write variables of one dimension, each a name, its values and its unit."""
+    for name, values, units in columns:
+        words = name.replace("_", " ")
+        write_variable(group, name, values, (dim,), units=units, long_name=words)
 
 
 def _write_provenance(group: h5py.Group, chain: ModalChain) -> None:
