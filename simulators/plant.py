@@ -2,17 +2,18 @@
 """Lumped bodies on links, stepped through time: the specimen behind every bench.
 
 The simulators own their physics: nothing here is shared with the analysis that is
-judged on it. Time runs in fourth-order Runge-Kutta steps, many to a sample.
+judged on it. The modes are those of the linear links alone.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
-from numba import njit
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
 from jointbench.acquisition.errors import UsageError
+from jointbench.simulators.joint_laws import JointLaw, pack_laws, resting_sliders
+from jointbench.simulators.march import LinearPart, march
 
 GROUND = -1
 
@@ -41,19 +42,24 @@ class Plant:
     Attributes:
         masses: of the bodies [kg].
         links: between them.
+        laws: forces beyond the linear links.
     """
 
     masses: tuple[float, ...]
     links: tuple[Link, ...]
+    laws: tuple[JointLaw, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse masses that are not positive and links that lead nowhere."""
         if not all(mass > 0 for mass in self.masses):
             raise UsageError(f"masses must be positive, got {self.masses} kg")
-        for link in self.links:
-            if not {link.first, link.second} <= {GROUND, *range(len(self.masses))}:
+        ends = [(part.first, part.second) for part in self.links]
+        ends += [(part.first, part.second) for part in self.laws]
+        for first, second in ends:
+            if not {first, second} <= {GROUND, *range(len(self.masses))}:
                 raise UsageError(
-                    f"{link} names a body beyond 0..{len(self.masses) - 1} "
+                    f"a link from {first} to {second} leads "
+                    f"beyond 0..{len(self.masses) - 1} "
                     f"(the ground is {GROUND})"
                 )
 
@@ -130,9 +136,31 @@ def plant_modes(plant: Plant) -> PlantModes:
     return PlantModes(magnitude / (2 * np.pi), -poles[order].real / magnitude, shapes)
 
 
-def rest_state(plant: Plant) -> FloatArray:
-    """Return the state at rest: displacements [m], then velocities [m/s]."""
-    return np.zeros(2 * len(plant.masses))
+@dataclass(frozen=True, slots=True, eq=False)
+class PlantState:
+    """All that a plant carries from one stretch of time to the next.
+
+    Attributes:
+        time: [s].
+        values: displacements [m], velocities [m/s], then one state of each law,
+            shape (2 n_bodies + n_laws,).
+        sliders: memory of all sliders, shape (2, n_sliders).
+    """
+
+    time: float
+    values: FloatArray
+    sliders: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "values", "sliders")
+
+
+def rest_state(plant: Plant) -> PlantState:
+    """Return the state at rest at time 0."""
+    laws = pack_laws(plant.laws)
+    values = np.zeros(2 * len(plant.masses) + laws.kind.size)
+    return PlantState(0.0, values, resting_sliders(laws))
 
 
 def step_plant(
@@ -141,74 +169,33 @@ def step_plant(
     *,
     body: int,
     time_step: float,
-    state: FloatArray | None = None,
-) -> tuple[FloatArray, FloatArray]:
+    state: PlantState | None = None,
+) -> tuple[FloatArray, PlantState]:
     """March the plant through time under a force on one body.
 
     Args:
-        plant: the bodies and links.
+        plant: the bodies, links and laws.
         force: at every half step [N], shape (2 n + 1,) for n steps.
         body: index of the body that is struck.
         time_step: [s].
-        state: displacements and velocities at the start, shape (2 n_bodies,); rest if
-            None.
+        state: at the start; rest if None.
 
     Returns:
         Accelerations at the start of each step [m/s^2], shape (n_bodies, n), and the
         state after the last step.
     """
-    masses = np.asarray(plant.masses, dtype=float)
-    _, stiffness, damping = plant_matrices(plant)
     start = rest_state(plant) if state is None else state
-    acceleration, last = _march(
-        np.ascontiguousarray(force, dtype=float),
+    _, stiffness, damping = plant_matrices(plant)
+    inverse_mass = 1 / np.asarray(plant.masses, dtype=float)
+    values, sliders = start.values.copy(), start.sliders.copy()
+    acceleration = march(
+        LinearPart(inverse_mass, stiffness, damping),
+        pack_laws(plant.laws),
+        np.array(force, dtype=float),
         body,
-        1.0 / masses,
-        stiffness,
-        damping,
-        time_step,
-        start.copy(),
+        (start.time, time_step),
+        values,
+        sliders,
     )
-    return np.asarray(acceleration), np.asarray(last)
-
-
-@njit(cache=True)
-def _derivative(state, inverse_mass, stiffness, damping, force, body, out):  # type: ignore[no-untyped-def]
-    size = inverse_mass.size
-    for i in range(size):
-        total = 0.0
-        for j in range(size):
-            total -= stiffness[i, j] * state[j] + damping[i, j] * state[size + j]
-        if i == body:
-            total += force
-        out[i] = state[size + i]
-        out[size + i] = total * inverse_mass[i]
-
-
-@njit(cache=True)
-def _march(force, body, inverse_mass, stiffness, damping, step, state):  # type: ignore[no-untyped-def]
-    size = inverse_mass.size
-    steps = (force.size - 1) // 2
-    acceleration = np.empty((size, steps))
-    slopes = np.empty((4, 2 * size))
-    trial = np.empty(2 * size)
-    for n in range(steps):
-        for stage in range(4):
-            ahead = 0.0 if stage == 0 else (step if stage == 3 else 0.5 * step)
-            for i in range(2 * size):
-                trial[i] = state[i]
-                if stage > 0:
-                    trial[i] += ahead * slopes[stage - 1, i]
-            push = force[2 * n + (stage + 1) // 2]
-            _derivative(
-                trial, inverse_mass, stiffness, damping, push, body, slopes[stage]
-            )
-        for i in range(size):
-            acceleration[i, n] = slopes[0, size + i]
-        for i in range(2 * size):
-            state[i] += (
-                step
-                / 6.0
-                * (slopes[0, i] + 2 * slopes[1, i] + 2 * slopes[2, i] + slopes[3, i])
-            )
-    return acceleration, state
+    end = start.time + time_step * acceleration.shape[1]
+    return np.asarray(acceleration), PlantState(end, values, sliders)

@@ -10,6 +10,7 @@ from jointbench.simulators.plant import (
     GROUND,
     Link,
     Plant,
+    PlantState,
     plant_matrices,
     plant_modes,
     step_plant,
@@ -48,7 +49,7 @@ def test_free_decay_of_one_body_follows_the_closed_form():
         np.zeros(2 * 8192 + 1),
         body=0,
         time_step=step,
-        state=np.array([1e-3, 0.0]),
+        state=PlantState(0.0, np.array([1e-3, 0.0]), np.zeros((2, 0))),
     )
     pole = omega * (-zeta + 1j * np.sqrt(1 - zeta**2))
     # x = Re[A exp(p t)] with x(0) = 1e-3 and v(0) = 0, differentiated twice.

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: MIT
+"""Two-body hammer campaigns with hidden effects, and the truth about them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray, freeze, require_shape
+from jointbench.acquisition.errors import UsageError
+from jointbench.simulators.campaign_design import (
+    FORCE_NOISE,
+    SAMPLES,
+    CampaignDesign,
+    draw_design,
+)
+from jointbench.simulators.campaign_response import simulate_records
+from jointbench.simulators.effect_draws import (
+    FAMILIES,
+    OUTSIDE_CATALOGUE,
+    draw_effect,
+    resize_effect,
+)
+from jointbench.simulators.expected_margin import (
+    Margin,
+    MarginScale,
+    expected_margin,
+    margin_scale,
+)
+from jointbench.simulators.hidden_effects import HiddenEffect
+
+MARGIN_RANGE = (1.0, 1e4)
+_CLOSE = 0.15  # relative, at which the size of an effect is close enough
+_MOST_SIZES = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Campaign:
+    """A simulated campaign and its truth.
+
+    Attributes:
+        design: specimen, hits and noise.
+        effects: what is hidden in it.
+        margins: what an ideal analyst could make of each effect, same order.
+        force: hammer force [N], shape (n_records, n).
+        acceleration: of base and top [m/s^2], shape (n_records, 2, n).
+    """
+
+    design: CampaignDesign
+    effects: tuple[HiddenEffect, ...]
+    margins: tuple[Margin, ...]
+    force: FloatArray
+    acceleration: FloatArray
+
+    def __post_init__(self) -> None:
+        """Check shapes once and make the arrays read-only."""
+        count = len(self.design.conditions)
+        require_shape("force", self.force, (count, SAMPLES))
+        require_shape("acceleration", self.acceleration, (count, 2, SAMPLES))
+        freeze(self, "force", "acceleration")
+
+    @property
+    def truth(self) -> tuple[str, ...]:
+        """Names an analyst should find: of the catalogue, `unknown`, or `none`."""
+        names = tuple(
+            "unknown" if effect.name in OUTSIDE_CATALOGUE else effect.name
+            for effect in self.effects
+        )
+        return names or ("none",)
+
+
+def make_campaign(
+    seed: int,
+    *,
+    effects: Sequence[str | HiddenEffect] = (),
+    margin: float | tuple[float, float] = MARGIN_RANGE,
+    size: float | None = None,
+    grid: str | None = None,
+    noise: float | None = None,
+    hit_scatter: float = 0.0,
+) -> Campaign:
+    """Draw a campaign and hide effects in it.
+
+    Args:
+        seed: of everything that is drawn.
+        effects: names, whose parameters are drawn, or effects as they are; each name
+            is sized by itself, as if the others were not there.
+        margin: expected margin of each named effect [-], or a range to draw it from
+            log-uniformly.
+        size: share of the largest physical size [-] in place of a margin.
+        grid: of hits, one of `GRIDS`; None draws it.
+        noise: of each acceleration [m/s^2]; None draws it.
+        hit_scatter: relative standard deviation between hits [-]; 0.001 to 0.002 is
+            a good hand.
+
+    Returns:
+        The campaign. An effect that cannot reach its margin at a physical size is as
+        large as it can be; `margins` says what came out.
+
+    Raises:
+        UsageError: an effect is unknown, or named twice.
+    """
+    names = [each if isinstance(each, str) else each.name for each in effects]
+    if len(set(names)) < len(names):
+        raise UsageError(f"effects {names} name one twice; hide each of them once")
+    design = draw_design(seed, grid=grid, noise=noise, hit_scatter=hit_scatter)
+    hidden: tuple[HiddenEffect, ...] = ()
+    margins: tuple[Margin, ...] = ()
+    if effects:
+        scale = margin_scale(design)
+        rng = np.random.default_rng([seed, 12])
+        hidden = tuple(_hide(scale, each, margin, size, rng) for each in effects)
+        margins = tuple(expected_margin(scale, each) for each in hidden)
+    force, acceleration = _with_noise(design, *simulate_records(design, hidden))
+    return Campaign(design, hidden, margins, force, acceleration)
+
+
+def campaign_noise_free(
+    campaign: Campaign, *, with_effects: bool = True
+) -> tuple[FloatArray, FloatArray]:
+    """Return what the channels of a campaign would record without noise.
+
+    Args:
+        campaign: the campaign.
+        with_effects: False for the base model at its true values.
+
+    Returns:
+        Forces [N], shape (n_records, n), and accelerations [m/s^2], shape
+        (n_records, 2, n).
+    """
+    return simulate_records(campaign.design, campaign.effects if with_effects else ())
+
+
+def size_to_margin(
+    scale: MarginScale, largest: HiddenEffect, wanted: float
+) -> HiddenEffect:
+    """Shrink an effect until its expected margin is the wanted one.
+
+    Args:
+        scale: the design, prepared.
+        largest: the effect at its largest.
+        wanted: expected margin [-].
+
+    Returns:
+        The effect, within 15 % of the margin, or as large as `largest`.
+    """
+    if not FAMILIES[largest.name].resizable:
+        return largest
+    share, power = 0.01, 2.0
+    known: list[tuple[float, float]] = []
+    for _ in range(_MOST_SIZES):
+        margin = expected_margin(scale, resize_effect(largest, share)).margin
+        if abs(np.log(max(margin, 1e-12) / wanted)) < _CLOSE:
+            break
+        known.append((np.log(share), np.log(max(margin, 1e-12))))
+        if len(known) > 1:
+            (first, low), (second, high) = known[-2:]
+            # Small changes grow as the square; a delay that a filter can mimic, as
+            # the fourth power.
+            slope = (high - low) / (second - first) if second != first else power
+            power = float(np.clip(slope, 1.0, 5.0))
+        step = np.log(wanted / max(margin, 1e-12)) / power
+        share = min(1.0, share * float(np.exp(np.clip(step, -5.0, 5.0))))
+        if share == 1.0 and known[-1][0] == 0.0:
+            break
+    return resize_effect(largest, share)
+
+
+def _hide(
+    scale: MarginScale,
+    effect: str | HiddenEffect,
+    margin: float | tuple[float, float],
+    size: float | None,
+    rng: np.random.Generator,
+) -> HiddenEffect:
+    if isinstance(effect, HiddenEffect):
+        return effect
+    largest = draw_effect(effect, scale.scales, rng)
+    if size is not None:
+        return resize_effect(largest, size)
+    low, high = margin if isinstance(margin, tuple) else (margin, margin)
+    wanted = float(np.exp(rng.uniform(np.log(low), np.log(high))))
+    return size_to_margin(scale, largest, wanted)
+
+
+def _with_noise(
+    design: CampaignDesign, force: FloatArray, acceleration: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Add the white noise of the sensors."""
+    rng = np.random.default_rng([design.seed, 13])
+    force_noise = FORCE_NOISE * design.noise * rng.standard_normal(force.shape)
+    noise = design.noise * rng.standard_normal(acceleration.shape)
+    return force + force_noise, acceleration + noise
