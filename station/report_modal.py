@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from jointbench.acquisition.arrays import IntArray
+from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.signal.frf import Frf, FrfKind
 from jointbench.station.chain import ModalChain
 from jointbench.station.figures import (
@@ -22,6 +22,7 @@ from jointbench.station.output import with_sd
 from jointbench.station.report_page import DataTable, Plot, Section, Text
 
 MOST_POINTS = 4000
+HALF_TURN = 180.0
 UNITS = {
     FrfKind.RECEPTANCE: "m/N",
     FrfKind.MOBILITY: "m/(N s)",
@@ -54,7 +55,7 @@ def _frf_plot(chain: ModalChain) -> Plot:
     traces: list[Trace] = []
     for number, (output, column) in enumerate(np.ndindex(frf.response.shape[:2])):
         color = PALETTE[number % len(PALETTE)]
-        label = f"{frf.outputs[output]} / hit {frf.inputs[column]}"
+        label = f"{frf.outputs[output].rstrip('@')} / hit {frf.inputs[column]}"
         pair = (output, column)
         traces += _one_frf(frf, synthesis, lines, pair, label, color)
     plot = figure(
@@ -95,9 +96,15 @@ def _one_frf(
     traces.append(
         line(x, magnitude, f"{label}, synthesis", color="#1c2733", dash="dash")
     )
-    x, phase = thin(frequency, np.degrees(np.angle(response)), MOST_POINTS // 2)
     traces.append(
-        line(x, phase, label, color=color, width=1, axes=("x", "y2"), legend=False)
+        line(
+            *_phase(frequency, response),
+            label,
+            color=color,
+            width=1,
+            axes=("x", "y2"),
+            legend=False,
+        )
     )
     if frf.coherence is not None:
         x, coherence = thin(frequency, frf.coherence[pair][lines], MOST_POINTS // 2)
@@ -113,6 +120,17 @@ def _one_frf(
             )
         )
     return traces
+
+
+def _phase(
+    frequency: FloatArray, response: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return frequency and phase [deg], with a gap wherever the phase wraps."""
+    every = max(1, frequency.size // MOST_POINTS)
+    phase = np.degrees(np.angle(response[::every]))
+    wraps = np.flatnonzero(np.abs(np.diff(phase)) > HALF_TURN)
+    phase[wraps] = np.nan
+    return frequency[::every], phase
 
 
 def _stabilisation_plot(chain: ModalChain) -> Plot:
