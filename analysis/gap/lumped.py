@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: MIT
+"""The bench of lumped dynamics: a campaign and its model, as the engine sees them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.bench import Blocks, Stage, values_of
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.catalogue import (
+    CATALOGUE,
+    candidates_of,
+    check_names,
+    site_index,
+)
+from jointbench.analysis.gap.effects import Candidate, Term
+from jointbench.analysis.gap.forward import (
+    Action,
+    Excitation,
+    dynamic_stiffness,
+    invert,
+    motion,
+    prepare_excitation,
+    respond,
+)
+from jointbench.analysis.gap.noise import (
+    FORCE_SHAPES,
+    Noise,
+    channel_sigma,
+    gain_scatter,
+    repeat_groups,
+    whitening_basis,
+)
+from jointbench.analysis.gap.physics import Conditions, LumpedEffect
+
+TAIL = 64
+"""Last samples without weight: a channel's filter acts on a cut record there."""
+PAD = 48
+"""Samples kept on each side of a hit: the anti-alias filter rings that far."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LumpedBench:
+    """Residuals of a lumped model, whitened by what the noise is known to be.
+
+    Attributes:
+        campaign: the measurement.
+        entries: the catalogue of this run.
+        candidates: it, at every site.
+        excitation: forces made ready.
+        gate: first and last sample of the force that count.
+        noise: what is to be expected of a residual.
+        basis: directions of force noise and scatter, (n_records, n_kept, n_rows).
+        shrink: how much of each is taken out, (n_records, n_kept, 1).
+        scales: words to values.
+        blocks: records as groups.
+    """
+
+    campaign: Campaign
+    entries: tuple[LumpedEffect, ...]
+    candidates: tuple[Candidate, ...]
+    excitation: Excitation
+    gate: tuple[int, int]
+    noise: Noise
+    basis: FloatArray
+    shrink: FloatArray
+    scales: dict[str, float]
+    blocks: Blocks
+
+    @property
+    def base_names(self) -> tuple[str, ...]:
+        """Names of the base parameters."""
+        return self.campaign.model.base_names
+
+    @property
+    def base_sd(self) -> FloatArray:
+        """Prior sd of log(parameter / nominal), shape (n_base,)."""
+        return self.campaign.model.spread
+
+    def scale(self, word: str) -> float:
+        """Return the scale of a word [SI]; ``a/b^2`` and products are understood."""
+        if word not in self.scales:
+            top, _, bottom = word.partition("/")
+            base, _, power = bottom.partition("^")
+            below = self.scales[base] ** int(power or 1)
+            self.scales[word] = self.scales[top if top != "1" else "one"] / below
+        return self.scales[word]
+
+    def theta(self, base: FloatArray) -> FloatArray:
+        """Return base parameters [SI] of log(parameter / nominal)."""
+        return np.asarray(self.campaign.model.nominal * np.exp(base))
+
+    def actions(self, terms: Sequence[Term]) -> list[Action]:
+        """Return terms with the hooks of their entries."""
+        entries = {entry.effect.name: entry for entry in self.entries}
+        return [
+            Action(
+                entries[t.candidate.effect.name],
+                t.candidate.site.kind,
+                site_index(self.campaign.model, t.candidate.site),
+                values_of(self, t),
+            )
+            for t in terms
+        ]
+
+    def response(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int = 8
+    ) -> FloatArray:
+        """Predict the channels, shape (n_records, n_channels, n_samples)."""
+        return respond(
+            self.campaign.model,
+            self.theta(base),
+            self.excitation,
+            self.actions(terms),
+            oversampling=oversampling,
+            measured=self.campaign.response,
+        )
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return model minus measurement, whitened, shape (n_rows,)."""
+        r = self.response(base, terms, stage.oversampling)
+        r -= self.campaign.response
+        r /= self.noise.sigma[:, :, None]
+        r[:, :, -TAIL:] = 0.0
+        if stage.window is not None:
+            r *= _window(self, stage.window)
+            return r.ravel()
+        rows = r.reshape(r.shape[0], -1, 1)
+        rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
+        return rows.ravel()
+
+    def refine(self, base: FloatArray, terms: Sequence[Term]) -> "LumpedBench":
+        """Return the bench with its noise estimated at a solution."""
+        model = self.response(base, terms)
+        residual = model - self.campaign.response
+        residual[:, :, -TAIL:] = 0.0
+        sigma = channel_sigma(residual[:, :, :-TAIL], np.abs(model).max(axis=2))
+        noise = replace(self.noise, sigma=sigma)
+        columns = _force_columns(self, base, sigma)
+        campaign = self.campaign
+        groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
+        plain = [whitening_basis(c)[0] for c in columns]
+        scatter = gain_scatter(residual, model, sigma, plain, groups)
+        noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
+        return _with_noise(self, noise, columns, model)
+
+
+def _window(bench: LumpedBench, decay: float) -> FloatArray:
+    n = bench.excitation.growth.size
+    time = (np.arange(n) - bench.gate[0]) / bench.campaign.sample_rate
+    return np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
+
+
+def _force_columns(
+    bench: LumpedBench, base: FloatArray, sigma: FloatArray
+) -> list[FloatArray]:
+    """Responses to the force's own noise, over sigma, one array for each record."""
+    first, last = bench.gate
+    width = last - first
+    if width >= bench.excitation.growth.size or bench.noise.force_sigma <= 0:
+        return [np.zeros((0, sigma.shape[1] * bench.excitation.growth.size))] * len(
+            sigma
+        )
+    grid = np.linspace(-1, 1, width)
+    shapes = np.stack(
+        [np.polynomial.legendre.Legendre.basis(k)(grid) for k in range(FORCE_SHAPES)]
+    )
+    shapes /= np.linalg.norm(shapes, axis=1, keepdims=True)
+    force = np.zeros((FORCE_SHAPES, bench.excitation.growth.size))
+    force[:, first:last] = shapes * bench.noise.force_sigma
+    cases = {}
+    for hit in sorted(set(bench.campaign.hit.tolist())):
+        conditions = Conditions(np.ones(FORCE_SHAPES), np.zeros(FORCE_SHAPES))
+        shaken = prepare_excitation(
+            force, np.full(FORCE_SHAPES, hit), bench.campaign.sample_rate, conditions
+        )
+        y = respond(bench.campaign.model, bench.theta(base), shaken)
+        y[:, :, -TAIL:] = 0.0
+        cases[hit] = y
+    return [
+        (cases[int(h)] / s[None, :, None]).reshape(FORCE_SHAPES, -1)
+        for h, s in zip(bench.campaign.hit, sigma, strict=True)
+    ]
+
+
+def _with_noise(
+    bench: LumpedBench, noise: Noise, columns: list[FloatArray], model: FloatArray
+) -> LumpedBench:
+    """Return the bench with the whitening of `noise`."""
+    parts = []
+    for k, own in enumerate(columns):
+        y = model[k] / noise.sigma[k][:, None]
+        y[:, -TAIL:] = 0.0
+        gain = noise.scatter * y.reshape(1, -1)
+        parts.append(whitening_basis(np.concatenate([own, gain])))
+    kept = max(b.shape[0] for b, _ in parts)
+    rows = model.shape[1] * model.shape[2]
+    basis = np.zeros((len(parts), kept, rows))
+    shrink = np.zeros((len(parts), kept, 1))
+    for k, (b, s) in enumerate(parts):
+        basis[k, : b.shape[0]] = b
+        shrink[k, : b.shape[0], 0] = s
+    return replace(bench, noise=noise, basis=basis, shrink=shrink)
+
+
+def make_bench(
+    campaign: Campaign,
+    *,
+    without: frozenset[str] = frozenset(),
+    entries: tuple[LumpedEffect, ...] = CATALOGUE,
+) -> LumpedBench:
+    """Prepare a campaign for the engine.
+
+    Args:
+        campaign: measurement and model.
+        without: names of effects to leave out of the catalogue.
+        entries: the catalogue.
+
+    Raises:
+        UsageError: `without` holds a name that no entry has.
+    """
+    check_names(without, entries)
+    entries = tuple(e for e in entries if e.effect.name not in without)
+    gate, force_sigma = force_gate(campaign.force)
+    force = np.zeros_like(campaign.force)
+    force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
+    span = max(float(np.ptp(campaign.order)), 1.0)
+    conditions = Conditions(
+        campaign.preload / campaign.preload_reference,
+        (campaign.order - campaign.order.min()) / span,
+    )
+    excitation = prepare_excitation(
+        force, campaign.hit, campaign.sample_rate, conditions
+    )
+    records, channels, samples = campaign.response.shape
+    quiet = max(gate[0], 16)
+    sigma = np.sqrt(np.mean(campaign.response[:, :, :quiet] ** 2, axis=(0, 2)))
+    floor = 1e-6 * np.abs(campaign.response).max()
+    sigma = np.tile(np.maximum(sigma, floor), (records, 1))
+    bench = LumpedBench(
+        campaign=campaign,
+        entries=entries,
+        candidates=candidates_of(entries, campaign.model),
+        excitation=excitation,
+        gate=gate,
+        noise=Noise(sigma, force_sigma, 0.0, scatter_known=False),
+        basis=np.zeros((records, 1, channels * samples)),
+        shrink=np.zeros((records, 1, 1)),
+        scales={},
+        blocks=_blocks(campaign),
+    )
+    return replace(bench, scales=_scales(bench))
+
+
+def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
+    """Return the samples that hold the hits, and the noise outside them [N]."""
+    n = force.shape[1]
+    sigma = float(np.std(force[:, n // 2 :]))
+    loud = np.abs(force) > np.maximum(
+        8 * sigma, 3e-3 * np.abs(force).max(axis=1, keepdims=True)
+    )
+    where = np.flatnonzero(loud.any(axis=0))
+    if where.size == 0 or np.ptp(where) > n // 2:
+        return (0, n), 0.0
+    first = max(int(where[0]) - PAD, 0)
+    last = min(int(where[-1]) + PAD, n)
+    outside = np.concatenate([force[:, :first], force[:, last:]], axis=1)
+    return (first, last), float(np.sqrt(np.mean(outside**2)))
+
+
+def _blocks(campaign: Campaign) -> Blocks:
+    records, channels, samples = campaign.response.shape
+    group = np.repeat(np.arange(records), channels * samples)
+    labels = tuple(
+        {
+            "level": f"{level:g} N",
+            "hit point": f"{campaign.model.bodies[hit].name}",
+            "preload": f"{preload:g} N",
+            "order": f"{order:g}",
+        }
+        for level, hit, preload, order in zip(
+            campaign.level, campaign.hit, campaign.preload, campaign.order, strict=True
+        )
+    )
+    return Blocks(group, labels, records * channels * (samples - TAIL))
+
+
+def _scales(bench: LumpedBench) -> dict[str, float]:
+    """Characteristic sizes at the nominal sheet, from which starts are scaled."""
+    model, excitation = bench.campaign.model, bench.excitation
+    theta = model.nominal
+    joint = next((i for i, x in enumerate(model.links) if x.joint), 0)
+    n, links = len(model.bodies), len(model.links)
+    x = motion(model, theta, excitation, (), oversampling=1)
+    ends = model.links[joint]
+    r = x[ends.second] - (x[ends.first] if ends.first >= 0 else 0.0)
+    size = excitation.growth.size
+    travel = np.fft.irfft(r, 2 * size, axis=1)[:, :size] * excitation.growth
+    speed = np.fft.irfft(r * excitation.s, 2 * size, axis=1)[:, :size]
+    z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, ())
+    peak = np.argmax(np.abs(invert(z)[ends.second, ends.second, 0]))
+    frequency = max(float(excitation.s[peak].imag) / (2 * np.pi), 1.0)
+    stiffness = float(theta[n + joint])
+    return {
+        "one": 1.0,
+        "mass": float(np.mean(theta[:n])),
+        "stiffness": stiffness,
+        "damping": float(theta[n + links + joint]),
+        "travel": float(np.abs(travel).max()),
+        "force": stiffness * float(np.abs(travel).max()),
+        "speed": float(np.abs(speed * excitation.growth).max()),
+        "frequency": frequency,
+        "period": 1.0 / frequency,
+        "sample": 1.0 / bench.campaign.sample_rate,
+        "peak": float(np.abs(bench.campaign.response).max()),
+        "noise": float(bench.noise.sigma.min()),
+    }

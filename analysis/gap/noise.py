@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""Noise of the channels, of the force, and the scatter from hit to hit."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+
+from jointbench.acquisition.arrays import FloatArray, IntArray
+
+HIGH_BAND = (0.30, 0.497)
+"""Band of pure noise, over the sample rate: above any response to a hammer."""
+SCATTER_MAX = 0.01
+SMALLEST_SHARE = 0.03
+FORCE_SHAPES = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Noise:
+    """How much of a residual is to be expected.
+
+    Attributes:
+        sigma: white noise of each record and channel, shape (n_records, n_channels).
+        force_sigma: white noise of the force [N].
+        scatter: relative gain scatter from hit to hit [-].
+        scatter_known: True where repeats bound the scatter.
+    """
+
+    sigma: FloatArray
+    force_sigma: float
+    scatter: float
+    scatter_known: bool
+
+
+def high_band_sigma(residual: FloatArray) -> FloatArray:
+    """Estimate white noise from the top of the spectrum.
+
+    Args:
+        residual: model minus measurement, shape (..., n_samples).
+
+    Returns:
+        Standard deviation, shape (...).
+    """
+    n = residual.shape[-1]
+    taper = np.hanning(n)
+    spectrum = scipy.fft.rfft(residual * taper, axis=-1)
+    low, high = (int(edge * n) for edge in HIGH_BAND)
+    power = np.mean(np.abs(spectrum[..., low:high]) ** 2, axis=-1)
+    return np.asarray(np.sqrt(power / np.sum(taper**2)))
+
+
+def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
+    """Pool the noise over records, letting it grow with the response where it does.
+
+    Args:
+        residual: shape (n_records, n_channels, n_samples).
+        peak: largest response, shape (n_records, n_channels).
+
+    Returns:
+        Standard deviation, shape (n_records, n_channels).
+    """
+    variance = high_band_sigma(residual) ** 2
+    n = residual.shape[-1]
+    relative = np.sqrt(2.0 / ((HIGH_BAND[1] - HIGH_BAND[0]) * n))
+    pooled = np.empty_like(variance)
+    for c in range(variance.shape[1]):
+        v, x = variance[:, c], peak[:, c] ** 2
+        flat = float(np.median(v)) if v.max() > 3 * v.min() else float(v.mean())
+        pooled[:, c] = flat
+        if v.size < 4 or np.ptp(x) <= 0:
+            continue
+        weight = 1 / (relative * v)
+        design = np.stack([np.ones_like(x), x], axis=1) * weight[:, None]
+        (floor, slope), *_ = np.linalg.lstsq(design, v * weight, rcond=None)
+        sd = np.sqrt(np.linalg.pinv(design.T @ design)[1, 1])
+        if slope > 6 * sd and floor > 0:
+            pooled[:, c] = floor + slope * x
+    return np.sqrt(pooled)
+
+
+def repeat_groups(
+    hit: IntArray, level: FloatArray, preload: FloatArray
+) -> list[IntArray]:
+    """Return the records of each condition that was measured more than once."""
+    keys = list(zip(hit.tolist(), level.tolist(), preload.tolist(), strict=True))
+    groups = []
+    for key in sorted(set(keys)):
+        rows = np.array([i for i, k in enumerate(keys) if k == key])
+        if rows.size > 1:
+            groups.append(rows)
+    return groups
+
+
+def gain_scatter(
+    residual: FloatArray,
+    model: FloatArray,
+    sigma: FloatArray,
+    force_basis: list[FloatArray],
+    groups: list[IntArray],
+) -> float:
+    """Estimate the relative gain scatter from repeats of a condition.
+
+    The gain of each record is the regression of its residual on its response; gains
+    of repeats differ by scatter, noise, and nothing else.
+
+    Args:
+        residual: model minus measurement, shape (n_records, n_channels, n_samples).
+        model: response, same shape.
+        sigma: noise, shape (n_records, n_channels).
+        force_basis: of each record, see `whitening_basis`.
+        groups: records that repeat a condition.
+
+    Returns:
+        Standard deviation of the gain [-].
+    """
+    gains, variances = [], []
+    for rows in groups:
+        g, v = zip(
+            *(_gain(residual[i], model[i], sigma[i], force_basis[i]) for i in rows),
+            strict=True,
+        )
+        gains.append(np.array(g) - np.mean(g))
+        variances.append((np.mean(v), rows.size - 1))
+    dof = sum(d for _, d in variances)
+    if dof == 0:
+        return 0.0
+    spread = sum(float(np.sum(g**2)) for g in gains)
+    expected = sum(v * d for v, d in variances)
+    return float(np.clip(np.sqrt(max(0.0, spread - expected) / dof), 0, SCATTER_MAX))
+
+
+def _gain(
+    residual: FloatArray, model: FloatArray, sigma: FloatArray, basis: FloatArray
+) -> tuple[float, float]:
+    r = (residual / sigma[:, None]).ravel()
+    y = (model / sigma[:, None]).ravel()
+    if basis.size:
+        y_seen = y - basis.T @ (basis @ y)
+        r = r - basis.T @ (basis @ r)
+    else:
+        y_seen = y
+    power = float(y_seen @ y_seen)
+    return float(y_seen @ r) / power, 1.0 / power
+
+
+def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return an orthonormal basis and the shrinkage that whitens unit noise plus it.
+
+    With covariance I + B B^T, multiplying the component along each left singular
+    vector of B by 1/sqrt(1 + s^2) makes the residual white.
+
+    Args:
+        columns: B, already over sigma, shape (n_columns, n_rows).
+
+    Returns:
+        Basis, shape (n_kept, n_rows), and 1 - 1/sqrt(1 + s^2), shape (n_kept,).
+    """
+    gram = columns @ columns.T
+    values, vectors = np.linalg.eigh(gram)
+    keep = values > SMALLEST_SHARE**2
+    s = np.sqrt(values[keep])
+    basis = (vectors[:, keep] / s).T @ columns
+    return basis, 1.0 - 1.0 / np.sqrt(1.0 + s**2)
