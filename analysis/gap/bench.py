@@ -71,6 +71,14 @@ class Bench(Protocol):
         """Return the bench's scale of that word [SI]."""
         ...
 
+    def phases(self, candidate: Candidate) -> int:
+        """Return how many free phases an effect fits by itself; 0 for most."""
+        ...
+
+    def refine(self, base: FloatArray, terms: Sequence[Term]) -> "Bench":
+        """Return the bench with its noise estimated at a solution."""
+        ...
+
     def residual(
         self, base: FloatArray, terms: Sequence[Term], stage: Stage
     ) -> FloatArray:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.fft
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import Blocks, Stage, values_of
@@ -30,6 +31,7 @@ from jointbench.analysis.gap.noise import (
     Noise,
     channel_sigma,
     gain_scatter,
+    gains_of,
     repeat_groups,
     whitening_basis,
 )
@@ -37,6 +39,8 @@ from jointbench.analysis.gap.physics import Conditions, LumpedEffect
 
 TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""
+WINDOW_REACH = 5.0
+"""Decay times after which a windowed record is cut."""
 PAD = 48
 """Samples kept on each side of a hit: the anti-alias filter rings that far."""
 
@@ -56,6 +60,7 @@ class LumpedBench:
         shrink: how much of each is taken out, (n_records, n_kept, 1).
         scales: words to values.
         blocks: records as groups.
+        short: the same bench with fewer samples, by length.
     """
 
     campaign: Campaign
@@ -68,6 +73,7 @@ class LumpedBench:
     shrink: FloatArray
     scales: dict[str, float]
     blocks: Blocks
+    short: dict[int, "LumpedBench"]
 
     @property
     def base_names(self) -> tuple[str, ...]:
@@ -122,16 +128,46 @@ class LumpedBench:
         self, base: FloatArray, terms: Sequence[Term], stage: Stage
     ) -> FloatArray:
         """Return model minus measurement, whitened, shape (n_rows,)."""
+        if stage.window is not None:
+            return self._windowed(base, terms, stage)
         r = self.response(base, terms, stage.oversampling)
         r -= self.campaign.response
         r /= self.noise.sigma[:, :, None]
         r[:, :, -TAIL:] = 0.0
-        if stage.window is not None:
-            r *= _window(self, stage.window)
-            return r.ravel()
         rows = r.reshape(r.shape[0], -1, 1)
         rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
         return rows.ravel()
+
+    def _windowed(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return the residual under an exponential window, cut where it has decayed."""
+        decay = stage.window or 1.0
+        reach = self.gate[1] + int(WINDOW_REACH * decay * self.campaign.sample_rate)
+        short = self.shortened(scipy.fft.next_fast_len(reach, real=True))
+        r = short.response(base, terms, stage.oversampling)
+        r -= short.campaign.response
+        r /= self.noise.sigma[:, :, None]
+        r *= _window(short, decay)
+        return r.ravel()
+
+    def shortened(self, length: int) -> "LumpedBench":
+        """Return the bench of the first `length` samples, made once and kept."""
+        if length >= self.campaign.force.shape[1]:
+            return self
+        if length not in self.short:
+            campaign = replace(
+                self.campaign,
+                force=self.campaign.force[:, :length],
+                response=self.campaign.response[:, :, :length],
+            )
+            self.short[length] = replace(
+                self,
+                campaign=campaign,
+                excitation=_excitation(campaign, self.gate),
+                short={},
+            )
+        return self.short[length]
 
     def refine(self, base: FloatArray, terms: Sequence[Term]) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
@@ -141,12 +177,26 @@ class LumpedBench:
         sigma = channel_sigma(residual[:, :, :-TAIL], np.abs(model).max(axis=2))
         noise = replace(self.noise, sigma=sigma)
         columns = _force_columns(self, base, sigma)
+        bare = _with_noise(self, replace(noise, scatter=0.0), columns, model)
+        rows = (len(sigma), -1)
+        gains, variances = gains_of(
+            (residual / sigma[:, :, None]).reshape(rows),
+            (model / sigma[:, :, None]).reshape(rows),
+            bare.basis,
+            bare.shrink,
+        )
         campaign = self.campaign
         groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
-        plain = [whitening_basis(c)[0] for c in columns]
-        scatter = gain_scatter(residual, model, sigma, plain, groups)
+        scatter = gain_scatter(gains, variances, groups)
         noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
         return _with_noise(self, noise, columns, model)
+
+    def phases(self, candidate: Candidate) -> int:
+        """Return how many phases an effect finds for itself (hum), else 0."""
+        if candidate.effect.name != "hum":
+            return 0
+        records, channels, _ = self.campaign.response.shape
+        return records * (channels if candidate.site.name == "all" else 1)
 
 
 def _window(bench: LumpedBench, decay: float) -> FloatArray:
@@ -196,7 +246,8 @@ def _with_noise(
         y = model[k] / noise.sigma[k][:, None]
         y[:, -TAIL:] = 0.0
         gain = noise.scatter * y.reshape(1, -1)
-        parts.append(whitening_basis(np.concatenate([own, gain])))
+        both = np.concatenate([own, gain]) if noise.scatter > 0 else own
+        parts.append(whitening_basis(both))
     kept = max(b.shape[0] for b, _ in parts)
     rows = model.shape[1] * model.shape[2]
     basis = np.zeros((len(parts), kept, rows))
@@ -226,16 +277,7 @@ def make_bench(
     check_names(without, entries)
     entries = tuple(e for e in entries if e.effect.name not in without)
     gate, force_sigma = force_gate(campaign.force)
-    force = np.zeros_like(campaign.force)
-    force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
-    span = max(float(np.ptp(campaign.order)), 1.0)
-    conditions = Conditions(
-        campaign.preload / campaign.preload_reference,
-        (campaign.order - campaign.order.min()) / span,
-    )
-    excitation = prepare_excitation(
-        force, campaign.hit, campaign.sample_rate, conditions
-    )
+    excitation = _excitation(campaign, gate)
     records, channels, samples = campaign.response.shape
     quiet = max(gate[0], 16)
     sigma = np.sqrt(np.mean(campaign.response[:, :, :quiet] ** 2, axis=(0, 2)))
@@ -252,8 +294,20 @@ def make_bench(
         shrink=np.zeros((records, 1, 1)),
         scales={},
         blocks=_blocks(campaign),
+        short={},
     )
     return replace(bench, scales=_scales(bench))
+
+
+def _excitation(campaign: Campaign, gate: tuple[int, int]) -> Excitation:
+    force = np.zeros_like(campaign.force)
+    force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
+    span = max(float(np.ptp(campaign.order)), 1.0)
+    conditions = Conditions(
+        campaign.preload / campaign.preload_reference,
+        (campaign.order - campaign.order.min()) / span,
+    )
+    return prepare_excitation(force, campaign.hit, campaign.sample_rate, conditions)
 
 
 def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:

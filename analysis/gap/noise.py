@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Noise of the channels, of the force, and the scatter from hit to hit."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,7 @@ from jointbench.acquisition.arrays import FloatArray, IntArray
 HIGH_BAND = (0.30, 0.497)
 """Band of pure noise, over the sample rate: above any response to a hammer."""
 SCATTER_MAX = 0.01
+CHI2_975_ONE_SIDED = 3.84
 SMALLEST_SHARE = 0.03
 FORCE_SHAPES = 6
 
@@ -92,55 +94,64 @@ def repeat_groups(
 
 
 def gain_scatter(
-    residual: FloatArray,
-    model: FloatArray,
-    sigma: FloatArray,
-    force_basis: list[FloatArray],
-    groups: list[IntArray],
+    gains: FloatArray, variances: FloatArray, groups: list[IntArray]
 ) -> float:
-    """Estimate the relative gain scatter from repeats of a condition.
+    """Estimate the relative gain scatter from hit to hit.
 
-    The gain of each record is the regression of its residual on its response; gains
-    of repeats differ by scatter, noise, and nothing else.
+    Repeats of a condition differ by scatter and noise alone, but there are few of
+    them; all records together say more, but a missing effect speaks through them
+    too. So the estimate from all records is taken, held between the likeliest value
+    and the upper 97.5 % limit that the repeats allow.
 
     Args:
-        residual: model minus measurement, shape (n_records, n_channels, n_samples).
-        model: response, same shape.
-        sigma: noise, shape (n_records, n_channels).
-        force_basis: of each record, see `whitening_basis`.
+        gains: regression of each residual on its response [-], shape (n_records,).
+        variances: of the gains by noise alone, same shape.
         groups: records that repeat a condition.
 
     Returns:
         Standard deviation of the gain [-].
     """
-    gains, variances = [], []
-    for rows in groups:
-        g, v = zip(
-            *(_gain(residual[i], model[i], sigma[i], force_basis[i]) for i in rows),
-            strict=True,
-        )
-        gains.append(np.array(g) - np.mean(g))
-        variances.append((np.mean(v), rows.size - 1))
-    dof = sum(d for _, d in variances)
-    if dof == 0:
-        return 0.0
-    spread = sum(float(np.sum(g**2)) for g in gains)
-    expected = sum(v * d for v, d in variances)
-    return float(np.clip(np.sqrt(max(0.0, spread - expected) / dof), 0, SCATTER_MAX))
+    grid = np.concatenate([[0.0], np.geomspace(1e-6, SCATTER_MAX, 120)]) ** 2
+    everywhere = _deviance(gains, variances, grid)
+    wide = float(grid[int(np.argmin(everywhere))])
+    pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
+    if not pairs:
+        return float(np.sqrt(wide))
+    first, second = (np.array(x) for x in zip(*pairs, strict=True))
+    steps = (gains[first] - gains[second]) / np.sqrt(2.0)
+    spread = (variances[first] + variances[second]) / 2
+    own = _deviance(steps, spread, grid)
+    low = float(grid[int(np.argmin(own))])
+    allowed = grid[own < own.min() + CHI2_975_ONE_SIDED]
+    return float(np.sqrt(np.clip(wide, low, allowed.max())))
 
 
-def _gain(
-    residual: FloatArray, model: FloatArray, sigma: FloatArray, basis: FloatArray
-) -> tuple[float, float]:
-    r = (residual / sigma[:, None]).ravel()
-    y = (model / sigma[:, None]).ravel()
-    if basis.size:
-        y_seen = y - basis.T @ (basis @ y)
-        r = r - basis.T @ (basis @ r)
-    else:
-        y_seen = y
-    power = float(y_seen @ y_seen)
-    return float(y_seen @ r) / power, 1.0 / power
+def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:
+    """Return -2 log likelihood of x ~ N(0, v + grid), shape of grid."""
+    total = v[None, :] + grid[:, None]
+    return np.asarray(np.sum(x**2 / total + np.log(total), axis=1))
+
+
+def gains_of(
+    residual: FloatArray, model: FloatArray, basis: FloatArray, shrink: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Regress residuals on responses, both over sigma, with force noise whitened.
+
+    Args:
+        residual: shape (n_records, n_rows).
+        model: same shape.
+        basis: of the force noise, shape (n_records, n_kept, n_rows).
+        shrink: of it, shape (n_records, n_kept, 1).
+
+    Returns:
+        Gains [-] and their variances, shape (n_records,) each.
+    """
+    r, y = residual[:, :, None], model[:, :, None]
+    turned = basis.transpose(0, 2, 1)
+    r = (r - turned @ (shrink * (basis @ r)))[:, :, 0]
+    y = (y - turned @ (shrink * (basis @ y)))[:, :, 0]
+    power = np.sum(y * y, axis=1)
+    return np.sum(y * r, axis=1) / power, 1.0 / power
 
 
 def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""The race of the candidates: joint refits, coarse to fine, the hopeless dropped."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.bench import FINE, FULL, Bench, Stage
+from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.fit import Fit, Problem, fit_stages, make_problem, minimise
+from jointbench.analysis.gap.screening import Direction, Screening
+
+Progress = Callable[[str], None]
+
+COST_PER_PARAMETER = 10.0
+"""Chi2 that one more parameter must earn: far above chance, far below any name."""
+COST_PER_PHASE = 2.0
+COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
+    (Stage(0.005, 2), 5),
+    (Stage(0.016, 2), 6),
+)
+SURVIVORS = (12, 8)
+FINALISTS = 5
+EVERYDAY = 1.3
+"""Chi2 over dof of the base above which the effect is no small perturbation."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Runner:
+    """One start of one candidate set, as far as it has come."""
+
+    problem: Problem
+    x: FloatArray
+    cost: float
+    fit: Fit | None = None
+
+    @property
+    def label(self) -> str:
+        """The candidates in words."""
+        return " + ".join(c.label for c in self.problem.candidates)
+
+
+def score(bench: Bench, fit: Fit) -> float:
+    """Return the cost of a fit with a charge for every parameter."""
+    charge = 0.0
+    for candidate in fit.candidates:
+        charge += COST_PER_PARAMETER * len(candidate.effect.parameters)
+        charge += COST_PER_PHASE * bench.phases(candidate)
+    return fit.cost + charge
+
+
+def race(
+    bench: Bench,
+    fit: Fit,
+    screening: Screening,
+    candidates: Sequence[Candidate],
+    progress: Progress,
+) -> list[Fit]:
+    """Fit base plus one more effect for every candidate worth it.
+
+    Args:
+        bench: measurement and model.
+        fit: what the candidates are added to.
+        screening: directed tests of that fit.
+        candidates: what to try.
+        progress: told what is being tried.
+
+    Returns:
+        One fit for each candidate that came far enough, best score first.
+    """
+    everyday = fit.chi2 > EVERYDAY * bench.blocks.dof
+    runners = _starters(bench, fit, screening, candidates, everyday=everyday)
+    if everyday:
+        for (stage, iterations), keep in zip(COARSE_ROUNDS, SURVIVORS, strict=True):
+            runners = [_run(r, stage, iterations, progress) for r in runners]
+            runners = _keep(runners, keep)
+    runners = [_run(r, Stage(oversampling=2), 8, progress) for r in runners]
+    runners = _keep(_best_of_each(runners), FINALISTS)
+    runners = [_run(r, FULL, 10, progress) for r in runners]
+    fits = [finish(bench, r.problem, r.x, progress) for r in _best_of_each(runners)]
+    return sorted(fits, key=lambda f: score(bench, f))
+
+
+def finish(
+    bench: Bench, problem: Problem, x: FloatArray, progress: Progress
+) -> Fit:
+    """Fit to the end at the finest step."""
+    progress(" + ".join(c.label for c in problem.candidates) + " (fine)")
+    stage = FINE if any(_is_stepped(c) for c in problem.candidates) else FULL
+    first = minimise(problem, x, FULL, iterations=8)
+    return minimise(problem, first.x, stage, iterations=5) if stage is FINE else first
+
+
+def _is_stepped(candidate: Candidate) -> bool:
+    return candidate.site.kind == "link" and candidate.effect.family not in {
+        "preload"
+    } and candidate.effect.name != "maxwell"
+
+
+def _starters(
+    bench: Bench,
+    fit: Fit,
+    screening: Screening,
+    candidates: Sequence[Candidate],
+    *,
+    everyday: bool,
+) -> list[Runner]:
+    runners: list[Runner] = []
+    best = max(screening.largest, 1e-9)
+    for candidate in candidates:
+        directions = screening.best(candidate, 2 if everyday else 1)
+        problem = make_problem(bench, (*fit.candidates, candidate))
+        for d in directions:
+            if not everyday and d.drop < 0.15 * best and not candidate.effect.by_prior:
+                continue
+            runners.append(_runner(problem, np.concatenate([fit.x, d.coordinates])))
+        if candidate.effect.refit_nominal:
+            runners += _from_nominal(problem, fit, candidate, directions)
+    return runners
+
+
+def _runner(problem: Problem, x: FloatArray) -> Runner:
+    return Runner(problem, np.clip(x, problem.lower, problem.upper), np.inf)
+
+
+def _from_nominal(
+    problem: Problem, fit: Fit, candidate: Candidate, directions: Sequence[Direction]
+) -> list[Runner]:
+    """Start from the nominal sheet: the base may have swallowed the effect whole."""
+    start = np.zeros_like(fit.x)
+    start[fit.n_base :] = fit.x[fit.n_base :]
+    tail = directions[0].coordinates if directions else np.zeros(1)
+    if candidate.effect.by_prior:
+        first = candidate.effect.parameters[0]
+        tail = np.array([max(first.lower, 0.0) + 1e-3])
+    return [_runner(problem, np.concatenate([start, tail]))]
+
+
+def _run(runner: Runner, stage: Stage, iterations: int, progress: Progress) -> Runner:
+    progress(runner.label)
+    fit = minimise(
+        runner.problem, runner.x, stage, iterations=iterations, linear_base=True
+    )
+    return Runner(runner.problem, fit.x, fit.cost, fit)
+
+
+def _best_of_each(runners: Sequence[Runner]) -> list[Runner]:
+    best: dict[str, Runner] = {}
+    for r in sorted(runners, key=lambda r: r.cost):
+        best.setdefault(r.label, r)
+    return list(best.values())
+
+
+def _keep(runners: Sequence[Runner], count: int) -> list[Runner]:
+    return sorted(runners, key=lambda r: r.cost)[:count]
+
+
+__all__ = ["finish", "fit_stages", "race", "score"]
