@@ -9,7 +9,7 @@ from jointbench.analysis.gap.effects import Effect, Parameter, Reported, Transfo
 from jointbench.analysis.gap.physics import Law, LumpedEffect
 
 LOG = Transform.LOG
-IWAN_SLIDERS = 16
+IWAN_SLIDERS = 12
 SHARPNESS = (14.0, 0.6)
 """Median and log-sd of the sharpness of real sliders: none is a perfect corner."""
 

@@ -179,6 +179,7 @@ def minimise(
     iterations: int = 20,
     give_up: float | None = None,
     linear_base: bool = False,
+    jacobian_stage: Stage | None = None,
 ) -> Fit:
     """Descend from one start.
 
@@ -189,19 +190,27 @@ def minimise(
         iterations: at most.
         give_up: stop when three steps have not come below this cost.
         linear_base: see `jacobian_of`.
+        jacobian_stage: a cheaper stage for the slopes, or None for the same.
     """
+
+    def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
+        if jacobian_stage is None:
+            return jacobian_of(problem, x, r, stage, linear_base=linear_base)
+        coarse = problem.residual(x, jacobian_stage)
+        return jacobian_of(problem, x, coarse, jacobian_stage)
+
     x = np.clip(start, problem.lower, problem.upper)
     r = problem.residual(x, stage)
     cost = float(r @ r) + problem.penalty(x)
     damping = 1e-3
-    j = jacobian_of(problem, x, r, stage, linear_base=linear_base)
+    j = slopes(x, r)
     for k in range(iterations):
         moved, damping = _step(problem, x, r, j, cost, damping, stage)
         if moved is None:
             break
         drop = cost - moved[2]
         x, r, cost = moved
-        j = jacobian_of(problem, x, r, stage, linear_base=linear_base)
+        j = slopes(x, r)
         excess = max(cost - problem_dof(problem), 0.0)
         if drop < EXCESS_TOLERANCE * excess + ABSOLUTE_TOLERANCE:
             break

@@ -19,7 +19,7 @@ import numpy as np
 import scipy.fft
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.analysis.gap.march import march
+from jointbench.analysis.gap.march import COULOMB, QUADRATIC_DAMPING, march
 from jointbench.analysis.gap.model import LumpedModel, Output
 from jointbench.analysis.gap.physics import (
     Conditions,
@@ -30,6 +30,8 @@ from jointbench.analysis.gap.physics import (
 
 DAMPING_EXPONENT = 18.0
 PASS_BAND = 0.42
+MOVING = (COULOMB, QUADRATIC_DAMPING)
+"""Laws that look at the velocity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -277,12 +279,14 @@ def _link_force(
     growth = np.exp(excitation.damping * dt * np.arange(n * oversampling))
     gain = growth * oversampling
     r = scipy.fft.irfft(x, long, axis=1)[:, : n * oversampling] * gain
-    v = scipy.fft.irfft(x * excitation.s, long, axis=1)[:, : n * oversampling] * gain
+    r = np.ascontiguousarray(r.T)
+    v = r
+    if any(law.kind in MOVING for law in laws):
+        v = scipy.fft.irfft(x * excitation.s, long, axis=1)[:, : n * oversampling]
+        v = np.ascontiguousarray((v * gain).T)
     poles, residues = link_modes(model, theta, excitation, link)
-    force = np.zeros_like(r)
-    for sweep in range(len(laws) if len(laws) > 1 else 1):
-        force = _laws(laws, r, v, poles, residues, dt, force, sweep)
-    spectrum = scipy.fft.rfft(force / growth, long, axis=1)[:, : n + 1]
+    force = _laws(laws, r, v, poles, residues, dt)
+    spectrum = scipy.fft.rfft(force.T / growth, long, axis=1)[:, : n + 1]
     return spectrum * (excitation.taper / oversampling)
 
 
@@ -293,8 +297,6 @@ def _laws(
     poles: ComplexArray,
     residues: ComplexArray,
     dt: float,
-    before: FloatArray,
-    sweep: int,
 ) -> FloatArray:
     """Force of all laws at a link; two of them are iterated against each other."""
     parts = [np.zeros_like(r) for _ in laws]
@@ -335,8 +337,8 @@ def link_modes(
     twice = np.where(poles.imag > 0, 2.0, 1.0)
     records = excitation.hit.size
     return (
-        np.tile(poles[keep], (records, 1)),
-        np.tile((residues * twice)[keep], (records, 1)),
+        np.tile(poles[keep], (records, 1)).T.copy(),
+        np.tile((residues * twice)[keep], (records, 1)).T.copy(),
     )
 
 

@@ -113,9 +113,17 @@ def add_second(
 ) -> list[Fit]:
     """Try the best seconds on the best firsts."""
     found: list[Fit] = []
+    tried: set[frozenset[str]] = set()
     for first in fits[:FIRSTS]:
         screening = screen(bench, first, _others(bench, first))
-        chosen = _seconds(bench, first, screening)
+        chosen = [
+            c
+            for c in _seconds(bench, first, screening)
+            if frozenset((*(x.label for x in first.candidates), c.label)) not in tried
+        ]
+        tried |= {
+            frozenset((*(x.label for x in first.candidates), c.label)) for c in chosen
+        }
         found += race(bench, first, screening, chosen, progress)
     return found
 

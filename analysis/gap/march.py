@@ -22,6 +22,8 @@ SLIDERS = 2
 COULOMB = 3
 QUADRATIC_DAMPING = 4
 TABLE_SIZE = 4096
+IDENTITY = 1e-7
+"""Departure of a slider from elasticity that is passed over."""
 
 
 @njit(cache=True)
@@ -45,20 +47,24 @@ def slide(state: float, step: float, tables: FloatArray, tops: FloatArray) -> fl
         step: change of displacement over the slip displacement [-].
         tables: u of loading coordinate, its inverse, unloading coordinate of u, its
             inverse; shape (4, n).
-        tops: upper ends of the four tables, shape (4,).
+        tops: upper ends of the four tables; the coordinate below which all four are
+            the identity; 1 where unloading is elastic, else 0; shape (6,).
 
     Returns:
         The new state.
     """
     side = 1.0 if state > 0.0 or (state == 0.0 and step >= 0.0) else -1.0
     forward = side * step
+    size = abs(state)
     if forward >= 0.0:
-        return side * min(abs(state) + forward, tops[0])
-    u = _lookup(tables[0], tops[0], abs(state))
-    left = _lookup(tables[2], tops[2], u) + forward
-    if left < 0.0:
+        return side * min(size + forward, tops[0])
+    if size < tops[4]:
+        return state + step
+    u = _lookup(tables[0], tops[0], size)
+    left = (u if tops[5] > 0.0 else _lookup(tables[2], tops[2], u)) + forward
+    if left < tops[4]:
         return side * left
-    u = _lookup(tables[3], tops[3], left)
+    u = left if tops[5] > 0.0 else _lookup(tables[3], tops[3], left)
     return side * _lookup(tables[1], tops[1], u)
 
 
@@ -84,40 +90,54 @@ def _rub(limit: float, width: float, v: float, slope: float, guess: float) -> fl
     return force
 
 
-@njit(cache=True)
-def _force(
+@njit(cache=True, fastmath=True)
+def _forces(
     law: int,
     p: FloatArray,
-    r: float,
-    v: float,
-    slope: float,
-    guess: float,
+    r: FloatArray,
+    v: FloatArray,
+    slope: FloatArray,
+    guess: FloatArray,
+    before: FloatArray,
     states: FloatArray,
-    trial: FloatArray,
-    step: float,
     slips: FloatArray,
     weights: FloatArray,
     tables: FloatArray,
     tops: FloatArray,
-) -> float:
-    """Force of one law at displacement r and velocity v; sliders write `trial`."""
+    force: FloatArray,
+) -> None:
+    """Write the force of one law in every record; sliders move their states."""
+    n = r.size
     if law == POLYNOMIAL:
-        return float(p[0] * r * r + p[1] * r * r * r)
-    if law == ONE_SIDED:
-        return float(p[0] * (r - p[1])) if r > p[1] else 0.0
-    if law == QUADRATIC_DAMPING:
-        return float(p[0] * v * abs(v))
-    if law == COULOMB:
-        return _rub(p[0], p[1], v, slope, guess)
-    total = -p[0] * r
-    for i in range(slips.size):
-        trial[i] = slide(states[i], step / slips[i], tables, tops)
-        u = _lookup(tables[0], tops[0], abs(trial[i]))
-        total += weights[i] * slips[i] * (u if trial[i] > 0.0 else -u)
-    return float(total)
+        for k in range(n):
+            force[k] = r[k] * r[k] * (p[0] + p[1] * r[k])
+    elif law == ONE_SIDED:
+        for k in range(n):
+            force[k] = p[0] * max(r[k] - p[1], 0.0)
+    elif law == QUADRATIC_DAMPING:
+        for k in range(n):
+            force[k] = p[0] * v[k] * abs(v[k])
+    elif law == COULOMB:
+        for k in range(n):
+            force[k] = _rub(p[0], p[1], v[k], slope[k], guess[k])
+    else:
+        for k in range(n):
+            force[k] = -p[0] * r[k]
+        for i in range(slips.size):
+            inverse = 1.0 / slips[i]
+            limit = weights[i] * slips[i]
+            for k in range(n):
+                state = slide(
+                    states[i, k], (r[k] - before[k]) * inverse, tables, tops
+                )
+                states[i, k] = state
+                u = abs(state)
+                if u > tops[4]:
+                    u = _lookup(tables[0], tops[0], u)
+                force[k] += limit * (u if state > 0.0 else -u)
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=True)
 def march(
     displacement: FloatArray,
     velocity: FloatArray,
@@ -135,9 +155,9 @@ def march(
     """Return the force of a law along the coupled motion.
 
     Args:
-        displacement: linear motion across the link [m], shape (n_records, n_steps).
+        displacement: linear motion across the link [m], shape (n_steps, n_records).
         velocity: its rate [m/s], same shape.
-        poles: of the link's compliance [rad/s], shape (n_records, n_modes), one of
+        poles: of the link's compliance [rad/s], shape (n_modes, n_records), one of
             each conjugate pair.
         residues: of it, doubled for a pair [m/N rad/s], same shape.
         dt: step [s].
@@ -150,47 +170,64 @@ def march(
         extra: force of other laws, known beforehand [N], shape as `displacement`.
 
     Returns:
-        Force of this law [N], shape (n_records, n_steps).
+        Force of this law [N], shape (n_steps, n_records).
     """
-    n_records, n_steps = displacement.shape
-    n_modes = poles.shape[1]
-    force = np.zeros((n_records, n_steps))
-    states = np.zeros(slips.size)
-    trial = np.zeros(slips.size)
-    e = np.zeros(n_modes, dtype=np.complex128)
-    growth = np.zeros(n_modes, dtype=np.complex128)
-    start = np.zeros(n_modes, dtype=np.complex128)
-    end = np.zeros(n_modes, dtype=np.complex128)
-    for k in range(n_records):
-        slope = 0.0
+    n_steps, n_records = displacement.shape
+    n_modes = poles.shape[0]
+    out = np.zeros((n_steps, n_records))
+    states = np.zeros((slips.size, n_records))
+    growth = np.exp(poles * dt)
+    z = poles * dt
+    end = dt * (growth - 1.0 - z) / (z * z)
+    start = dt * (growth - 1.0) / z - end
+    # Each mode is scaled by its residue, so that its real part is its displacement.
+    c0, c1 = residues * start, residues * end
+    gr, gi = growth.real.copy(), growth.imag.copy()
+    ar, ai = c0.real.copy(), c0.imag.copy()
+    br, bi = c1.real.copy(), c1.imag.copy()
+    pr, pi = poles.real.copy(), poles.imag.copy()
+    slope = np.sum((c1 * poles).real, axis=0)
+    er, ei = np.zeros((n_modes, n_records)), np.zeros((n_modes, n_records))
+    old, older = np.zeros(n_records), np.zeros(n_records)
+    guess, before = np.zeros(n_records), np.zeros(n_records)
+    r, v, force = np.zeros(n_records), np.zeros(n_records), np.zeros(n_records)
+    moving = law == COULOMB or law == QUADRATIC_DAMPING
+    for i in range(n_steps):
+        for k in range(n_records):
+            guess[k] = 2.0 * old[k] - older[k]
+            before[k] = r[k]
+            r[k] = displacement[i, k]
         for m in range(n_modes):
-            z = poles[k, m] * dt
-            growth[m] = np.exp(z)
-            end[m] = dt * (growth[m] - 1.0 - z) / (z * z)
-            start[m] = dt * (growth[m] - 1.0) / z - end[m]
-            e[m] = 0.0
-            slope += (residues[k, m] * poles[k, m] * end[m]).real
-        states[:] = 0.0
-        old, older, r_old = 0.0, 0.0, 0.0
-        for i in range(n_steps):
-            guess = 2.0 * old - older
-            r, v = displacement[k, i], velocity[k, i]
+            for k in range(n_records):
+                x, y = er[m, k], ei[m, k]
+                x, y = (
+                    gr[m, k] * x - gi[m, k] * y - ar[m, k] * old[k]
+                    - br[m, k] * guess[k],
+                    gr[m, k] * y + gi[m, k] * x - ai[m, k] * old[k]
+                    - bi[m, k] * guess[k],
+                )
+                er[m, k], ei[m, k] = x, y
+                r[k] += x
+        if moving:
+            for k in range(n_records):
+                v[k] = velocity[i, k]
             for m in range(n_modes):
-                e[m] = growth[m] * e[m] - start[m] * old - end[m] * guess
-                r += (residues[k, m] * e[m]).real
-                v += (residues[k, m] * poles[k, m] * e[m]).real
-            new = _force(
-                law, p, r, v, slope, guess, states, trial,
-                r - r_old, slips, weights, tables, tops,
-            )
-            force[k, i] = new
-            total = new + extra[k, i]
-            for m in range(n_modes):
-                e[m] -= end[m] * (total - guess)
-            for j in range(slips.size):
-                states[j] = trial[j]
-            older, old, r_old = old, total, r
-    return force
+                for k in range(n_records):
+                    v[k] += pr[m, k] * er[m, k] - pi[m, k] * ei[m, k]
+        _forces(
+            law, p, r, v, slope, guess, before, states, slips, weights, tables,
+            tops, force,
+        )
+        for k in range(n_records):
+            out[i, k] = force[k]
+            older[k] = old[k]
+            old[k] = force[k] + extra[i, k]
+        for m in range(n_modes):
+            for k in range(n_records):
+                change = old[k] - guess[k]
+                er[m, k] -= br[m, k] * change
+                ei[m, k] -= bi[m, k] * change
+    return out
 
 
 def slider_tables(
@@ -207,7 +244,7 @@ def slider_tables(
         sharpness: n [-].
 
     Returns:
-        Tables of shape (4, TABLE_SIZE) and their upper ends, shape (4,).
+        Tables, shape (4, TABLE_SIZE), and what `slide` wants with them, shape (6,).
 
     Source:
         Wen 1976, J. Eng. Mech. Div. 102, eq. (2), with |u| <= 1 normalised.
@@ -219,7 +256,10 @@ def slider_tables(
     u = limit * stretch / stretch[-1] * (1.0 - 1e-6)
     load = _cumulative(u, 1.0 / (1.0 - loading * u**sharpness))
     unload = _cumulative(u, 1.0 / np.maximum(1.0 + unloading * u**sharpness, 1e-3))
-    tops = np.array([load[-1], u[-1], u[-1], unload[-1]])
+    bend = max(abs(loading), abs(unloading), 1e-12)
+    free = (IDENTITY * (sharpness + 1.0) / bend) ** (1.0 / sharpness)
+    elastic = float(unloading == 0.0)
+    tops = np.array([load[-1], u[-1], u[-1], unload[-1], min(free, 0.9), elastic])
     grid = np.linspace(0.0, 1.0, TABLE_SIZE)
     tables = np.stack(
         [
@@ -242,5 +282,5 @@ NO_SLIDERS: tuple[FloatArray, FloatArray, FloatArray, FloatArray] = (
     np.zeros(0),
     np.zeros(0),
     np.zeros((4, 2)),
-    np.ones(4),
+    np.ones(6),
 )

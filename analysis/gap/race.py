@@ -23,6 +23,8 @@ COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
 )
 SURVIVORS = (12, 8)
 FINALISTS = 5
+HOPELESS = 6.0
+"""Cost over the best's above which a finalist is not fitted to the end."""
 EVERYDAY = 1.3
 """Chi2 over dof of the base above which the effect is no small perturbation."""
 
@@ -38,8 +40,8 @@ class Runner:
 
     @property
     def label(self) -> str:
-        """The candidates in words."""
-        return " + ".join(c.label for c in self.problem.candidates)
+        """The candidates in words, in an order of their own."""
+        return " + ".join(sorted(c.label for c in self.problem.candidates))
 
 
 def score(bench: Bench, fit: Fit) -> float:
@@ -78,8 +80,15 @@ def race(
             runners = _keep(runners, keep)
     runners = [_run(r, Stage(oversampling=2), 8, progress) for r in runners]
     runners = _keep(_best_of_each(runners), FINALISTS)
-    runners = [_run(r, FULL, 10, progress) for r in runners]
-    fits = [finish(bench, r.problem, r.x, progress) for r in _best_of_each(runners)]
+    runners = _keep([_run(r, FULL, 10, progress) for r in runners], FINALISTS)
+    limit = np.inf
+    fits = []
+    for r in runners:
+        if r.fit is None or r.cost > limit:
+            fits += [] if r.fit is None else [r.fit]
+            continue
+        fits.append(finish(bench, r.problem, r.x, progress))
+        limit = min(limit, HOPELESS * fits[-1].cost)
     return sorted(fits, key=lambda f: score(bench, f))
 
 
@@ -88,9 +97,9 @@ def finish(
 ) -> Fit:
     """Fit to the end at the finest step."""
     progress(" + ".join(c.label for c in problem.candidates) + " (fine)")
-    stage = FINE if any(_is_stepped(c) for c in problem.candidates) else FULL
-    first = minimise(problem, x, FULL, iterations=8)
-    return minimise(problem, first.x, stage, iterations=5) if stage is FINE else first
+    if any(_is_stepped(c) for c in problem.candidates):
+        return minimise(problem, x, FINE, iterations=6, jacobian_stage=FULL)
+    return minimise(problem, x, FULL, iterations=8)
 
 
 def _is_stepped(candidate: Candidate) -> bool:
