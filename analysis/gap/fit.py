@@ -214,7 +214,7 @@ def minimise(
         excess = max(cost - problem_dof(problem), 0.0)
         if drop < EXCESS_TOLERANCE * excess + ABSOLUTE_TOLERANCE:
             break
-        if give_up is not None and k >= 3 and cost > give_up and drop < 0.1 * cost:
+        if give_up is not None and k >= 1 and cost > give_up and drop < 0.5 * cost:
             break
     return Fit(
         x, problem.n_base, problem.candidates, r, j, cost, problem.prior, problem.centre

@@ -16,6 +16,8 @@ from jointbench.analysis.gap.screening import Screening, screen
 MAX_EFFECTS = 2
 FIRSTS = 3
 SECONDS = 4
+CLOSE = 1000.0
+"""Score behind the winner up to which a rival is fitted again with the new noise."""
 MIN_GAIN = 35.0
 """Chi2 that a further effect must take, beyond its charge."""
 
@@ -87,7 +89,7 @@ def judge(
         return bench, [], gate(bench, base, base, None), None
     best = fits[0]
     refined = bench.refine(best.base, best.terms)
-    close = score(bench, best) + 0.1 * abs(best.cost) + 1000.0
+    close = score(bench, best) + CLOSE
     refit = [
         finish(refined, make_problem(refined, f.candidates), f.x, progress)
         if k == 0 or score(bench, f) < close

@@ -17,6 +17,7 @@ from jointbench.analysis.gap.catalogue import (
     site_index,
 )
 from jointbench.analysis.gap.effects import Candidate, Term
+from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.forward import (
     Action,
     Excitation,
@@ -36,6 +37,8 @@ from jointbench.analysis.gap.noise import (
     whitening_basis,
 )
 from jointbench.analysis.gap.physics import Conditions, LumpedEffect
+from jointbench.analysis.gap.records import View
+from jointbench.analysis.gap.views import slice_views
 
 TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""
@@ -190,6 +193,17 @@ class LumpedBench:
         scatter = gain_scatter(gains, variances, groups)
         noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
         return _with_noise(self, noise, columns, model)
+
+    def views(self, fit: Fit) -> tuple[View, ...]:
+        """Return where the misfit of a fit sits."""
+        records, channels, samples = self.campaign.response.shape
+        residual = fit.residual.reshape(records, channels, samples)
+        return slice_views(
+            residual[:, :, :-TAIL],
+            self.blocks,
+            [c.name for c in self.campaign.model.channels],
+            self.campaign.sample_rate,
+        )
 
     def phases(self, candidate: Candidate) -> int:
         """Return how many phases an effect finds for itself (hum), else 0."""

@@ -16,6 +16,10 @@ RIVAL_WITHIN = 15.0
 AMPLITUDE_SD = 4.0
 PULL_LIMIT = 4.0
 GLOBAL_SD = 4.0
+WIDENED = 1.3
+"""Room over the linearised null quantile, for the shapes between the grid's points."""
+FRICTION_ERROR = 3e-5
+"""The same for sliders, whose distribution is never that of the model."""
 MODEL_ERROR = 3e-6
 """Share of the base's excess chi2 that a right model may leave: kinks between steps,
 the anti-alias filter, sliders of another make."""
@@ -41,7 +45,7 @@ class Gate:
 
 
 def gate(
-    bench: Bench, fit: Fit, base: Fit, left: Screening | None, tolerance: float = 1.0
+    bench: Bench, fit: Fit, base: Fit, left: Screening | None
 ) -> Gate:
     """Judge a fit.
 
@@ -50,14 +54,17 @@ def gate(
         fit: of that bench.
         base: fit without effects, of the bench as it was.
         left: directed tests of the fit; None to pass them over.
-        tolerance: widens what model error allows.
     """
+    friction = any(c.effect.family == "friction" for c in fit.candidates)
+    share = FRICTION_ERROR if friction else MODEL_ERROR
     dof = bench.blocks.dof
     excess = fit.chi2 / dof - 1.0
     base_excess = max(base.chi2 / dof - 1.0, 0.0)
-    allowed = GLOBAL_SD * noise_sd(bench) + tolerance * MODEL_ERROR * base_excess
+    allowed = GLOBAL_SD * noise_sd(bench) + share * base_excess
     remaining = left.largest if left is not None else 0.0
-    limit = left.threshold * 1.3 + tolerance * MODEL_ERROR * base_excess * dof if left else 0.0
+    limit = 0.0
+    if left is not None:
+        limit = WIDENED * left.threshold + share * base_excess * dof
     reason = ""
     if excess > allowed:
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"

@@ -9,7 +9,13 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import FINE, FULL, Bench, Stage
 from jointbench.analysis.gap.effects import Candidate
-from jointbench.analysis.gap.fit import Fit, Problem, fit_stages, make_problem, minimise
+from jointbench.analysis.gap.fit import (
+    BASE_STAGES,
+    Fit,
+    Problem,
+    make_problem,
+    minimise,
+)
 from jointbench.analysis.gap.screening import Direction, Screening
 
 Progress = Callable[[str], None]
@@ -21,6 +27,7 @@ COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
     (Stage(0.005, 2), 5),
     (Stage(0.016, 2), 6),
 )
+MIDDLE = Stage(oversampling=2)
 SURVIVORS = (12, 8)
 FINALISTS = 5
 HOPELESS = 6.0
@@ -73,14 +80,19 @@ def race(
         One fit for each candidate that came far enough, best score first.
     """
     everyday = fit.chi2 > EVERYDAY * bench.blocks.dof
-    runners = _starters(bench, fit, screening, candidates, everyday=everyday)
+    runners = _starters(bench, fit, screening, candidates, progress, everyday=everyday)
     if everyday:
         for (stage, iterations), keep in zip(COARSE_ROUNDS, SURVIVORS, strict=True):
             runners = [_run(r, stage, iterations, progress) for r in runners]
             runners = _keep(runners, keep)
-    runners = [_run(r, Stage(oversampling=2), 8, progress) for r in runners]
-    runners = _keep(_best_of_each(runners), FINALISTS)
-    runners = _keep([_run(r, FULL, 10, progress) for r in runners], FINALISTS)
+    runners = _best_of_each(runners)
+    limit, done = np.inf, []
+    for r in runners:
+        progress(r.label)
+        middle = minimise(r.problem, r.x, MIDDLE, iterations=8, give_up=limit)
+        done.append(Runner(r.problem, middle.x, middle.cost, middle))
+        limit = min(limit, HOPELESS * middle.cost)
+    runners = _keep(done, FINALISTS)
     limit = np.inf
     fits = []
     for r in runners:
@@ -97,15 +109,12 @@ def finish(
 ) -> Fit:
     """Fit to the end at the finest step."""
     progress(" + ".join(c.label for c in problem.candidates) + " (fine)")
-    if any(_is_stepped(c) for c in problem.candidates):
+    families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}
+    if "friction" in families:
+        return minimise(problem, x, FULL, iterations=6, jacobian_stage=MIDDLE)
+    if families & {"stiffness", "contact", "damping"}:
         return minimise(problem, x, FINE, iterations=6, jacobian_stage=FULL)
     return minimise(problem, x, FULL, iterations=8)
-
-
-def _is_stepped(candidate: Candidate) -> bool:
-    return candidate.site.kind == "link" and candidate.effect.family not in {
-        "preload"
-    } and candidate.effect.name != "maxwell"
 
 
 def _starters(
@@ -113,6 +122,7 @@ def _starters(
     fit: Fit,
     screening: Screening,
     candidates: Sequence[Candidate],
+    progress: Progress,
     *,
     everyday: bool,
 ) -> list[Runner]:
@@ -126,7 +136,8 @@ def _starters(
                 continue
             runners.append(_runner(problem, np.concatenate([fit.x, d.coordinates])))
         if candidate.effect.refit_nominal:
-            runners += _from_nominal(problem, fit, candidate, directions)
+            progress(f"{candidate.label} from the sheet")
+            runners.append(_from_nominal(problem, fit, candidate, directions))
     return runners
 
 
@@ -136,7 +147,7 @@ def _runner(problem: Problem, x: FloatArray) -> Runner:
 
 def _from_nominal(
     problem: Problem, fit: Fit, candidate: Candidate, directions: Sequence[Direction]
-) -> list[Runner]:
+) -> Runner:
     """Start from the nominal sheet: the base may have swallowed the effect whole."""
     start = np.zeros_like(fit.x)
     start[fit.n_base :] = fit.x[fit.n_base :]
@@ -144,14 +155,15 @@ def _from_nominal(
     if candidate.effect.by_prior:
         first = candidate.effect.parameters[0]
         tail = np.array([max(first.lower, 0.0) + 1e-3])
-    return [_runner(problem, np.concatenate([start, tail]))]
+    x = np.concatenate([start, tail])
+    for stage, iterations, _ in BASE_STAGES[:-1]:
+        x = minimise(problem, x, stage, iterations=iterations).x
+    return _runner(problem, x)
 
 
 def _run(runner: Runner, stage: Stage, iterations: int, progress: Progress) -> Runner:
     progress(runner.label)
-    fit = minimise(
-        runner.problem, runner.x, stage, iterations=iterations, linear_base=True
-    )
+    fit = minimise(runner.problem, runner.x, stage, iterations=iterations)
     return Runner(runner.problem, fit.x, fit.cost, fit)
 
 
@@ -166,4 +178,4 @@ def _keep(runners: Sequence[Runner], count: int) -> list[Runner]:
     return sorted(runners, key=lambda r: r.cost)[:count]
 
 
-__all__ = ["finish", "fit_stages", "race", "score"]
+__all__ = ["finish", "race", "score"]
