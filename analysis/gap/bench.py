@@ -37,11 +37,14 @@ class Blocks:
         group: group of each row (a record), shape (n_rows,), 0-based.
         labels: words of each group by view, for example ``{"level": "300 N"}``.
         dof: number of residual rows with any weight.
+        white: False where sigma holds a repeatability from a sheet: then a residual
+            below it may have any shape, and directed tests say nothing.
     """
 
     group: IntArray
     labels: tuple[dict[str, str], ...]
     dof: int
+    white: bool = True
 
 
 class Bench(Protocol):

@@ -34,6 +34,10 @@ class Campaign:
         order: rank in time, shape (n_records,).
         preload_reference: preload the nominal sheet belongs to [N].
         model: bodies, links and their priors.
+        lead: first samples without weight: the bench was not at rest before them.
+        continuous: True where the excitation never ends (a shaker), so that no
+            hit can be cut out of it and no level spans the campaign.
+        repeatability: relative, from the sheet [-]; None to take it from repeats.
     """
 
     name: str
@@ -46,12 +50,13 @@ class Campaign:
     order: FloatArray
     preload_reference: float
     model: LumpedModel
+    lead: int = 0
+    continuous: bool = False
+    repeatability: float | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(
-            self, "force", "response", "hit", "level", "preload", "order"
-        )
+        freeze(self, "force", "response", "hit", "level", "preload", "order")
 
 
 def read_campaign(path: Path) -> Campaign:

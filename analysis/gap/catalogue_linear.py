@@ -137,8 +137,13 @@ HIDDEN_MODE = LumpedEffect(
         (
             Parameter("m", "kg", "mass", 0.0, 0.5, off=0.0),
             Parameter(
-                "f", "Hz", "frequency", 0.2, 6.0,
-                tuple(float(x) for x in np.geomspace(0.3, 4.0, 28)), LOG,
+                "f",
+                "Hz",
+                "frequency",
+                0.2,
+                6.0,
+                tuple(float(x) for x in np.geomspace(0.3, 4.0, 28)),
+                LOG,
             ),
             Parameter("zeta", "-", "one", 1e-3, 0.3, (0.02,), LOG, prior=(0.015, 1.0)),
         ),

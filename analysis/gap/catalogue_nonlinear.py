@@ -241,9 +241,7 @@ COULOMB = LumpedEffect(
         "friction",
         (
             Parameter("Fc", "N", "force", 0.0, 2.0, off=0.0),
-            Parameter(
-                "width", "m/s", "speed", 1e-5, 0.1, (0.003,), LOG, (0.003, 1.5)
-            ),
+            Parameter("width", "m/s", "speed", 1e-5, 0.1, (0.003,), LOG, (0.003, 1.5)),
         ),
         "Den Hartog 1931, Trans. ASME 53, APM-107: dry friction in parallel",
         {"jenkins": "small hits: a slider sticks and adds stiffness, Coulomb does not"},
@@ -267,11 +265,7 @@ SATURATION = LumpedEffect(
     Effect(
         "saturation",
         "sensor",
-        (
-            Parameter(
-                "inverse_limit", "-", "1/peak", 0.0, 50.0, (1.002, 1.03), off=0.0
-            ),
-        ),
+        (Parameter("inverse_limit", "-", "1/peak", 0.0, 50.0, (1.002, 1.03), off=0.0),),
         "ISO 7626-5:2019: overload of a measuring channel",
         {"jenkins": "lower the gain and hit again: flat tops vanish"},
         report=_saturation_report,
@@ -286,7 +280,9 @@ HUM = LumpedEffect(
         "sensor",
         (
             Parameter("amp", "unit of the channel", "noise", 0.0, 1e6, off=0.0),
-            Parameter("freq", "Hz", "one", 5.0, 2000.0, (50.0, 60.0, 100.0, 120.0), LOG),
+            Parameter(
+                "freq", "Hz", "one", 5.0, 2000.0, (50.0, 60.0, 100.0, 120.0), LOG
+            ),
         ),
         "Ott 2009, Electromagnetic Compatibility Engineering, ch. 3: mains pick-up",
         {"hidden_mode": "record without a hit"},

@@ -14,6 +14,8 @@ MIN_RECORDS = 4
 
 def campaign_limits(campaign: Campaign) -> str:
     """Return why no verdict but `unknown` can be given, or an empty text."""
+    if campaign.continuous:
+        return ""
     if campaign.force.shape[0] < MIN_RECORDS:
         return (
             f"{campaign.force.shape[0]} records are too few, at least {MIN_RECORDS} "

@@ -84,16 +84,15 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
         gap_after=after,
         pulls={
             name: (float(b), float(a))
-            for name, b, a in zip(
-                bench.base_names, base.pulls, best.pulls, strict=True
-            )
+            for name, b, a in zip(bench.base_names, base.pulls, best.pulls, strict=True)
         },
         base=_base_estimates(bench, best),
         noise={
             "sigma_min": float(bench.noise.sigma.min()),
             "sigma_max": float(bench.noise.sigma.max()),
             "force_sigma_N": bench.noise.force_sigma,
-            "scatter": bench.noise.scatter,
+            "scatter_gain": bench.noise.scatter[0],
+            "scatter_joint": max(bench.noise.scatter[1:], default=0.0),
         },
         null_statistic=(
             outcome.base_screening.largest,
@@ -122,7 +121,10 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
     if len(outcome.level) > 1:
         names = " or ".join(_words(f.candidates) for f in outcome.level)
         return Finding.AMBIGUOUS, f"{names}: their scores lie too close together"
-    return Finding.NAMED, f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}"
+    return (
+        Finding.NAMED,
+        f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}",
+    )
 
 
 def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:

@@ -251,7 +251,9 @@ def _step(
     for _ in range(9):
         step = np.zeros(x.size)
         step[free] = -np.linalg.solve(h + damping * np.eye(h.shape[0]), g)
-        trial = np.clip(x + np.clip(step / size, -1.5, 1.5), problem.lower, problem.upper)
+        trial = np.clip(
+            x + np.clip(step / size, -1.5, 1.5), problem.lower, problem.upper
+        )
         try_r = problem.residual(trial, stage)
         try_cost = float(try_r @ try_r) + problem.penalty(trial)
         if np.isfinite(try_cost) and try_cost < cost:

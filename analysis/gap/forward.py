@@ -141,7 +141,9 @@ def dynamic_stiffness(
             elements.append(((action.index,), added))
         else:
             link = model.links[action.index]
-            elements.append((tuple(e for e in (link.first, link.second) if e >= 0), added))
+            elements.append(
+                (tuple(e for e in (link.first, link.second) if e >= 0), added)
+            )
     variants = max(value.shape[0] for _, value in elements)
     z = np.zeros((n, n, variants, s.size), dtype=np.complex128)
     for ends, value in elements:
@@ -228,9 +230,7 @@ def motion(
     oversampling: int,
 ) -> list[ComplexArray]:
     """Return the displacement of each body, damped spectra (n_records, n_lines)."""
-    z = dynamic_stiffness(
-        model, theta, excitation.s, excitation.conditions, actions
-    )
+    z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, actions)
     h = invert(z)
     bodies = range(len(model.bodies))
     linear = []
@@ -243,15 +243,15 @@ def motion(
     bent = [a for a in actions if a.entry.law is not None]
     for link in sorted({a.index for a in bent}):
         laws = [a.entry.law(a.values) for a in bent if a.index == link if a.entry.law]
-        pull = _link_force(model, theta, excitation, h, linear, link, laws, oversampling)
+        pull = _link_force(
+            model, theta, excitation, h, linear, link, laws, oversampling
+        )
         for i in bodies:
             linear[i] = linear[i] - _across(model, h, i, link) * pull
     return linear
 
 
-def _across(
-    model: LumpedModel, h: ComplexArray, body: int, link: int
-) -> ComplexArray:
+def _across(model: LumpedModel, h: ComplexArray, body: int, link: int) -> ComplexArray:
     """Motion of a body per force pulling the ends of a link together."""
     ends = model.links[link]
     value = h[body, ends.second]
@@ -304,8 +304,18 @@ def _laws(
         for i, law in enumerate(laws):
             others = sum((p for j, p in enumerate(parts) if j != i), np.zeros_like(r))
             parts[i] = march(
-                r, v, poles, residues, dt, law.kind, law.parameters, law.slips,
-                law.weights, law.tables, law.tops, others,
+                r,
+                v,
+                poles,
+                residues,
+                dt,
+                law.kind,
+                law.parameters,
+                law.slips,
+                law.weights,
+                law.tables,
+                law.tops,
+                others,
             )
     return np.asarray(sum(parts, np.zeros_like(r)))
 
@@ -346,13 +356,17 @@ def _channels(
     spectra: ComplexArray, s: ComplexArray, actions: Sequence[Action]
 ) -> ComplexArray:
     for action in actions:
-        rows = slice(None) if action.index < 0 else slice(action.index, action.index + 1)
+        rows = (
+            slice(None) if action.index < 0 else slice(action.index, action.index + 1)
+        )
         if action.entry.mixing is not None:
             share = action.entry.mixing(action.values)
             other = spectra.sum(axis=1) - spectra[:, action.index]
             spectra[:, action.index] += share * other
         if action.entry.transfer is not None:
-            spectra[:, rows] = spectra[:, rows] * action.entry.transfer(s, action.values)
+            spectra[:, rows] = spectra[:, rows] * action.entry.transfer(
+                s, action.values
+            )
     return spectra
 
 
@@ -364,7 +378,9 @@ def _shaped(
     rows = slice(None) if action.index < 0 else slice(action.index, action.index + 1)
     seen = response if measured is None else measured
     out = response.copy()
-    out[:, rows] = action.entry.shape(response[:, rows], seen[:, rows], action.values, rate)
+    out[:, rows] = action.entry.shape(
+        response[:, rows], seen[:, rows], action.values, rate
+    )
     return out
 
 

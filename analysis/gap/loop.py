@@ -66,9 +66,7 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
                 refined, fits, judged = again, merged, rejudged
     best = fits[0] if fits else base
     level = tuple(rivals(refined, fits))
-    return Outcome(
-        refined, base, first, screening, best, judged, tuple(fits), level
-    )
+    return Outcome(refined, base, first, screening, best, judged, tuple(fits), level)
 
 
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:

@@ -32,7 +32,7 @@ from jointbench.analysis.gap.noise import (
     Noise,
     channel_sigma,
     gain_scatter,
-    gains_of,
+    regress,
     repeat_groups,
     whitening_basis,
 )
@@ -40,6 +40,7 @@ from jointbench.analysis.gap.physics import Conditions, LumpedEffect
 from jointbench.analysis.gap.records import View
 from jointbench.analysis.gap.views import slice_views
 
+SCATTER_STEP = 1e-4
 TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""
 WINDOW_REACH = 5.0
@@ -131,15 +132,20 @@ class LumpedBench:
         self, base: FloatArray, terms: Sequence[Term], stage: Stage
     ) -> FloatArray:
         """Return model minus measurement, whitened, shape (n_rows,)."""
-        if stage.window is not None:
+        if stage.window is not None and not self.campaign.continuous:
             return self._windowed(base, terms, stage)
         r = self.response(base, terms, stage.oversampling)
         r -= self.campaign.response
         r /= self.noise.sigma[:, :, None]
-        r[:, :, -TAIL:] = 0.0
+        self.mask(r)
         rows = r.reshape(r.shape[0], -1, 1)
         rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
         return rows.ravel()
+
+    def mask(self, rows: FloatArray) -> None:
+        """Set to 0, in place, the samples that carry no weight."""
+        rows[..., -TAIL:] = 0.0
+        rows[..., : self.campaign.lead] = 0.0
 
     def _windowed(
         self, base: FloatArray, terms: Sequence[Term], stage: Stage
@@ -176,30 +182,40 @@ class LumpedBench:
         """Return the bench with its noise estimated at a solution."""
         model = self.response(base, terms)
         residual = model - self.campaign.response
-        residual[:, :, -TAIL:] = 0.0
-        sigma = channel_sigma(residual[:, :, :-TAIL], np.abs(model).max(axis=2))
+        self.mask(residual)
+        peak = np.abs(model).max(axis=2)
+        seen = residual[:, :, self.campaign.lead : -TAIL]
+        sigma = channel_sigma(seen, peak)
+        if self.campaign.repeatability is not None:
+            sigma = np.hypot(sigma, self.campaign.repeatability * peak)
         noise = replace(self.noise, sigma=sigma)
         columns = _force_columns(self, base, sigma)
-        bare = _with_noise(self, replace(noise, scatter=0.0), columns, model)
-        rows = (len(sigma), -1)
-        gains, variances = gains_of(
-            (residual / sigma[:, :, None]).reshape(rows),
-            (model / sigma[:, :, None]).reshape(rows),
+        ways = _scatter_ways(self, base, terms, model, sigma)
+        none = tuple(0.0 for _ in range(ways.shape[1]))
+        bare = _with_noise(self, replace(noise, scatter=none), columns, ways)
+        coefficients, variances = regress(
+            (residual / sigma[:, :, None]).reshape(len(sigma), -1),
+            ways,
             bare.basis,
             bare.shrink,
         )
         campaign = self.campaign
         groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
-        scatter = gain_scatter(gains, variances, groups)
+        scatter = tuple(
+            gain_scatter(coefficients[:, i], variances[:, i], groups)
+            for i in range(ways.shape[1])
+        )
+        if self.campaign.repeatability is not None:
+            scatter = none
         noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
-        return _with_noise(self, noise, columns, model)
+        return _with_noise(self, noise, columns, ways)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""
         records, channels, samples = self.campaign.response.shape
         residual = fit.residual.reshape(records, channels, samples)
         return slice_views(
-            residual[:, :, :-TAIL],
+            residual[:, :, self.campaign.lead : -TAIL],
             self.blocks,
             [c.name for c in self.campaign.model.channels],
             self.campaign.sample_rate,
@@ -243,7 +259,7 @@ def _force_columns(
             force, np.full(FORCE_SHAPES, hit), bench.campaign.sample_rate, conditions
         )
         y = respond(bench.campaign.model, bench.theta(base), shaken)
-        y[:, :, -TAIL:] = 0.0
+        bench.mask(y)
         cases[hit] = y
     return [
         (cases[int(h)] / s[None, :, None]).reshape(FORCE_SHAPES, -1)
@@ -251,25 +267,46 @@ def _force_columns(
     ]
 
 
+def _scatter_ways(
+    bench: LumpedBench,
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+    sigma: FloatArray,
+) -> FloatArray:
+    """Return how hits may scatter, over sigma, (n_records, n_ways, n_rows).
+
+    The hand: the force that acts is not quite the one measured, a gain of the whole
+    record. The joint: it settles anew from hit to hit, a change of its stiffness.
+    """
+    ways = [model.copy()]
+    n = len(bench.campaign.model.bodies)
+    for i, link in enumerate(bench.campaign.model.links):
+        if link.joint and not bench.campaign.continuous:
+            moved = base.copy()
+            moved[n + i] += SCATTER_STEP
+            ways.append((bench.response(moved, terms) - model) / SCATTER_STEP)
+    stacked = np.stack(ways, axis=1)
+    bench.mask(stacked)
+    stacked /= sigma[:, None, :, None]
+    return stacked.reshape(len(sigma), len(ways), -1)
+
+
 def _with_noise(
-    bench: LumpedBench, noise: Noise, columns: list[FloatArray], model: FloatArray
+    bench: LumpedBench, noise: Noise, columns: list[FloatArray], ways: FloatArray
 ) -> LumpedBench:
     """Return the bench with the whitening of `noise`."""
     parts = []
-    for k, own in enumerate(columns):
-        y = model[k] / noise.sigma[k][:, None]
-        y[:, -TAIL:] = 0.0
-        gain = noise.scatter * y.reshape(1, -1)
-        both = np.concatenate([own, gain]) if noise.scatter > 0 else own
-        parts.append(whitening_basis(both))
+    for own, way in zip(columns, ways, strict=True):
+        spread = [s * w[None, :] for s, w in zip(noise.scatter, way, strict=True) if s]
+        parts.append(whitening_basis(np.concatenate([own, *spread])))
     kept = max(b.shape[0] for b, _ in parts)
-    rows = model.shape[1] * model.shape[2]
-    basis = np.zeros((len(parts), kept, rows))
+    basis = np.zeros((len(parts), kept, ways.shape[2]))
     shrink = np.zeros((len(parts), kept, 1))
     for k, (b, s) in enumerate(parts):
         basis[k, : b.shape[0]] = b
         shrink[k, : b.shape[0], 0] = s
-    return replace(bench, noise=noise, basis=basis, shrink=shrink)
+    return replace(bench, noise=noise, basis=basis, shrink=shrink, short={})
 
 
 def make_bench(
@@ -290,7 +327,9 @@ def make_bench(
     """
     check_names(without, entries)
     entries = tuple(e for e in entries if e.effect.name not in without)
-    gate, force_sigma = force_gate(campaign.force)
+    gate, force_sigma = (0, campaign.force.shape[1]), 0.0
+    if not campaign.continuous:
+        gate, force_sigma = force_gate(campaign.force)
     excitation = _excitation(campaign, gate)
     records, channels, samples = campaign.response.shape
     quiet = max(gate[0], 16)
@@ -303,7 +342,7 @@ def make_bench(
         candidates=candidates_of(entries, campaign.model),
         excitation=excitation,
         gate=gate,
-        noise=Noise(sigma, force_sigma, 0.0, scatter_known=False),
+        noise=Noise(sigma, force_sigma, (), scatter_known=False),
         basis=np.zeros((records, 1, channels * samples)),
         shrink=np.zeros((records, 1, 1)),
         scales={},
@@ -354,7 +393,9 @@ def _blocks(campaign: Campaign) -> Blocks:
             campaign.level, campaign.hit, campaign.preload, campaign.order, strict=True
         )
     )
-    return Blocks(group, labels, records * channels * (samples - TAIL))
+    seen = samples - TAIL - campaign.lead
+    white = campaign.repeatability is None
+    return Blocks(group, labels, records * channels * seen, white)
 
 
 def _scales(bench: LumpedBench) -> dict[str, float]:

@@ -127,9 +127,7 @@ def _forces(
             inverse = 1.0 / slips[i]
             limit = weights[i] * slips[i]
             for k in range(n):
-                state = slide(
-                    states[i, k], (r[k] - before[k]) * inverse, tables, tops
-                )
+                state = slide(states[i, k], (r[k] - before[k]) * inverse, tables, tops)
                 states[i, k] = state
                 u = abs(state)
                 if u > tops[4]:
@@ -201,9 +199,13 @@ def march(
             for k in range(n_records):
                 x, y = er[m, k], ei[m, k]
                 x, y = (
-                    gr[m, k] * x - gi[m, k] * y - ar[m, k] * old[k]
+                    gr[m, k] * x
+                    - gi[m, k] * y
+                    - ar[m, k] * old[k]
                     - br[m, k] * guess[k],
-                    gr[m, k] * y + gi[m, k] * x - ai[m, k] * old[k]
+                    gr[m, k] * y
+                    + gi[m, k] * x
+                    - ai[m, k] * old[k]
                     - bi[m, k] * guess[k],
                 )
                 er[m, k], ei[m, k] = x, y
@@ -215,8 +217,19 @@ def march(
                 for k in range(n_records):
                     v[k] += pr[m, k] * er[m, k] - pi[m, k] * ei[m, k]
         _forces(
-            law, p, r, v, slope, guess, before, states, slips, weights, tables,
-            tops, force,
+            law,
+            p,
+            r,
+            v,
+            slope,
+            guess,
+            before,
+            states,
+            slips,
+            weights,
+            tables,
+            tops,
+            force,
         )
         for k in range(n_records):
             out[i, k] = force[k]

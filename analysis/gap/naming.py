@@ -44,9 +44,7 @@ class Gate:
     remaining: float
 
 
-def gate(
-    bench: Bench, fit: Fit, base: Fit, left: Screening | None
-) -> Gate:
+def gate(bench: Bench, fit: Fit, base: Fit, left: Screening | None) -> Gate:
     """Judge a fit.
 
     Args:
@@ -62,8 +60,8 @@ def gate(
     base_excess = max(base.chi2 / dof - 1.0, 0.0)
     allowed = GLOBAL_SD * noise_sd(bench) + share * base_excess
     remaining = left.largest if left is not None else 0.0
-    limit = 0.0
-    if left is not None:
+    limit = np.inf
+    if left is not None and bench.blocks.white:
         limit = WIDENED * left.threshold + share * base_excess * dof
     reason = ""
     if excess > allowed:

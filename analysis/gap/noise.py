@@ -11,7 +11,7 @@ from jointbench.acquisition.arrays import FloatArray, IntArray
 
 HIGH_BAND = (0.30, 0.497)
 """Band of pure noise, over the sample rate: above any response to a hammer."""
-SCATTER_MAX = 0.01
+SCATTER_MAX = 0.004
 CHI2_975_ONE_SIDED = 3.84
 SMALLEST_SHARE = 0.03
 FORCE_SHAPES = 6
@@ -24,13 +24,13 @@ class Noise:
     Attributes:
         sigma: white noise of each record and channel, shape (n_records, n_channels).
         force_sigma: white noise of the force [N].
-        scatter: relative gain scatter from hit to hit [-].
+        scatter: relative sd from hit to hit, of gain and of joint stiffness [-].
         scatter_known: True where repeats bound the scatter.
     """
 
     sigma: FloatArray
     force_sigma: float
-    scatter: float
+    scatter: tuple[float, ...]
     scatter_known: bool
 
 
@@ -132,26 +132,27 @@ def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:
     return np.asarray(np.sum(x**2 / total + np.log(total), axis=1))
 
 
-def gains_of(
-    residual: FloatArray, model: FloatArray, basis: FloatArray, shrink: FloatArray
+def regress(
+    residual: FloatArray, ways: FloatArray, basis: FloatArray, shrink: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Regress residuals on responses, both over sigma, with force noise whitened.
+    """Regress residuals on the ways to scatter, both over sigma, force noise whitened.
 
     Args:
         residual: shape (n_records, n_rows).
-        model: same shape.
+        ways: shape (n_records, n_ways, n_rows).
         basis: of the force noise, shape (n_records, n_kept, n_rows).
         shrink: of it, shape (n_records, n_kept, 1).
 
     Returns:
-        Gains [-] and their variances, shape (n_records,) each.
+        Coefficients [-] and their variances, shape (n_records, n_ways) each.
     """
-    r, y = residual[:, :, None], model[:, :, None]
-    turned = basis.transpose(0, 2, 1)
-    r = (r - turned @ (shrink * (basis @ r)))[:, :, 0]
-    y = (y - turned @ (shrink * (basis @ y)))[:, :, 0]
-    power = np.sum(y * y, axis=1)
-    return np.sum(y * r, axis=1) / power, 1.0 / power
+    both = np.concatenate([residual[:, None, :], ways], axis=1).transpose(0, 2, 1)
+    both = both - basis.transpose(0, 2, 1) @ (shrink * (basis @ both))
+    r, w = both[:, :, :1], both[:, :, 1:]
+    turned = w.transpose(0, 2, 1)
+    inverse = np.linalg.pinv(turned @ w)
+    coefficients = (inverse @ (turned @ r))[:, :, 0]
+    return coefficients, np.diagonal(inverse, axis1=1, axis2=2).copy()
 
 
 def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:

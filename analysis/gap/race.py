@@ -85,14 +85,14 @@ def race(
         for (stage, iterations), keep in zip(COARSE_ROUNDS, SURVIVORS, strict=True):
             runners = [_run(r, stage, iterations, progress) for r in runners]
             runners = _keep(runners, keep)
-    runners = _best_of_each(runners)
+        runners = _best_of_each(runners)
     limit, done = np.inf, []
     for r in runners:
         progress(r.label)
         middle = minimise(r.problem, r.x, MIDDLE, iterations=8, give_up=limit)
         done.append(Runner(r.problem, middle.x, middle.cost, middle))
         limit = min(limit, HOPELESS * middle.cost)
-    runners = _keep(done, FINALISTS)
+    runners = _keep(_best_of_each(done), FINALISTS)
     limit = np.inf
     fits = []
     for r in runners:
@@ -104,9 +104,7 @@ def race(
     return sorted(fits, key=lambda f: score(bench, f))
 
 
-def finish(
-    bench: Bench, problem: Problem, x: FloatArray, progress: Progress
-) -> Fit:
+def finish(bench: Bench, problem: Problem, x: FloatArray, progress: Progress) -> Fit:
     """Fit to the end at the finest step."""
     progress(" + ".join(c.label for c in problem.candidates) + " (fine)")
     families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}

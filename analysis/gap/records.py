@@ -175,9 +175,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
 
 
 def _estimates(estimates: tuple[Estimate, ...]) -> dict[str, dict[str, float | str]]:
-    return {
-        e.name: {"value": e.value, "sd": e.sd, "unit": e.unit} for e in estimates
-    }
+    return {e.name: {"value": e.value, "sd": e.sd, "unit": e.unit} for e in estimates}
 
 
 def _where(gap: Gap) -> dict[str, dict[str, dict[str, float]]]:
