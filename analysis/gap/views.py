@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Where a misfit sits: its excess, cut one way at a time."""
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -52,7 +53,7 @@ def _time(power: FloatArray, sample_rate: float) -> View:
             f"{1e3 * a / sample_rate:.3g} to {1e3 * b / sample_rate:.3g} ms": power[
                 ..., a:b
             ]
-            for a, b in zip(edges[:-1], edges[1:], strict=True)
+            for a, b in itertools.pairwise(edges)
         },
     )
 
@@ -68,7 +69,7 @@ def _frequency(residual: FloatArray, sample_rate: float) -> View:
             f"{a * sample_rate / n:.0f} to {b * sample_rate / n:.0f} Hz": power[
                 ..., int(a) : int(b)
             ]
-            for a, b in zip(edges[:-1], edges[1:], strict=True)
+            for a, b in itertools.pairwise(edges)
         },
     )
 

@@ -21,9 +21,9 @@ import scipy.io
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.diagnose import conclude
+from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import investigate
 from jointbench.analysis.gap.lumped import LumpedBench, make_bench
-from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.single_record import SingleSheet, single_campaign
 
 SAMPLE_RATE = 610.35
