@@ -182,7 +182,8 @@ def invert(z: ComplexArray) -> ComplexArray:
         out[0, 1], out[1, 0] = -z[0, 1] * scale, -z[1, 0] * scale
         return out
     moved = np.moveaxis(z, (0, 1), (-2, -1))
-    return np.moveaxis(np.linalg.inv(moved), (-2, -1), (0, 1))
+    inverse: ComplexArray = np.linalg.inv(moved).astype(np.complex128)
+    return np.moveaxis(inverse, (-2, -1), (0, 1))
 
 
 def respond(
@@ -255,7 +256,9 @@ def _across(model: LumpedModel, h: ComplexArray, body: int, link: int) -> Comple
     """Motion of a body per force pulling the ends of a link together."""
     ends = model.links[link]
     value = h[body, ends.second]
-    return value - h[body, ends.first] if ends.first >= 0 else value
+    if ends.first >= 0:
+        value = value - h[body, ends.first]
+    return np.asarray(value)
 
 
 def _link_force(
@@ -287,7 +290,7 @@ def _link_force(
     poles, residues = link_modes(model, theta, excitation, link)
     force = _laws(laws, r, v, poles, residues, dt)
     spectrum = scipy.fft.rfft(force.T / growth, long, axis=1)[:, : n + 1]
-    return spectrum * (excitation.taper / oversampling)
+    return np.asarray(spectrum * (excitation.taper / oversampling))
 
 
 def _laws(

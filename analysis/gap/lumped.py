@@ -225,8 +225,8 @@ class LumpedBench:
         """Return how many phases an effect finds for itself (hum), else 0."""
         if candidate.effect.name != "hum":
             return 0
-        records, channels, _ = self.campaign.response.shape
-        return records * (channels if candidate.site.name == "all" else 1)
+        records, channels = self.noise.sigma.shape
+        return int(records) * (int(channels) if candidate.site.name == "all" else 1)
 
 
 def _window(bench: LumpedBench, decay: float) -> FloatArray:

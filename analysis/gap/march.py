@@ -57,7 +57,7 @@ def slide(state: float, step: float, tables: FloatArray, tops: FloatArray) -> fl
     forward = side * step
     size = abs(state)
     if forward >= 0.0:
-        return side * min(size + forward, tops[0])
+        return side * float(min(size + forward, tops[0]))
     if size < tops[4]:
         return state + step
     u = _lookup(tables[0], tops[0], size)

@@ -14,8 +14,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.bench import Bench, Stage
 from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.fit import Fit
@@ -111,7 +112,7 @@ def _judge(
     bench: Bench,
     fit: Fit,
     starts: Sequence[tuple[Candidate, FloatArray]],
-    rows: FloatArray,
+    rows: NDArray[np.float32],
     seed: int,
 ) -> Screening:
     j = fit.jacobian
@@ -163,7 +164,7 @@ def _phase_drop(drop: float, phases: int) -> float:
 
 
 def null_threshold(
-    gram: FloatArray, one_sided: FloatArray, left: FloatArray, seed: int
+    gram: FloatArray, one_sided: BoolArray, left: FloatArray, seed: int
 ) -> float:
     """Draw the largest drop under the null and return its upper quantile.
 
