@@ -15,6 +15,8 @@ from jointbench.analysis.gap.screening import Screening, screen
 
 MAX_EFFECTS = 2
 FIRSTS = 3
+HOPEFUL = 4.0
+"""Cost over the best first's above which a first is not given a second."""
 SECONDS = 4
 CLOSE = 1000.0
 """Score behind the winner up to which a rival is fitted again with the new noise."""
@@ -114,7 +116,8 @@ def add_second(
     """Try the best seconds on the best firsts."""
     found: list[Fit] = []
     tried: set[frozenset[str]] = set()
-    for first in fits[:FIRSTS]:
+    hopeful = [f for f in fits[:FIRSTS] if f.cost < HOPEFUL * fits[0].cost]
+    for first in hopeful:
         screening = screen(bench, first, _others(bench, first))
         chosen = [
             c

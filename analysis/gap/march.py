@@ -84,7 +84,7 @@ def _rub(limit: float, width: float, v: float, slope: float, guess: float) -> fl
         trial = force - step
         if not low <= trial <= high:
             trial = 0.5 * (low + high)
-        if abs(trial - force) < 1e-10 * (abs(limit) + 1e-300):
+        if abs(trial - force) < 1e-7 * (abs(limit) + 1e-300):
             return trial
         force = trial
     return force

@@ -8,7 +8,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import FINE, FULL, Bench, Stage
-from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.fit import (
     BASE_STAGES,
     Fit,
@@ -32,6 +32,9 @@ SURVIVORS = (12, 8)
 FINALISTS = 5
 HOPELESS = 6.0
 """Cost over the best's above which a finalist is not fitted to the end."""
+HUGE = 100.0
+"""Chi2 over dof of the base above which a flipped sign is worth a start."""
+SWAP_PROBE = 1e-4
 EVERYDAY = 1.3
 """Chi2 over dof of the base above which the effect is no small perturbation."""
 
@@ -133,9 +136,11 @@ def _starters(
             if not everyday and d.drop < 0.15 * best and not candidate.effect.by_prior:
                 continue
             runners.append(_runner(problem, np.concatenate([fit.x, d.coordinates])))
-        if candidate.effect.refit_nominal:
+        if candidate.effect.by_prior:
+            runners.append(_runner(problem, swapped(bench, fit, candidate)))
+        elif candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
             progress(f"{candidate.label} from the sheet")
-            runners.append(_from_nominal(problem, fit, candidate, directions))
+            runners.append(_from_nominal(problem, fit, directions))
     return runners
 
 
@@ -143,16 +148,33 @@ def _runner(problem: Problem, x: FloatArray) -> Runner:
     return Runner(problem, np.clip(x, problem.lower, problem.upper), np.inf)
 
 
+def swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
+    """Start where an effect hands back to the base what the base took of it.
+
+    An added mass is exactly a larger mass: along such a direction only the priors
+    change, and the amplitude at which they are happiest follows in one step.
+    """
+    first = candidate.effect.parameters[0]
+    plain = bench.residual(fit.base, fit.terms, MIDDLE)
+    tail = np.array([SWAP_PROBE])
+    moved = bench.residual(fit.base, (*fit.terms, Term(candidate, tail)), MIDDLE)
+    d = (moved - plain) / SWAP_PROBE
+    hessian = fit.jacobian.T @ fit.jacobian + 1e-6 * np.diag(fit.prior)
+    along = -np.linalg.solve(hessian, fit.jacobian.T @ d)
+    off = fit.x - fit.centre
+    amplitude = -float(off @ (fit.prior * along)) / float(along @ (fit.prior * along))
+    amplitude = float(np.clip(amplitude, *first.bounds))
+    step = np.clip(along * amplitude, -0.5, 0.5)
+    return np.concatenate([fit.x + step, [amplitude]])
+
+
 def _from_nominal(
-    problem: Problem, fit: Fit, candidate: Candidate, directions: Sequence[Direction]
+    problem: Problem, fit: Fit, directions: Sequence[Direction]
 ) -> Runner:
-    """Start from the nominal sheet: the base may have swallowed the effect whole."""
+    """Start from the nominal sheet: the base has lost its way."""
     start = np.zeros_like(fit.x)
     start[fit.n_base :] = fit.x[fit.n_base :]
     tail = directions[0].coordinates if directions else np.zeros(1)
-    if candidate.effect.by_prior:
-        first = candidate.effect.parameters[0]
-        tail = np.array([max(first.lower, 0.0) + 1e-3])
     x = np.concatenate([start, tail])
     for stage, iterations, _ in BASE_STAGES[:-1]:
         x = minimise(problem, x, stage, iterations=iterations).x
