@@ -131,7 +131,11 @@ def dynamic_stiffness(
     ]
     for j, link in enumerate(model.links):
         ends = tuple(e for e in (link.first, link.second) if e >= 0)
-        elements.append((ends, (theta[n + j] + theta[n + links + j] * s)[None, :]))
+        stiffness = (theta[n + j] + theta[n + links + j] * s)[None, :]
+        if link.joint and conditions.settling is not None:
+            rise = theta[n + j] * np.expm1(conditions.settling)
+            stiffness = stiffness + rise[:, None]
+        elements.append((ends, stiffness))
     for action in actions:
         if action.entry.stiffness is None:
             continue

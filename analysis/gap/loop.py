@@ -13,7 +13,7 @@ from jointbench.analysis.gap.naming import Gate, gate, rivals
 from jointbench.analysis.gap.race import Progress, finish, race, score
 from jointbench.analysis.gap.screening import Screening, screen
 
-MAX_EFFECTS = 2
+REFINEMENTS = 3
 FIRSTS = 3
 HOPEFUL = 4.0
 """Cost over the best first's above which a first is not given a second."""
@@ -75,7 +75,7 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     """Fit the base coarse to fine, estimate the noise there, and settle."""
     problem = make_problem(bench, ())
     fit = fit_stages(problem, np.zeros(problem.n_base))
-    for _ in range(2):
+    for _ in range(REFINEMENTS):
         bench = bench.refine(fit.base, ())
         fit = minimise(make_problem(bench, ()), fit.x)
     return bench, fit

@@ -40,6 +40,7 @@ from jointbench.analysis.gap.physics import Conditions, LumpedEffect
 from jointbench.analysis.gap.records import View
 from jointbench.analysis.gap.views import slice_views
 
+SETTLING_SEEN = 1e-5
 SCATTER_STEP = 1e-4
 TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""
@@ -65,6 +66,9 @@ class LumpedBench:
         scales: words to values.
         blocks: records as groups.
         short: the same bench with fewer samples, by length.
+        settled: first-order change of the response by what is known of the settling
+            of the joint, shape of the response: taken off the residual again, so
+            that settling counts as scatter about its mean, to second order.
     """
 
     campaign: Campaign
@@ -78,6 +82,7 @@ class LumpedBench:
     scales: dict[str, float]
     blocks: Blocks
     short: dict[int, "LumpedBench"]
+    settled: FloatArray
 
     @property
     def base_names(self) -> tuple[str, ...]:
@@ -136,6 +141,7 @@ class LumpedBench:
             return self._windowed(base, terms, stage)
         r = self.response(base, terms, stage.oversampling)
         r -= self.campaign.response
+        r -= self.settled
         r /= self.noise.sigma[:, :, None]
         self.mask(r)
         rows = r.reshape(r.shape[0], -1, 1)
@@ -173,7 +179,9 @@ class LumpedBench:
             self.short[length] = replace(
                 self,
                 campaign=campaign,
-                excitation=_excitation(campaign, self.gate),
+                excitation=_excitation(
+                    campaign, self.gate, self.excitation.conditions.settling
+                ),
                 short={},
             )
         return self.short[length]
@@ -193,8 +201,10 @@ class LumpedBench:
         ways = _scatter_ways(self, base, terms, model, sigma)
         none = tuple(0.0 for _ in range(ways.shape[1]))
         bare = _with_noise(self, replace(noise, scatter=none), columns, ways)
+        at_mean = residual - self.settled
+        self.mask(at_mean)
         coefficients, variances = regress(
-            (residual / sigma[:, :, None]).reshape(len(sigma), -1),
+            (at_mean / sigma[:, :, None]).reshape(len(sigma), -1),
             ways,
             bare.basis,
             bare.shrink,
@@ -208,7 +218,27 @@ class LumpedBench:
         if self.campaign.repeatability is not None:
             scatter = none
         noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
-        return _with_noise(self, noise, columns, ways)
+        refined = _with_noise(self, noise, columns, ways)
+        if len(scatter) < 2 or scatter[1] < SETTLING_SEEN:
+            return refined._settle(None, ways, sigma)
+        known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
+        return refined._settle(-coefficients[:, 1] * known, ways, sigma)
+
+    def _settle(
+        self, settling: FloatArray | None, ways: FloatArray, sigma: FloatArray
+    ) -> "LumpedBench":
+        """Return the bench with its model expanded about a settling of the joint."""
+        conditions = replace(self.excitation.conditions, settling=settling)
+        settled = np.zeros((1, 1, 1))
+        if settling is not None:
+            change = settling[:, None] * ways[:, 1]
+            settled = change.reshape(*sigma.shape, -1) * sigma[:, :, None]
+        return replace(
+            self,
+            excitation=replace(self.excitation, conditions=conditions),
+            settled=settled,
+            short={},
+        )
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""
@@ -348,17 +378,21 @@ def make_bench(
         scales={},
         blocks=_blocks(campaign),
         short={},
+        settled=np.zeros((1, 1, 1)),
     )
     return replace(bench, scales=_scales(bench))
 
 
-def _excitation(campaign: Campaign, gate: tuple[int, int]) -> Excitation:
+def _excitation(
+    campaign: Campaign, gate: tuple[int, int], settling: FloatArray | None = None
+) -> Excitation:
     force = np.zeros_like(campaign.force)
     force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
     span = max(float(np.ptp(campaign.order)), 1.0)
     conditions = Conditions(
         campaign.preload / campaign.preload_reference,
         (campaign.order - campaign.order.min()) / span,
+        settling,
     )
     return prepare_excitation(force, campaign.hit, campaign.sample_rate, conditions)
 

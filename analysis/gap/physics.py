@@ -22,10 +22,13 @@ class Conditions:
     Attributes:
         preload: over the reference preload [-], shape (n_records,).
         progress: rank in time from 0 to 1 [-], shape (n_records,).
+        settling: log of the joint's stiffness over its mean, as it has settled from
+            hit to hit [-], shape (n_records,); None where that is not looked at.
     """
 
     preload: FloatArray
     progress: FloatArray
+    settling: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
