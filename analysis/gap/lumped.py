@@ -220,25 +220,9 @@ class LumpedBench:
         noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
         refined = _with_noise(self, noise, columns, ways)
         if len(scatter) < 2 or scatter[1] < SETTLING_SEEN:
-            return refined._settle(None, ways, sigma)
+            return _settle(refined, None, ways)
         known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
-        return refined._settle(-coefficients[:, 1] * known, ways, sigma)
-
-    def _settle(
-        self, settling: FloatArray | None, ways: FloatArray, sigma: FloatArray
-    ) -> "LumpedBench":
-        """Return the bench with its model expanded about a settling of the joint."""
-        conditions = replace(self.excitation.conditions, settling=settling)
-        settled = np.zeros((1, 1, 1))
-        if settling is not None:
-            change = settling[:, None] * ways[:, 1]
-            settled = change.reshape(*sigma.shape, -1) * sigma[:, :, None]
-        return replace(
-            self,
-            excitation=replace(self.excitation, conditions=conditions),
-            settled=settled,
-            short={},
-        )
+        return _settle(refined, -coefficients[:, 1] * known, ways)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""
@@ -320,6 +304,24 @@ def _scatter_ways(
     bench.mask(stacked)
     stacked /= sigma[:, None, :, None]
     return stacked.reshape(len(sigma), len(ways), -1)
+
+
+def _settle(
+    bench: LumpedBench, settling: FloatArray | None, ways: FloatArray
+) -> LumpedBench:
+    """Return the bench with its model expanded about a settling of the joint."""
+    conditions = replace(bench.excitation.conditions, settling=settling)
+    settled = np.zeros((1, 1, 1))
+    if settling is not None:
+        sigma = bench.noise.sigma
+        change = settling[:, None] * ways[:, 1]
+        settled = change.reshape(*sigma.shape, -1) * sigma[:, :, None]
+    return replace(
+        bench,
+        excitation=replace(bench.excitation, conditions=conditions),
+        settled=settled,
+        short={},
+    )
 
 
 def _with_noise(
