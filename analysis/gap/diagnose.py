@@ -15,7 +15,8 @@ from jointbench.analysis.gap.effects import Candidate, Reported, Term
 from jointbench.analysis.gap.fit import Fit, make_problem, minimise
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
-from jointbench.analysis.gap.lumped import LumpedBench, make_bench
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.naming import noise_sd, weakest_amplitude
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.race import Progress, score

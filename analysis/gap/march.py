@@ -135,6 +135,44 @@ def _forces(
                 force[k] += limit * (u if state > 0.0 else -u)
 
 
+@njit(cache=True)
+def _hold(poles: ComplexArray, residues: ComplexArray, dt: float) -> FloatArray:
+    """Return growth and first-order-hold weights of the modes, each (re, im).
+
+    Modes are scaled by their residues, so that a real part is a displacement.
+    """
+    z = poles * dt
+    growth = np.exp(z)
+    end = dt * (growth - 1.0 - z) / (z * z)
+    start = dt * (growth - 1.0) / z - end
+    c = np.empty((6, *poles.shape))
+    c[0], c[1] = growth.real, growth.imag
+    c[2], c[3] = (residues * start).real, (residues * start).imag
+    c[4], c[5] = (residues * end).real, (residues * end).imag
+    return c
+
+
+@njit(cache=True, fastmath=True)
+def _predict(
+    er: FloatArray,
+    ei: FloatArray,
+    c: FloatArray,
+    old: FloatArray,
+    guess: FloatArray,
+    r: FloatArray,
+) -> None:
+    """Step the modes in place with a guessed force, and add them to the motion."""
+    for m in range(er.shape[0]):
+        for k in range(er.shape[1]):
+            x, y = er[m, k], ei[m, k]
+            pull, push = old[k], guess[k]
+            er[m, k] = c[0, m, k] * x - c[1, m, k] * y
+            er[m, k] -= c[2, m, k] * pull + c[4, m, k] * push
+            ei[m, k] = c[0, m, k] * y + c[1, m, k] * x
+            ei[m, k] -= c[3, m, k] * pull + c[5, m, k] * push
+            r[k] += er[m, k]
+
+
 @njit(cache=True, fastmath=True)
 def march(
     displacement: FloatArray,
@@ -174,17 +212,8 @@ def march(
     n_modes = poles.shape[0]
     out = np.zeros((n_steps, n_records))
     states = np.zeros((slips.size, n_records))
-    growth = np.exp(poles * dt)
-    z = poles * dt
-    end = dt * (growth - 1.0 - z) / (z * z)
-    start = dt * (growth - 1.0) / z - end
-    # Each mode is scaled by its residue, so that its real part is its displacement.
-    c0, c1 = residues * start, residues * end
-    gr, gi = growth.real.copy(), growth.imag.copy()
-    ar, ai = c0.real.copy(), c0.imag.copy()
-    br, bi = c1.real.copy(), c1.imag.copy()
-    pr, pi = poles.real.copy(), poles.imag.copy()
-    slope = np.sum((c1 * poles).real, axis=0)
+    c = _hold(poles, residues, dt)
+    slope = np.sum(c[4] * poles.real - c[5] * poles.imag, axis=0)
     er, ei = np.zeros((n_modes, n_records)), np.zeros((n_modes, n_records))
     old, older = np.zeros(n_records), np.zeros(n_records)
     guess, before = np.zeros(n_records), np.zeros(n_records)
@@ -195,27 +224,12 @@ def march(
             guess[k] = 2.0 * old[k] - older[k]
             before[k] = r[k]
             r[k] = displacement[i, k]
-        for m in range(n_modes):
-            for k in range(n_records):
-                x, y = er[m, k], ei[m, k]
-                x, y = (
-                    gr[m, k] * x
-                    - gi[m, k] * y
-                    - ar[m, k] * old[k]
-                    - br[m, k] * guess[k],
-                    gr[m, k] * y
-                    + gi[m, k] * x
-                    - ai[m, k] * old[k]
-                    - bi[m, k] * guess[k],
-                )
-                er[m, k], ei[m, k] = x, y
-                r[k] += x
+        _predict(er, ei, c, old, guess, r)
         if moving:
-            for k in range(n_records):
-                v[k] = velocity[i, k]
+            v[:] = velocity[i]
             for m in range(n_modes):
                 for k in range(n_records):
-                    v[k] += pr[m, k] * er[m, k] - pi[m, k] * ei[m, k]
+                    v[k] += poles[m, k].real * er[m, k] - poles[m, k].imag * ei[m, k]
         _forces(
             law,
             p,
@@ -238,8 +252,8 @@ def march(
         for m in range(n_modes):
             for k in range(n_records):
                 change = old[k] - guess[k]
-                er[m, k] -= br[m, k] * change
-                ei[m, k] -= bi[m, k] * change
+                er[m, k] -= c[4, m, k] * change
+                ei[m, k] -= c[5, m, k] * change
     return out
 
 

@@ -23,7 +23,8 @@ from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.diagnose import conclude
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import investigate
-from jointbench.analysis.gap.lumped import LumpedBench, make_bench
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.single_record import SingleSheet, single_campaign
 
 SAMPLE_RATE = 610.35

@@ -5,7 +5,8 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.effects import Term
-from jointbench.analysis.gap.lumped import LumpedBench, make_bench
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.model import two_body_model
 
 NOMINAL = {"m1": 8.0, "m2": 4.0, "k0": 2.4e7, "c0": 300.0, "kj": 6e7, "cj": 220.0}

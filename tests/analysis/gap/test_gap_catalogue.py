@@ -11,7 +11,7 @@ from jointbench.acquisition.errors import UsageError
 from jointbench.analysis.gap.bench import FULL
 from jointbench.analysis.gap.catalogue import CATALOGUE, check_names
 from jointbench.analysis.gap.effects import Candidate, Term
-from jointbench.analysis.gap.lumped import make_bench
+from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.screening import start_grid
 
 _spec = importlib.util.spec_from_file_location(

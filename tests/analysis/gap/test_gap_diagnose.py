@@ -13,6 +13,7 @@ import pytest
 
 from jointbench.acquisition.errors import BadData, FormatError
 from jointbench.analysis.gap.campaign import Campaign, read_campaign
+from jointbench.analysis.gap.catalogue_linear import LINEAR
 from jointbench.analysis.gap.checks import campaign_limits
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.records import Finding, diagnosis_json
@@ -35,7 +36,8 @@ def test_a_campaign_with_nothing_missing_is_told_so() -> None:
 
 def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap() -> None:
     """40 microseconds on the top channel come back within 4 sd; the gap closes."""
-    found = diagnose(made.made_campaign([("delay", "channel:a1", [4e-5])]))
+    campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
+    found = diagnose(campaign, entries=LINEAR)
     assert found.verdict is Finding.NAMED
     (effect,) = found.effects
     assert (effect.name, effect.site) == ("delay", "channel:a1")
@@ -47,7 +49,7 @@ def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap() -> None:
 def test_a_delay_outside_the_catalogue_is_not_called_by_another_name() -> None:
     """With delay taken out, nothing else explains it."""
     campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
-    found = diagnose(campaign, without=frozenset({"delay"}))
+    found = diagnose(campaign, without=frozenset({"delay"}), entries=LINEAR)
     assert found.verdict is Finding.UNKNOWN
     assert found.reason
 

@@ -10,8 +10,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.forward import dynamic_stiffness, invert, respond
-from jointbench.analysis.gap.lumped import make_bench
+from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
+from jointbench.analysis.gap.forward import respond
+from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.march import slide, slider_tables
 from jointbench.analysis.gap.noise import (
     channel_sigma,
