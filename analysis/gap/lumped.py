@@ -29,6 +29,8 @@ from jointbench.analysis.gap.records import View
 from jointbench.analysis.gap.views import slice_views
 
 SETTLING_SEEN = 1e-5
+SETTLING_REACH = 3.0
+"""Scatter sd beyond which a settling is no scatter but a missing effect."""
 SCATTER_STEP = 1e-4
 TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""
@@ -208,7 +210,9 @@ class LumpedBench:
         if len(scatter) < 2 or scatter[1] < SETTLING_SEEN:
             return _settle(refined, None, ways)
         known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
-        return _settle(refined, -coefficients[:, 1] * known, ways)
+        reach = SETTLING_REACH * scatter[1]
+        settling = np.clip(-coefficients[:, 1] * known, -reach, reach)
+        return _settle(refined, settling, ways)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""
