@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""What the engine asks of a bench: residuals of a base model plus effects."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.effects import Candidate, Term
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """How thoroughly a residual is evaluated.
+
+    Attributes:
+        window: decay of the exponential window [s], or None for the whole record;
+            short windows make the cost of a misplaced resonance smooth.
+        oversampling: steps of the nonlinear march per sample.
+    """
+
+    window: float | None = None
+    oversampling: int = 4
+
+
+FULL = Stage()
+FINE = Stage(oversampling=8)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blocks:
+    """Which rows of a residual belong together.
+
+    Attributes:
+        group: group of each row (a record), shape (n_rows,), 0-based.
+        labels: words of each group by view, for example ``{"level": "300 N"}``.
+        dof: number of residual rows with any weight.
+        white: False where sigma holds a repeatability from a sheet: then a residual
+            below it may have any shape, and directed tests say nothing.
+    """
+
+    group: IntArray
+    labels: tuple[dict[str, str], ...]
+    dof: int
+    white: bool = True
+
+
+class Bench(Protocol):
+    """A measurement with its model: everything the engine knows of either."""
+
+    @property
+    def base_names(self) -> tuple[str, ...]:
+        """Names of the base parameters."""
+        ...
+
+    @property
+    def base_sd(self) -> FloatArray:
+        """Prior standard deviation of log(parameter / nominal), shape (n_base,)."""
+        ...
+
+    @property
+    def candidates(self) -> tuple[Candidate, ...]:
+        """The catalogue at every site it applies to."""
+        ...
+
+    @property
+    def blocks(self) -> Blocks:
+        """The groups that are held out one at a time."""
+        ...
+
+    def scale(self, word: str) -> float:
+        """Return the bench's scale of that word [SI]."""
+        ...
+
+    def phases(self, candidate: Candidate) -> int:
+        """Return how many free phases an effect fits by itself; 0 for most."""
+        ...
+
+    def refine(self, base: FloatArray, terms: Sequence[Term]) -> "Bench":
+        """Return the bench with its noise estimated at a solution."""
+        ...
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return model minus measurement over sigma, shape (n_rows,).
+
+        Args:
+            base: log(parameter / nominal), shape (n_base,).
+            terms: the effects switched on.
+            stage: window and step.
+        """
+        ...
+
+
+def values_of(bench: Bench, term: Term) -> FloatArray:
+    """Return the values [SI] of a term's parameters, shape (n_parameters,)."""
+    parameters = term.candidate.effect.parameters
+    return np.array(
+        [
+            p.decode(float(u)) * bench.scale(p.scale)
+            for p, u in zip(parameters, term.coordinates, strict=True)
+        ]
+    )

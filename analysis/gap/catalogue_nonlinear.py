@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: MIT
+"""Catalogue v1, part 2: force laws of links, and channels that bend the signal."""
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap import march
+from jointbench.analysis.gap.effects import Effect, Parameter, Reported, Transform
+from jointbench.analysis.gap.physics import Law, LumpedEffect
+
+LOG = Transform.LOG
+IWAN_SLIDERS = 12
+SHARPNESS = (14.0, 0.6)
+"""Median and log-sd of the sharpness of real sliders: none is a perfect corner."""
+
+
+def _cubic(v: FloatArray) -> Law:
+    return Law(march.POLYNOMIAL, np.array([0.0, v[0]]))
+
+
+def _quadratic(v: FloatArray) -> Law:
+    return Law(march.POLYNOMIAL, np.array([v[0], 0.0]))
+
+
+def _gap(v: FloatArray) -> Law:
+    return Law(march.ONE_SIDED, np.array([v[0], v[1]]))
+
+
+def _gap_report(v: FloatArray) -> tuple[Reported, ...]:
+    return Reported("k", "N/m", float(v[0])), Reported("g", "m", float(v[1]))
+
+
+def _coulomb(v: FloatArray) -> Law:
+    return Law(march.COULOMB, np.array([v[0], v[1]]))
+
+
+def _coulomb_report(v: FloatArray) -> tuple[Reported, ...]:
+    return (Reported("Fc", "N", float(v[0])),)
+
+
+def _quadratic_damping(v: FloatArray) -> Law:
+    return Law(march.QUADRATIC_DAMPING, np.array([v[0]]))
+
+
+def _sliders(
+    stiffness: FloatArray,
+    slips: FloatArray,
+    loading: float,
+    unloading: float,
+    sharpness: float,
+) -> Law:
+    tables, tops = march.slider_tables(loading, unloading, sharpness)
+    total = np.array([float(stiffness.sum())])
+    return Law(march.SLIDERS, total, slips, stiffness, tables, tops)
+
+
+def _jenkins(v: FloatArray) -> Law:
+    return _sliders(v[:1], v[1:2], 1.0, 0.0, float(v[2]))
+
+
+def _jenkins_report(v: FloatArray) -> tuple[Reported, ...]:
+    return (
+        Reported("kt", "N/m", float(v[0])),
+        Reported("Fs", "N", float(v[0] * v[1])),
+        Reported("sharpness", "-", float(v[2])),
+    )
+
+
+def _iwan(v: FloatArray) -> Law:
+    edges = np.linspace(0.0, 1.0, IWAN_SLIDERS + 1)
+    chi = float(v[2]) - 1.0
+    share = np.diff(edges ** (chi + 1.0))
+    centre = np.diff(edges ** (chi + 2.0)) / share * (chi + 1.0) / (chi + 2.0)
+    return _sliders(v[0] * share, v[1] * centre, 1.0, 0.0, float(v[3]))
+
+
+def _iwan_report(v: FloatArray) -> tuple[Reported, ...]:
+    return (
+        Reported("kt", "N/m", float(v[0])),
+        Reported("phimax", "m", float(v[1])),
+        Reported("chi", "-", float(v[2] - 1.0)),
+        Reported("sharpness", "-", float(v[3])),
+    )
+
+
+def _bouc_wen(v: FloatArray) -> Law:
+    return _sliders(v[:1], v[1:2], float(v[3] + v[4]), float(v[3] - v[4]), float(v[2]))
+
+
+def _bouc_wen_report(v: FloatArray) -> tuple[Reported, ...]:
+    return (
+        Reported("k", "N/m", float(v[0])),
+        Reported("zy", "m", float(v[1])),
+        Reported("n", "-", float(v[2])),
+        Reported("b", "-", float(v[3])),
+        Reported("g", "-", float(v[4])),
+    )
+
+
+def _saturate(
+    model: FloatArray, measured: FloatArray, v: FloatArray, rate: float
+) -> FloatArray:
+    if v[0] <= 0.0:
+        return model
+    limit = 1.0 / v[0]
+    return np.clip(model, -limit, limit)
+
+
+def _saturation_report(v: FloatArray) -> tuple[Reported, ...]:
+    return (Reported("amax", "unit of the channel", float(1.0 / max(v[0], 1e-12))),)
+
+
+def _hum(
+    model: FloatArray, measured: FloatArray, v: FloatArray, rate: float
+) -> FloatArray:
+    """Add a line whose phase, free in every record, is the best one."""
+    if v[0] == 0.0:
+        return model
+    phase = 2 * np.pi * v[1] / rate * np.arange(model.shape[-1])
+    turn = np.exp(-1j * phase)
+    angle = np.angle((measured - model) @ turn)
+    return np.asarray(model + v[0] * np.cos(phase + angle[..., None]))
+
+
+CUBIC = LumpedEffect(
+    Effect(
+        "cubic_stiffness",
+        "stiffness",
+        (Parameter("k3", "N/m^3", "stiffness/travel^2", -5.0, 50.0, off=0.0),),
+        "Kovacic and Brennan 2011, The Duffing Equation, ch. 2",
+        {
+            "gap": "hit from the other side; look for even harmonics",
+            "jenkins": "damping rises with level only for friction",
+        },
+    ),
+    ("link",),
+    law=_cubic,
+)
+QUADRATIC = LumpedEffect(
+    Effect(
+        "quadratic_stiffness",
+        "stiffness",
+        (Parameter("k2", "N/m^2", "stiffness/travel", -5.0, 5.0, off=0.0),),
+        "Kovacic and Brennan 2011, The Duffing Equation, ch. 7",
+        {"gap": "more levels: a gap has a threshold, a quadratic law has none"},
+    ),
+    ("link",),
+    law=_quadratic,
+)
+GAP = LumpedEffect(
+    Effect(
+        "gap",
+        "contact",
+        (
+            Parameter("k", "N/m", "stiffness", -0.9, 20.0, off=0.0),
+            Parameter(
+                "g", "m", "travel", 0.004, 1.0, (0.03, 0.1, 0.2, 0.35, 0.55, 0.8), LOG
+            ),
+        ),
+        "Shaw and Holmes 1983, J. Sound Vib. 90, 129: one-sided stop",
+        {
+            "cubic_stiffness": "hit from the other side; look for even harmonics",
+            "quadratic_stiffness": "more levels: a gap has a threshold",
+        },
+        report=_gap_report,
+    ),
+    ("link",),
+    law=_gap,
+)
+JENKINS = LumpedEffect(
+    Effect(
+        "jenkins",
+        "friction",
+        (
+            Parameter("kt", "N/m", "stiffness", 0.0, 0.95, off=0.0),
+            Parameter(
+                "slip", "m", "travel", 0.003, 3.0, (0.02, 0.07, 0.15, 0.3, 0.6), LOG
+            ),
+            Parameter(
+                "sharpness", "-", "one", 2.0, 200.0, SHARPNESS[:1], LOG, SHARPNESS
+            ),
+        ),
+        "Jenkins 1962; smooth corner after Wen 1976, eq. (2)",
+        {
+            "iwan": "four levels below gross slip: the slope of damping on amplitude",
+            "bouc_wen": "slow load cycles through the joint: shape of the corner",
+            "cubic_stiffness": "damping rises with level only for friction",
+        },
+        report=_jenkins_report,
+    ),
+    ("link",),
+    law=_jenkins,
+)
+IWAN = LumpedEffect(
+    Effect(
+        "iwan",
+        "friction",
+        (
+            Parameter("kt", "N/m", "stiffness", 0.0, 0.95, off=0.0),
+            Parameter("phimax", "m", "travel", 0.02, 10.0, (0.2, 0.6, 1.5), LOG),
+            Parameter("chi_plus_1", "-", "one", 0.05, 3.0, (0.5,), LOG, (0.7, 0.8)),
+            Parameter(
+                "sharpness", "-", "one", 2.0, 200.0, SHARPNESS[:1], LOG, SHARPNESS
+            ),
+        ),
+        "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14)",
+        {
+            "jenkins": "four levels below gross slip: the slope of damping",
+            "bouc_wen": "slow load cycles with reversals inside the loop",
+            "cubic_stiffness": "damping rises with level only for friction",
+        },
+        report=_iwan_report,
+    ),
+    ("link",),
+    law=_iwan,
+)
+BOUC_WEN = LumpedEffect(
+    Effect(
+        "bouc_wen",
+        "friction",
+        (
+            Parameter("k", "N/m", "stiffness", 0.0, 0.95, off=0.0),
+            Parameter("zy", "m", "travel", 0.005, 10.0, (0.07, 0.3, 1.0), LOG),
+            Parameter("n", "-", "one", 0.5, 6.0, (1.0, 2.0), LOG, (1.4, 0.5)),
+            Parameter("b", "-", "one", 0.0, 2.0, (0.5,)),
+            Parameter("g", "-", "one", -1.0, 1.0, (0.0,)),
+        ),
+        "Wen 1976, J. Eng. Mech. Div. 102, 249, eq. (2)",
+        {
+            "jenkins": "slow load cycles through the joint: shape of the corner",
+            "iwan": "slow load cycles with reversals inside the loop",
+        },
+        report=_bouc_wen_report,
+    ),
+    ("link",),
+    law=_bouc_wen,
+)
+COULOMB = LumpedEffect(
+    Effect(
+        "coulomb",
+        "friction",
+        (
+            Parameter("Fc", "N", "force", 0.0, 2.0, off=0.0),
+            Parameter("width", "m/s", "speed", 1e-5, 0.1, (0.003,), LOG, (0.003, 1.5)),
+        ),
+        "Den Hartog 1931, Trans. ASME 53, APM-107: dry friction in parallel",
+        {"jenkins": "small hits: a slider sticks and adds stiffness, Coulomb does not"},
+        report=_coulomb_report,
+    ),
+    ("link",),
+    law=_coulomb,
+)
+QUADRATIC_DAMPING = LumpedEffect(
+    Effect(
+        "quadratic_damping",
+        "damping",
+        (Parameter("c", "N s^2/m^2", "damping/speed", 0.0, 300.0, off=0.0),),
+        "Morison et al. 1950, Petrol. Trans. 189, 149: drag c v |v|",
+        {"coulomb": "damping rises with level for drag and falls for dry friction"},
+    ),
+    ("link",),
+    law=_quadratic_damping,
+)
+SATURATION = LumpedEffect(
+    Effect(
+        "saturation",
+        "sensor",
+        (Parameter("inverse_limit", "-", "1/peak", 0.0, 50.0, (1.002, 1.03), off=0.0),),
+        "ISO 7626-5:2019: overload of a measuring channel",
+        {"jenkins": "lower the gain and hit again: flat tops vanish"},
+        report=_saturation_report,
+    ),
+    ("channel",),
+    shape=_saturate,
+    every_channel=True,
+)
+HUM = LumpedEffect(
+    Effect(
+        "hum",
+        "sensor",
+        (
+            Parameter("amp", "unit of the channel", "noise", 0.0, 1e6, off=0.0),
+            Parameter(
+                "freq", "Hz", "one", 5.0, 2000.0, (50.0, 60.0, 100.0, 120.0), LOG
+            ),
+        ),
+        "Ott 2009, Electromagnetic Compatibility Engineering, ch. 3: mains pick-up",
+        {"hidden_mode": "record without a hit"},
+    ),
+    ("channel",),
+    shape=_hum,
+    every_channel=True,
+)
+NONLINEAR: tuple[LumpedEffect, ...] = (
+    CUBIC,
+    QUADRATIC,
+    GAP,
+    JENKINS,
+    IWAN,
+    BOUC_WEN,
+    COULOMB,
+    QUADRATIC_DAMPING,
+    SATURATION,
+    HUM,
+)

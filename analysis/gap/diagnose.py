@@ -1,0 +1,269 @@
+# SPDX-License-Identifier: MIT
+"""Diagnose a campaign: the loop's outcome, put into a verdict with its evidence."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.bench import FULL, Bench, values_of
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.catalogue import CATALOGUE
+from jointbench.analysis.gap.checks import campaign_limits, flat_tops
+from jointbench.analysis.gap.confidence import Evidence, confidence_of
+from jointbench.analysis.gap.effects import Candidate, Reported, Term
+from jointbench.analysis.gap.fit import Fit, make_problem, minimise
+from jointbench.analysis.gap.heldout import hold_out
+from jointbench.analysis.gap.loop import Outcome, investigate
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_make import make_bench
+from jointbench.analysis.gap.naming import noise_sd, weakest_amplitude
+from jointbench.analysis.gap.physics import LumpedEffect
+from jointbench.analysis.gap.race import Progress, score
+from jointbench.analysis.gap.records import (
+    Diagnosis,
+    Estimate,
+    Finding,
+    Gap,
+    NamedEffect,
+    Ranked,
+)
+
+FAR = 1e12
+
+
+def diagnose(
+    campaign: Campaign,
+    *,
+    without: frozenset[str] = frozenset(),
+    entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Find, name and add what a model misses.
+
+    Args:
+        campaign: measurement and model.
+        without: names of effects to leave out of the catalogue.
+        entries: the catalogue.
+        progress: told what is being tried, one line at a time.
+
+    Returns:
+        Verdict and evidence; `unknown` with a reason where the campaign cannot show
+        more (one level, no repeats, too few records).
+
+    Raises:
+        UsageError: `without` holds a name that no entry has.
+
+    Source:
+        Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63, 425, for the question; the
+        rules of naming are those of `jointbench.analysis.gap.naming`.
+    """
+    bench = make_bench(campaign, without=without, entries=entries)
+    outcome = investigate(bench, progress or (lambda line: None))
+    final = outcome.bench
+    if not isinstance(final, LumpedBench):
+        raise TypeError("the loop must hand back the bench it was given")
+    return conclude(outcome, final, limits=campaign_limits(campaign))
+
+
+def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagnosis:
+    """Put an outcome into words and numbers."""
+    base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
+    finding, reason = _verdict(outcome, bench, limits)
+    shown: Sequence[Fit] = ()
+    if finding is Finding.NAMED:
+        shown = (outcome.best,)
+    elif finding is Finding.AMBIGUOUS:
+        shown = outcome.level
+    best = outcome.best if outcome.gate.passed else base
+    after = _gap(bench, best)
+    return Diagnosis(
+        verdict=finding,
+        effects=_effects(outcome, bench, shown),
+        candidates=_ranked(outcome, bench),
+        gap_before=_gap(bench, base),
+        gap_after=after,
+        pulls={
+            name: (float(b), float(a))
+            for name, b, a in zip(bench.base_names, base.pulls, best.pulls, strict=True)
+        },
+        base=_base_estimates(bench, best),
+        noise={
+            "sigma_min": float(bench.noise.sigma.min()),
+            "sigma_max": float(bench.noise.sigma.max()),
+            "force_sigma_N": bench.noise.force_sigma,
+            "scatter_gain": bench.noise.scatter[0],
+            "scatter_joint": max(bench.noise.scatter[1:], default=0.0),
+        },
+        null_statistic=(
+            outcome.base_screening.largest,
+            outcome.base_screening.threshold,
+        ),
+        experiment=_experiment(outcome, finding),
+        reason=reason,
+    )
+
+
+def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding, str]:
+    """Return the verdict and the reason in one line."""
+    if limits:
+        return Finding.UNKNOWN, limits
+    if not outcome.best.candidates and outcome.gate.passed:
+        return Finding.NONE, "the base explains the records to within their noise"
+    if not outcome.gate.passed:
+        flat = flat_tops(bench.campaign.response, bench.noise.sigma)
+        if flat:
+            return Finding.UNKNOWN, (
+                f"record {flat[0]} has flat tops (and {len(flat) - 1} others): "
+                "a channel is overloaded; lower its gain and hit again"
+            )
+        odd = _odd_record(outcome, bench)
+        return Finding.UNKNOWN, odd or f"no effect explains it: {outcome.gate.reason}"
+    if len(outcome.level) > 1:
+        names = " or ".join(_words(f.candidates) for f in outcome.level)
+        return Finding.AMBIGUOUS, f"{names}: their scores lie too close together"
+    return (
+        Finding.NAMED,
+        f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}",
+    )
+
+
+def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:
+    """Return a warning where one record holds nearly all of the misfit."""
+    excess = outcome.best.residual**2 - 1.0
+    groups = bench.blocks.group
+    share = np.bincount(groups, weights=excess)
+    worst = int(np.argmax(share))
+    total = float(np.clip(share, 0, None).sum())
+    if total <= 0 or share[worst] < 0.8 * total:
+        return ""
+    labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
+    return (
+        f"record {worst} ({labels}) holds {100 * share[worst] / total:.0f} % of the "
+        "misfit: check its labels (preload, level, point) or measure it again"
+    )
+
+
+def _words(candidates: Sequence[Candidate]) -> str:
+    return " + ".join(c.label for c in candidates)
+
+
+def _gap(bench: LumpedBench, fit: Fit) -> Gap:
+    held = hold_out(fit, bench.blocks)
+    return Gap(
+        held.gap, held.chi2_per_dof, float(np.abs(fit.pulls).max()), bench.views(fit)
+    )
+
+
+def _ranked(outcome: Outcome, bench: Bench) -> tuple[Ranked, ...]:
+    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
+    first = score(bench, rows[0])
+    return tuple(
+        Ranked(
+            tuple(c.label for c in f.candidates) or ("none",),
+            score(bench, f),
+            score(bench, f) - first,
+            f.chi2 / bench.blocks.dof,
+            float(np.abs(f.pulls).max()),
+        )
+        for f in rows
+    )
+
+
+def evidence_of(outcome: Outcome, bench: Bench, fit: Fit) -> Evidence:
+    """Return what the confidence of one explanation rests on."""
+    own = {c.label for c in fit.candidates}
+    others = [
+        score(bench, f)
+        for f in outcome.ranked
+        if {c.label for c in f.candidates} != own
+        and not own < {c.label for c in f.candidates}
+    ]
+    margin = (min(others) if others else FAR) - score(bench, fit)
+    allowed = max(outcome.gate.allowed, 1e-12)
+    slack = 1.0 - max(outcome.gate.excess, 0.0) / allowed
+    return Evidence(margin, slack, weakest_amplitude(fit), len(fit.candidates))
+
+
+def _effects(
+    outcome: Outcome, bench: LumpedBench, fits: Sequence[Fit]
+) -> tuple[NamedEffect, ...]:
+    found: dict[str, NamedEffect] = {}
+    for fit in fits:
+        sure = confidence_of(evidence_of(outcome, bench, fit)) / len(fits)
+        for k, term in enumerate(fit.terms):
+            label = term.candidate.label
+            if label not in found:
+                found[label] = NamedEffect(
+                    term.candidate.effect.name,
+                    str(term.candidate.site),
+                    estimates_of(bench, fit, k),
+                    sure,
+                )
+    return tuple(found.values())
+
+
+def estimates_of(bench: Bench, fit: Fit, index: int) -> tuple[Estimate, ...]:
+    """Return the parameters of the effect of that index, with sd by first order."""
+    term = fit.terms[index]
+    at = fit.n_base + sum(len(t.coordinates) for t in fit.terms[:index])
+    size = len(term.coordinates)
+    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
+    covariance = fit.covariance[at : at + size, at : at + size] * widened
+    reported = _report(bench, term.candidate, term.coordinates)
+    slopes = np.empty((len(reported), size))
+    for i in range(size):
+        step = 1e-5 * max(abs(float(term.coordinates[i])), 1e-3)
+        moved = np.array(term.coordinates)
+        moved[i] += step
+        after = _report(bench, term.candidate, moved)
+        slopes[:, i] = [
+            (b.value - a.value) / step for a, b in zip(reported, after, strict=True)
+        ]
+    sd = np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
+    return tuple(
+        Estimate(r.name, r.value, float(s), r.unit)
+        for r, s in zip(reported, sd, strict=True)
+    )
+
+
+def _report(
+    bench: Bench, candidate: Candidate, coordinates: FloatArray
+) -> tuple[Reported, ...]:
+    term = Term(candidate, coordinates)
+    return candidate.effect.reported(values_of(bench, term))
+
+
+def _base_estimates(bench: LumpedBench, fit: Fit) -> tuple[Estimate, ...]:
+    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
+    sd = np.sqrt(np.diag(fit.covariance)[: fit.n_base] * widened)
+    values = bench.theta(fit.base)
+    units = {"k": "N/m", "c": "N s/m"}
+    return tuple(
+        Estimate(name, float(v), float(v * s), units.get(name.split("_")[0], "kg"))
+        for name, v, s in zip(bench.base_names, values, sd, strict=True)
+    )
+
+
+def _experiment(outcome: Outcome, finding: Finding) -> str:
+    """Return the experiment that separates what is left."""
+    if finding is Finding.NONE:
+        return "none needed; to look deeper, hit at more levels and preloads"
+    if finding is Finding.NAMED and len(outcome.ranked) > 1:
+        return _separates(outcome.ranked[0], outcome.ranked[1])
+    if finding is Finding.AMBIGUOUS:
+        return _separates(outcome.level[0], outcome.level[1])
+    return "look at the views of the gap; widen levels, points and preloads"
+
+
+def _separates(first: Fit, second: Fit) -> str:
+    for a in first.candidates:
+        for b in second.candidates:
+            for left, right in ((a, b), (b, a)):
+                advice = left.effect.separates.get(right.effect.name)
+                if advice and left != right:
+                    return f"{left.label} or {right.label}: {advice}"
+    return "repeat at more levels, points and preloads to tell the first two apart"
+
+
+__all__ = ["conclude", "diagnose", "estimates_of", "evidence_of", "noise_sd"]

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""The loop: base, null test, race, gate, name, add, repeat, take back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.fit import Fit, fit_stages, make_problem, minimise
+from jointbench.analysis.gap.naming import Gate, gate, rivals
+from jointbench.analysis.gap.race import Progress, finish, race, score
+from jointbench.analysis.gap.screening import Screening, screen
+
+REFINEMENTS = 3
+FIRSTS = 3
+HOPEFUL = 4.0
+"""Cost over the best first's above which a first is not given a second."""
+SECONDS = 4
+CLOSE = 1000.0
+"""Score behind the winner up to which a rival is fitted again with the new noise."""
+MIN_GAIN = 35.0
+"""Chi2 that a further effect must take, beyond its charge."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Outcome:
+    """What the loop found, before it is put into words.
+
+    Attributes:
+        bench: with its noise as estimated at the end.
+        base: fit without effects.
+        base_gate: the null test.
+        base_screening: its directed tests.
+        best: the winning fit; the base where nothing is missing.
+        gate: its judgement.
+        ranked: rivals of the last round, best first.
+        level: rivals that are not told apart, the winner first.
+    """
+
+    bench: Bench
+    base: Fit
+    base_gate: Gate
+    base_screening: Screening
+    best: Fit
+    gate: Gate
+    ranked: tuple[Fit, ...]
+    level: tuple[Fit, ...]
+
+
+def investigate(bench: Bench, progress: Progress) -> Outcome:
+    """Run the whole loop on a bench."""
+    progress("base")
+    bench, base = fit_base(bench)
+    screening = screen(bench, base, bench.candidates)
+    first = gate(bench, base, base, screening)
+    if first.passed:
+        return Outcome(bench, base, first, screening, base, first, (), (base,))
+    fits = race(bench, base, screening, bench.candidates, progress)
+    refined, fits, judged, left = judge(bench, fits, base, progress)
+    if not judged.passed and fits:
+        more = add_second(refined, fits, base, left, progress)
+        if more:
+            merged = sorted([*fits, *more], key=lambda f: score(refined, f))
+            again, merged, rejudged, _ = judge(refined, merged, base, progress)
+            if _worthwhile(again, merged[0], fits[0]):
+                refined, fits, judged = again, merged, rejudged
+    best = fits[0] if fits else base
+    level = tuple(rivals(refined, fits))
+    return Outcome(refined, base, first, screening, best, judged, tuple(fits), level)
+
+
+def fit_base(bench: Bench) -> tuple[Bench, Fit]:
+    """Fit the base coarse to fine, estimate the noise there, and settle."""
+    problem = make_problem(bench, ())
+    fit = fit_stages(problem, np.zeros(problem.n_base))
+    for _ in range(REFINEMENTS):
+        bench = bench.refine(fit.base, ())
+        fit = minimise(make_problem(bench, ()), fit.x)
+    return bench, fit
+
+
+def judge(
+    bench: Bench, fits: Sequence[Fit], base: Fit, progress: Progress
+) -> tuple[Bench, list[Fit], Gate, Screening | None]:
+    """Estimate the noise at the winner, refit the leaders there and judge."""
+    if not fits:
+        return bench, [], gate(bench, base, base, None), None
+    best = fits[0]
+    refined = bench.refine(best.base, best.terms)
+    close = score(bench, best) + CLOSE
+    refit = [
+        finish(refined, make_problem(refined, f.candidates), f.x, progress)
+        if k == 0 or score(bench, f) < close
+        else f
+        for k, f in enumerate(fits)
+    ]
+    refit.sort(key=lambda f: score(refined, f))
+    best = refit[0]
+    left = screen(refined, best, _others(refined, best))
+    return refined, refit, gate(refined, best, base, left), left
+
+
+def _others(bench: Bench, fit: Fit) -> list[Candidate]:
+    return [c for c in bench.candidates if c not in fit.candidates]
+
+
+def add_second(
+    bench: Bench,
+    fits: Sequence[Fit],
+    base: Fit,
+    left: Screening | None,
+    progress: Progress,
+) -> list[Fit]:
+    """Try the best seconds on the best firsts."""
+    found: list[Fit] = []
+    tried: set[frozenset[str]] = set()
+    hopeful = [f for f in fits[:FIRSTS] if f.cost < HOPEFUL * fits[0].cost]
+    for first in hopeful:
+        screening = screen(bench, first, _others(bench, first))
+        chosen = [
+            c
+            for c in _seconds(bench, first, screening)
+            if frozenset((*(x.label for x in first.candidates), c.label)) not in tried
+        ]
+        tried |= {
+            frozenset((*(x.label for x in first.candidates), c.label)) for c in chosen
+        }
+        found += race(bench, first, screening, chosen, progress)
+    return found
+
+
+def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
+    """Choose seconds by predicted drop, and those that only the priors see."""
+    pulled = np.abs(first.pulls).max() > 3.5
+    chosen: list[Candidate] = []
+    for d in screening.directions:
+        if d.candidate not in chosen and len(chosen) < SECONDS:
+            chosen.append(d.candidate)
+    for c in _others(bench, first):
+        if pulled and c.effect.by_prior and c not in chosen:
+            chosen.append(c)
+    return chosen
+
+
+def _worthwhile(bench: Bench, more: Fit, fewer: Fit) -> bool:
+    return len(more.candidates) > len(fewer.candidates) and (
+        score(bench, more) + MIN_GAIN < score(bench, fewer)
+    )

@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: MIT
+"""The bench of lumped dynamics: a campaign and its model, as the engine sees them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.fft
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.assembly import Action
+from jointbench.analysis.gap.bench import Blocks, Stage, values_of
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.catalogue import site_index
+from jointbench.analysis.gap.effects import Candidate, Term
+from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.forward import Excitation, prepare_excitation, respond
+from jointbench.analysis.gap.noise import (
+    FORCE_SHAPES,
+    Noise,
+    channel_sigma,
+    gain_scatter,
+    regress,
+    repeat_groups,
+    whitening_basis,
+)
+from jointbench.analysis.gap.physics import Conditions, LumpedEffect
+from jointbench.analysis.gap.records import View
+from jointbench.analysis.gap.views import slice_views
+
+SETTLING_SEEN = 1e-5
+SETTLING_REACH = 3.0
+"""Scatter sd beyond which a settling is no scatter but a missing effect."""
+SCATTER_STEP = 1e-4
+TAIL = 64
+"""Last samples without weight: a channel's filter acts on a cut record there."""
+WINDOW_REACH = 5.0
+"""Decay times after which a windowed record is cut."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LumpedBench:
+    """Residuals of a lumped model, whitened by what the noise is known to be.
+
+    Attributes:
+        campaign: the measurement.
+        entries: the catalogue of this run.
+        candidates: it, at every site.
+        excitation: forces made ready.
+        gate: first and last sample of the force that count.
+        noise: what is to be expected of a residual.
+        basis: directions of force noise and scatter, (n_records, n_kept, n_rows).
+        shrink: how much of each is taken out, (n_records, n_kept, 1).
+        scales: words to values.
+        blocks: records as groups.
+        short: the same bench with fewer samples, by length.
+        settled: first-order change of the response by what is known of the settling
+            of the joint, shape of the response: taken off the residual again, so
+            that settling counts as scatter about its mean, to second order.
+    """
+
+    campaign: Campaign
+    entries: tuple[LumpedEffect, ...]
+    candidates: tuple[Candidate, ...]
+    excitation: Excitation
+    gate: tuple[int, int]
+    noise: Noise
+    basis: FloatArray
+    shrink: FloatArray
+    scales: dict[str, float]
+    blocks: Blocks
+    short: dict[int, "LumpedBench"]
+    settled: FloatArray
+
+    @property
+    def base_names(self) -> tuple[str, ...]:
+        """Names of the base parameters."""
+        return self.campaign.model.base_names
+
+    @property
+    def base_sd(self) -> FloatArray:
+        """Prior sd of log(parameter / nominal), shape (n_base,)."""
+        return self.campaign.model.spread
+
+    def scale(self, word: str) -> float:
+        """Return the scale of a word [SI]; ``a/b^2`` and products are understood."""
+        if word not in self.scales:
+            top, _, bottom = word.partition("/")
+            base, _, power = bottom.partition("^")
+            below = self.scales[base] ** int(power or 1)
+            self.scales[word] = self.scales[top if top != "1" else "one"] / below
+        return self.scales[word]
+
+    def theta(self, base: FloatArray) -> FloatArray:
+        """Return base parameters [SI] of log(parameter / nominal)."""
+        return np.asarray(self.campaign.model.nominal * np.exp(base))
+
+    def actions(self, terms: Sequence[Term]) -> list[Action]:
+        """Return terms with the hooks of their entries."""
+        entries = {entry.effect.name: entry for entry in self.entries}
+        return [
+            Action(
+                entries[t.candidate.effect.name],
+                t.candidate.site.kind,
+                site_index(self.campaign.model, t.candidate.site),
+                values_of(self, t),
+            )
+            for t in terms
+        ]
+
+    def response(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int = 8
+    ) -> FloatArray:
+        """Predict the channels, shape (n_records, n_channels, n_samples)."""
+        return respond(
+            self.campaign.model,
+            self.theta(base),
+            self.excitation,
+            self.actions(terms),
+            oversampling=oversampling,
+            measured=self.campaign.response,
+        )
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return model minus measurement, whitened, shape (n_rows,)."""
+        if stage.window is not None and not self.campaign.continuous:
+            return self._windowed(base, terms, stage)
+        r = self.response(base, terms, stage.oversampling)
+        r -= self.campaign.response
+        r -= self.settled
+        r /= self.noise.sigma[:, :, None]
+        self.mask(r)
+        rows = r.reshape(r.shape[0], -1, 1)
+        rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
+        return rows.ravel()
+
+    def mask(self, rows: FloatArray) -> None:
+        """Set to 0, in place, the samples that carry no weight."""
+        rows[..., -TAIL:] = 0.0
+        rows[..., : self.campaign.lead] = 0.0
+
+    def _windowed(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return the residual under an exponential window, cut where it has decayed."""
+        decay = stage.window or 1.0
+        reach = self.gate[1] + int(WINDOW_REACH * decay * self.campaign.sample_rate)
+        short = self.shortened(scipy.fft.next_fast_len(reach, real=True))
+        r = short.response(base, terms, stage.oversampling)
+        r -= short.campaign.response
+        r /= self.noise.sigma[:, :, None]
+        r *= _window(short, decay)
+        return r.ravel()
+
+    def shortened(self, length: int) -> "LumpedBench":
+        """Return the bench of the first `length` samples, made once and kept."""
+        if length >= self.campaign.force.shape[1]:
+            return self
+        if length not in self.short:
+            campaign = replace(
+                self.campaign,
+                force=self.campaign.force[:, :length],
+                response=self.campaign.response[:, :, :length],
+            )
+            self.short[length] = replace(
+                self,
+                campaign=campaign,
+                excitation=gated_excitation(
+                    campaign, self.gate, self.excitation.conditions.settling
+                ),
+                short={},
+            )
+        return self.short[length]
+
+    def refine(self, base: FloatArray, terms: Sequence[Term]) -> "LumpedBench":
+        """Return the bench with its noise estimated at a solution."""
+        model = self.response(base, terms)
+        residual = model - self.campaign.response
+        self.mask(residual)
+        peak = np.abs(model).max(axis=2)
+        seen = residual[:, :, self.campaign.lead : -TAIL]
+        sigma = channel_sigma(seen, peak)
+        if self.campaign.repeatability is not None:
+            sigma = np.hypot(sigma, self.campaign.repeatability * peak)
+        noise = replace(self.noise, sigma=sigma)
+        columns = _force_columns(self, base, sigma)
+        ways = _scatter_ways(self, base, terms, model, sigma)
+        none = tuple(0.0 for _ in range(ways.shape[1]))
+        bare = _with_noise(self, replace(noise, scatter=none), columns, ways)
+        at_mean = residual - self.settled
+        self.mask(at_mean)
+        coefficients, variances = regress(
+            (at_mean / sigma[:, :, None]).reshape(len(sigma), -1),
+            ways,
+            bare.basis,
+            bare.shrink,
+        )
+        campaign = self.campaign
+        groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
+        scatter = tuple(
+            gain_scatter(coefficients[:, i], variances[:, i], groups)
+            for i in range(ways.shape[1])
+        )
+        if self.campaign.repeatability is not None:
+            scatter = none
+        noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
+        refined = _with_noise(self, noise, columns, ways)
+        if len(scatter) < 2 or scatter[1] < SETTLING_SEEN:
+            return _settle(refined, None, ways)
+        known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
+        reach = SETTLING_REACH * scatter[1]
+        settling = np.clip(-coefficients[:, 1] * known, -reach, reach)
+        return _settle(refined, settling, ways)
+
+    def views(self, fit: Fit) -> tuple[View, ...]:
+        """Return where the misfit of a fit sits."""
+        records, channels, samples = self.campaign.response.shape
+        residual = fit.residual.reshape(records, channels, samples)
+        return slice_views(
+            residual[:, :, self.campaign.lead : -TAIL],
+            self.blocks,
+            [c.name for c in self.campaign.model.channels],
+            self.campaign.sample_rate,
+        )
+
+    def phases(self, candidate: Candidate) -> int:
+        """Return how many phases an effect finds for itself (hum), else 0."""
+        if candidate.effect.name != "hum":
+            return 0
+        records, channels = self.noise.sigma.shape
+        return int(records) * (int(channels) if candidate.site.name == "all" else 1)
+
+
+def _window(bench: LumpedBench, decay: float) -> FloatArray:
+    n = bench.excitation.growth.size
+    time = (np.arange(n) - bench.gate[0]) / bench.campaign.sample_rate
+    return np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
+
+
+def _force_columns(
+    bench: LumpedBench, base: FloatArray, sigma: FloatArray
+) -> list[FloatArray]:
+    """Responses to the force's own noise, over sigma, one array for each record."""
+    first, last = bench.gate
+    width = last - first
+    if width >= bench.excitation.growth.size or bench.noise.force_sigma <= 0:
+        return [np.zeros((0, sigma.shape[1] * bench.excitation.growth.size))] * len(
+            sigma
+        )
+    grid = np.linspace(-1, 1, width)
+    shapes = np.stack(
+        [np.polynomial.legendre.Legendre.basis(k)(grid) for k in range(FORCE_SHAPES)]
+    )
+    shapes /= np.linalg.norm(shapes, axis=1, keepdims=True)
+    force = np.zeros((FORCE_SHAPES, bench.excitation.growth.size))
+    force[:, first:last] = shapes * bench.noise.force_sigma
+    cases = {}
+    for hit in sorted(set(bench.campaign.hit.tolist())):
+        conditions = Conditions(np.ones(FORCE_SHAPES), np.zeros(FORCE_SHAPES))
+        shaken = prepare_excitation(
+            force, np.full(FORCE_SHAPES, hit), bench.campaign.sample_rate, conditions
+        )
+        y = respond(bench.campaign.model, bench.theta(base), shaken)
+        bench.mask(y)
+        cases[hit] = y
+    return [
+        (cases[int(h)] / s[None, :, None]).reshape(FORCE_SHAPES, -1)
+        for h, s in zip(bench.campaign.hit, sigma, strict=True)
+    ]
+
+
+def _scatter_ways(
+    bench: LumpedBench,
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+    sigma: FloatArray,
+) -> FloatArray:
+    """Return how hits may scatter, over sigma, (n_records, n_ways, n_rows).
+
+    The hand: the force that acts is not quite the one measured, a gain of the whole
+    record. The joint: it settles anew from hit to hit, a change of its stiffness.
+    """
+    ways = [model.copy()]
+    n = len(bench.campaign.model.bodies)
+    for i, link in enumerate(bench.campaign.model.links):
+        if link.joint and not bench.campaign.continuous:
+            moved = base.copy()
+            moved[n + i] += SCATTER_STEP
+            ways.append((bench.response(moved, terms) - model) / SCATTER_STEP)
+    stacked = np.stack(ways, axis=1)
+    bench.mask(stacked)
+    stacked /= sigma[:, None, :, None]
+    return stacked.reshape(len(sigma), len(ways), -1)
+
+
+def _settle(
+    bench: LumpedBench, settling: FloatArray | None, ways: FloatArray
+) -> LumpedBench:
+    """Return the bench with its model expanded about a settling of the joint."""
+    conditions = replace(bench.excitation.conditions, settling=settling)
+    settled = np.zeros((1, 1, 1))
+    if settling is not None:
+        sigma = bench.noise.sigma
+        change = settling[:, None] * ways[:, 1]
+        settled = change.reshape(*sigma.shape, -1) * sigma[:, :, None]
+    return replace(
+        bench,
+        excitation=replace(bench.excitation, conditions=conditions),
+        settled=settled,
+        short={},
+    )
+
+
+def _with_noise(
+    bench: LumpedBench, noise: Noise, columns: list[FloatArray], ways: FloatArray
+) -> LumpedBench:
+    """Return the bench with the whitening of `noise`."""
+    parts = []
+    for own, way in zip(columns, ways, strict=True):
+        spread = [s * w[None, :] for s, w in zip(noise.scatter, way, strict=True) if s]
+        parts.append(whitening_basis(np.concatenate([own, *spread])))
+    kept = max(b.shape[0] for b, _ in parts)
+    basis = np.zeros((len(parts), kept, ways.shape[2]))
+    shrink = np.zeros((len(parts), kept, 1))
+    for k, (b, s) in enumerate(parts):
+        basis[k, : b.shape[0]] = b
+        shrink[k, : b.shape[0], 0] = s
+    return replace(bench, noise=noise, basis=basis, shrink=shrink, short={})
+
+
+def gated_excitation(
+    campaign: Campaign, gate: tuple[int, int], settling: FloatArray | None = None
+) -> Excitation:
+    """Cut the hits out of the forces and transform them."""
+    force = np.zeros_like(campaign.force)
+    force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
+    span = max(float(np.ptp(campaign.order)), 1.0)
+    conditions = Conditions(
+        campaign.preload / campaign.preload_reference,
+        (campaign.order - campaign.order.min()) / span,
+        settling,
+    )
+    return prepare_excitation(force, campaign.hit, campaign.sample_rate, conditions)

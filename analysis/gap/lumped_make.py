@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""Make the bench of a campaign: catalogue at its sites, gate, scales and groups."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
+from jointbench.analysis.gap.bench import Blocks
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.catalogue import CATALOGUE, candidates_of, check_names
+from jointbench.analysis.gap.forward import motion
+from jointbench.analysis.gap.lumped import TAIL, LumpedBench, gated_excitation
+from jointbench.analysis.gap.noise import Noise
+from jointbench.analysis.gap.physics import LumpedEffect
+
+PAD = 48
+"""Samples kept on each side of a hit: the anti-alias filter rings that far."""
+
+
+def make_bench(
+    campaign: Campaign,
+    *,
+    without: frozenset[str] = frozenset(),
+    entries: tuple[LumpedEffect, ...] = CATALOGUE,
+) -> LumpedBench:
+    """Prepare a campaign for the engine.
+
+    Args:
+        campaign: measurement and model.
+        without: names of effects to leave out of the catalogue.
+        entries: the catalogue.
+
+    Raises:
+        UsageError: `without` holds a name that no entry has.
+    """
+    check_names(without, entries)
+    entries = tuple(e for e in entries if e.effect.name not in without)
+    gate, force_sigma = (0, campaign.force.shape[1]), 0.0
+    if not campaign.continuous:
+        gate, force_sigma = force_gate(campaign.force)
+    excitation = gated_excitation(campaign, gate)
+    records, channels, samples = campaign.response.shape
+    quiet = max(gate[0], 16)
+    sigma = np.sqrt(np.mean(campaign.response[:, :, :quiet] ** 2, axis=(0, 2)))
+    floor = 1e-6 * np.abs(campaign.response).max()
+    sigma = np.tile(np.maximum(sigma, floor), (records, 1))
+    bench = LumpedBench(
+        campaign=campaign,
+        entries=entries,
+        candidates=candidates_of(entries, campaign.model),
+        excitation=excitation,
+        gate=gate,
+        noise=Noise(sigma, force_sigma, (), scatter_known=False),
+        basis=np.zeros((records, 1, channels * samples)),
+        shrink=np.zeros((records, 1, 1)),
+        scales={},
+        blocks=_blocks(campaign),
+        short={},
+        settled=np.zeros((1, 1, 1)),
+    )
+    return replace(bench, scales=_scales(bench))
+
+
+def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
+    """Return the samples that hold the hits, and the noise outside them [N]."""
+    n = force.shape[1]
+    sigma = float(np.std(force[:, n // 2 :]))
+    loud = np.abs(force) > np.maximum(
+        8 * sigma, 3e-3 * np.abs(force).max(axis=1, keepdims=True)
+    )
+    where = np.flatnonzero(loud.any(axis=0))
+    if where.size == 0 or np.ptp(where) > n // 2:
+        return (0, n), 0.0
+    first = max(int(where[0]) - PAD, 0)
+    last = min(int(where[-1]) + PAD, n)
+    outside = np.concatenate([force[:, :first], force[:, last:]], axis=1)
+    return (first, last), float(np.sqrt(np.mean(outside**2)))
+
+
+def _blocks(campaign: Campaign) -> Blocks:
+    records, channels, samples = campaign.response.shape
+    group = np.repeat(np.arange(records), channels * samples)
+    labels = tuple(
+        {
+            "level": f"{level:g} N",
+            "hit point": f"{campaign.model.bodies[hit].name}",
+            "preload": f"{preload:g} N",
+            "order": f"{order:g}",
+        }
+        for level, hit, preload, order in zip(
+            campaign.level, campaign.hit, campaign.preload, campaign.order, strict=True
+        )
+    )
+    seen = samples - TAIL - campaign.lead
+    white = campaign.repeatability is None
+    return Blocks(group, labels, records * channels * seen, white)
+
+
+def _scales(bench: LumpedBench) -> dict[str, float]:
+    """Characteristic sizes at the nominal sheet, from which starts are scaled."""
+    model, excitation = bench.campaign.model, bench.excitation
+    theta = model.nominal
+    joint = next((i for i, x in enumerate(model.links) if x.joint), 0)
+    n, links = len(model.bodies), len(model.links)
+    x = motion(model, theta, excitation, (), oversampling=1)
+    ends = model.links[joint]
+    r = x[ends.second] - (x[ends.first] if ends.first >= 0 else 0.0)
+    size = excitation.growth.size
+    travel = np.fft.irfft(r, 2 * size, axis=1)[:, :size] * excitation.growth
+    speed = np.fft.irfft(r * excitation.s, 2 * size, axis=1)[:, :size]
+    z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, ())
+    peak = np.argmax(np.abs(invert(z)[ends.second, ends.second, 0]))
+    frequency = max(float(excitation.s[peak].imag) / (2 * np.pi), 1.0)
+    stiffness = float(theta[n + joint])
+    return {
+        "one": 1.0,
+        "mass": float(np.mean(theta[:n])),
+        "stiffness": stiffness,
+        "damping": float(theta[n + links + joint]),
+        "travel": float(np.abs(travel).max()),
+        "force": stiffness * float(np.abs(travel).max()),
+        "speed": float(np.abs(speed * excitation.growth).max()),
+        "frequency": frequency,
+        "period": 1.0 / frequency,
+        "sample": 1.0 / bench.campaign.sample_rate,
+        "peak": float(np.abs(bench.campaign.response).max()),
+        "noise": float(bench.noise.sigma.min()),
+    }

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""When a fit is a name: rules that a smaller gap alone does not meet."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.race import score
+from jointbench.analysis.gap.screening import Screening
+
+RIVAL_WITHIN = 15.0
+"""Score within which a rival is not told apart."""
+AMPLITUDE_SD = 4.0
+PULL_LIMIT = 4.0
+GLOBAL_SD = 4.0
+WIDENED = 1.3
+"""Room over the linearised null quantile, for the shapes between the grid's points."""
+FRICTION_ERROR = 3e-5
+"""The same for sliders, whose distribution is never that of the model."""
+MODEL_ERROR = 3e-6
+"""Share of the base's excess chi2 that a right model may leave: kinks between steps,
+the anti-alias filter, sliders of another make."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gate:
+    """Whether a fit explains the measurement.
+
+    Attributes:
+        passed: all rules met.
+        reason: the first rule that was not, or empty.
+        excess: chi2/dof - 1 [-].
+        allowed: what noise and model error allow of it [-].
+        remaining: largest directed drop that is left.
+    """
+
+    passed: bool
+    reason: str
+    excess: float
+    allowed: float
+    remaining: float
+
+
+def gate(bench: Bench, fit: Fit, base: Fit, left: Screening | None) -> Gate:
+    """Judge a fit.
+
+    Args:
+        bench: with the noise re-estimated at the fit.
+        fit: of that bench.
+        base: fit without effects, of the bench as it was.
+        left: directed tests of the fit; None to pass them over.
+    """
+    friction = any(c.effect.family == "friction" for c in fit.candidates)
+    share = FRICTION_ERROR if friction else MODEL_ERROR
+    dof = bench.blocks.dof
+    excess = fit.chi2 / dof - 1.0
+    base_excess = max(base.chi2 / dof - 1.0, 0.0)
+    allowed = GLOBAL_SD * noise_sd(bench) + share * base_excess
+    remaining = left.largest if left is not None else 0.0
+    limit = np.inf
+    if left is not None and bench.blocks.white:
+        limit = WIDENED * left.threshold + share * base_excess * dof
+    reason = ""
+    if excess > allowed:
+        reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
+    elif remaining > limit:
+        reason = f"a further effect would take {remaining:.0f} units of chi2"
+    elif np.abs(fit.pulls).max() > PULL_LIMIT:
+        reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
+    elif fit.candidates and weakest_amplitude(fit) < AMPLITUDE_SD:
+        reason = f"an amplitude is only {weakest_amplitude(fit):.1f} sigma from off"
+    return Gate(not reason, reason, excess, allowed, remaining)
+
+
+def noise_sd(bench: Bench) -> float:
+    """Return the sd of chi2/dof under noise, that of the noise estimate included."""
+    return float(np.sqrt(2.0 / bench.blocks.dof + 2.0 / (0.2 * bench.blocks.dof)))
+
+
+def weakest_amplitude(fit: Fit) -> float:
+    """Return the smallest distance of an amplitude from OFF, in sd."""
+    sd = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
+    at, worst = fit.n_base, np.inf
+    for candidate in fit.candidates:
+        first = candidate.effect.parameters[0]
+        if first.upper - first.lower > 1e-3:
+            worst = min(worst, abs(fit.x[at]) / sd[at])
+        at += len(candidate.effect.parameters)
+    return float(worst)
+
+
+def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+    """Return the fits that the best one is not told apart from, it included."""
+    if not fits:
+        return []
+    best = score(bench, fits[0])
+    return [f for f in fits if score(bench, f) < best + RIVAL_WITHIN]

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""Noise of the channels, of the force, and the scatter from hit to hit."""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+
+from jointbench.acquisition.arrays import FloatArray, IntArray
+
+HIGH_BAND = (0.30, 0.497)
+"""Band of pure noise, over the sample rate: above any response to a hammer."""
+SCATTER_MAX = 0.004
+CHI2_975_ONE_SIDED = 3.84
+SMALLEST_SHARE = 0.03
+FORCE_SHAPES = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Noise:
+    """How much of a residual is to be expected.
+
+    Attributes:
+        sigma: white noise of each record and channel, shape (n_records, n_channels).
+        force_sigma: white noise of the force [N].
+        scatter: relative sd from hit to hit, of gain and of joint stiffness [-].
+        scatter_known: True where repeats bound the scatter.
+    """
+
+    sigma: FloatArray
+    force_sigma: float
+    scatter: tuple[float, ...]
+    scatter_known: bool
+
+
+def high_band_sigma(residual: FloatArray) -> FloatArray:
+    """Estimate white noise from the top of the spectrum.
+
+    Args:
+        residual: model minus measurement, shape (..., n_samples).
+
+    Returns:
+        Standard deviation, shape (...).
+    """
+    n = residual.shape[-1]
+    taper = np.hanning(n)
+    spectrum = scipy.fft.rfft(residual * taper, axis=-1)
+    low, high = (int(edge * n) for edge in HIGH_BAND)
+    power = np.mean(np.abs(spectrum[..., low:high]) ** 2, axis=-1)
+    return np.asarray(np.sqrt(power / np.sum(taper**2)))
+
+
+def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
+    """Pool the noise over records, letting it grow with the response where it does.
+
+    Args:
+        residual: shape (n_records, n_channels, n_samples).
+        peak: largest response, shape (n_records, n_channels).
+
+    Returns:
+        Standard deviation, shape (n_records, n_channels).
+    """
+    variance = high_band_sigma(residual) ** 2
+    n = residual.shape[-1]
+    relative = np.sqrt(2.0 / ((HIGH_BAND[1] - HIGH_BAND[0]) * n))
+    pooled = np.empty_like(variance)
+    for c in range(variance.shape[1]):
+        v, x = variance[:, c], peak[:, c] ** 2
+        flat = float(np.median(v)) if v.max() > 3 * v.min() else float(v.mean())
+        pooled[:, c] = flat
+        if v.size < 4 or np.ptp(x) <= 0:
+            continue
+        weight = 1 / (relative * v)
+        design = np.stack([np.ones_like(x), x], axis=1) * weight[:, None]
+        (floor, slope), *_ = np.linalg.lstsq(design, v * weight, rcond=None)
+        sd = np.sqrt(np.linalg.pinv(design.T @ design)[1, 1])
+        if slope > 6 * sd and floor > 0:
+            pooled[:, c] = floor + slope * x
+    return np.sqrt(pooled)
+
+
+def repeat_groups(
+    hit: IntArray, level: FloatArray, preload: FloatArray
+) -> list[IntArray]:
+    """Return the records of each condition that was measured more than once."""
+    keys = list(zip(hit.tolist(), level.tolist(), preload.tolist(), strict=True))
+    groups = []
+    for key in sorted(set(keys)):
+        rows = np.array([i for i, k in enumerate(keys) if k == key])
+        if rows.size > 1:
+            groups.append(rows)
+    return groups
+
+
+def gain_scatter(
+    gains: FloatArray, variances: FloatArray, groups: list[IntArray]
+) -> float:
+    """Estimate the relative gain scatter from hit to hit.
+
+    Repeats of a condition differ by scatter and noise alone, but there are few of
+    them; all records together say more, but a missing effect speaks through them
+    too. So the estimate from all records is taken, held between the likeliest value
+    and the upper 97.5 % limit that the repeats allow.
+
+    Args:
+        gains: regression of each residual on its response [-], shape (n_records,).
+        variances: of the gains by noise alone, same shape.
+        groups: records that repeat a condition.
+
+    Returns:
+        Standard deviation of the gain [-].
+    """
+    grid = np.concatenate([[0.0], np.geomspace(1e-6, SCATTER_MAX, 120)]) ** 2
+    everywhere = _deviance(gains, variances, grid)
+    wide = float(grid[int(np.argmin(everywhere))])
+    pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
+    if not pairs:
+        return float(np.sqrt(wide))
+    first, second = (np.array(x) for x in zip(*pairs, strict=True))
+    steps = (gains[first] - gains[second]) / np.sqrt(2.0)
+    spread = (variances[first] + variances[second]) / 2
+    own = _deviance(steps, spread, grid)
+    low = float(grid[int(np.argmin(own))])
+    allowed = grid[own < own.min() + CHI2_975_ONE_SIDED]
+    return float(np.sqrt(np.clip(wide, low, allowed.max())))
+
+
+def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:
+    """Return -2 log likelihood of x ~ N(0, v + grid), shape of grid."""
+    total = v[None, :] + grid[:, None]
+    return np.asarray(np.sum(x**2 / total + np.log(total), axis=1))
+
+
+def regress(
+    residual: FloatArray, ways: FloatArray, basis: FloatArray, shrink: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Regress residuals on the ways to scatter, both over sigma, force noise whitened.
+
+    Args:
+        residual: shape (n_records, n_rows).
+        ways: shape (n_records, n_ways, n_rows).
+        basis: of the force noise, shape (n_records, n_kept, n_rows).
+        shrink: of it, shape (n_records, n_kept, 1).
+
+    Returns:
+        Coefficients [-] and their variances, shape (n_records, n_ways) each.
+    """
+    both = np.concatenate([residual[:, None, :], ways], axis=1).transpose(0, 2, 1)
+    both = both - basis.transpose(0, 2, 1) @ (shrink * (basis @ both))
+    r, w = both[:, :, :1], both[:, :, 1:]
+    turned = w.transpose(0, 2, 1)
+    inverse = np.linalg.pinv(turned @ w)
+    coefficients = (inverse @ (turned @ r))[:, :, 0]
+    return coefficients, np.diagonal(inverse, axis1=1, axis2=2).copy()
+
+
+def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return an orthonormal basis and the shrinkage that whitens unit noise plus it.
+
+    With covariance I + B B^T, multiplying the component along each left singular
+    vector of B by 1/sqrt(1 + s^2) makes the residual white.
+
+    Args:
+        columns: B, already over sigma, shape (n_columns, n_rows).
+
+    Returns:
+        Basis, shape (n_kept, n_rows), and 1 - 1/sqrt(1 + s^2), shape (n_kept,).
+    """
+    gram = columns @ columns.T
+    values, vectors = np.linalg.eigh(gram)
+    keep = values > SMALLEST_SHARE**2
+    s = np.sqrt(values[keep])
+    basis = (vectors[:, keep] / s).T @ columns
+    return basis, 1.0 - 1.0 / np.sqrt(1.0 + s**2)

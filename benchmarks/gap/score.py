@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""Score the gap engine on campaigns with a known answer.
+
+Usage: python benchmarks/gap/score.py DIRECTORY [--cases 0,2,4] [--without-truth]
+
+DIRECTORY holds case_NN.h5 files and a truth.json as in shared/data/gap-campaigns.
+With --without-truth each campaign's own effects are taken out of the catalogue, so
+that "unknown" is right. Prints one line a campaign and a table of the outcomes.
+"""
+
+import argparse
+import json
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from jointbench.analysis.gap.campaign import read_campaign
+from jointbench.analysis.gap.diagnose import diagnose
+from jointbench.analysis.gap.records import Diagnosis
+
+
+def judge(names: set[str], found: Diagnosis, *, hidden: bool) -> str:
+    """Return what a diagnosis is worth against the true names."""
+    verdict = found.verdict.value
+    told = {e.name for e in found.effects}
+    if hidden and verdict == "unknown":
+        return "right"
+    if verdict == "none":
+        return "right" if not names else "silent"
+    if verdict == "unknown":
+        return "unknown"
+    if verdict == "ambiguous":
+        return "ambiguous with truth" if names <= told else "ambiguous without"
+    return "right" if told == names and not hidden else "WRONG"
+
+
+def kind_of(names: set[str]) -> str:
+    """Return none, single or pair."""
+    return ("none", "single", "pair")[min(len(names), 2)]
+
+
+def line(case: str, names: set[str], found: Diagnosis, word: str, took: float) -> str:
+    """Return the line of one campaign."""
+    told = " | ".join(
+        f"{e.name}@{e.site} {e.confidence:.2f} "
+        + " ".join(f"{p.name}={p.value:.5g}+-{p.sd:.2g}" for p in e.parameters)
+        for e in found.effects
+    )
+    return (
+        f"{case} {','.join(sorted(names)) or 'none':40s} {word:20s} "
+        f"{found.verdict.value:9s} {told} gap {found.gap_before.value:.3g} -> "
+        f"{found.gap_after.value:.3g} {took:.1f} s {found.reason}"
+    )
+
+
+def main() -> None:
+    """Run the benchmark."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("directory", type=Path)
+    parser.add_argument("--cases", default="")
+    parser.add_argument("--without-truth", action="store_true")
+    arguments = parser.parse_args()
+    truth: dict[str, Any] = json.loads((arguments.directory / "truth.json").read_text())
+    wanted = {f"case_{int(n):02d}" for n in arguments.cases.split(",") if n}
+    table: Counter[tuple[str, str]] = Counter()
+    times = []
+    for case, answer in sorted(truth.items()):
+        names = set(answer["effects"])
+        if (wanted and case not in wanted) or (arguments.without_truth and not names):
+            continue
+        start = time.process_time()
+        found = diagnose(
+            read_campaign(arguments.directory / f"{case}.h5"),
+            without=frozenset(names if arguments.without_truth else ()),
+        )
+        times.append(time.process_time() - start)
+        word = judge(names, found, hidden=arguments.without_truth)
+        table[kind_of(names), word] += 1
+        print(line(case, names, found, word, times[-1]), flush=True)
+    for (kind, word), count in sorted(table.items()):
+        print(f"{kind:8s} {word:22s} {count}")
+    times.sort()
+    print(f"median {times[len(times) // 2]:.1f} s, worst {times[-1]:.1f} s")
+
+
+if __name__ == "__main__":
+    main()

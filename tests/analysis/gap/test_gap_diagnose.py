@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: MIT
+"""From a campaign to a verdict: names, refusals, limits and the JSON contract."""
+
+import importlib.util
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from jointbench.acquisition.errors import BadData, FormatError
+from jointbench.analysis.gap.campaign import Campaign, read_campaign
+from jointbench.analysis.gap.catalogue_linear import LINEAR
+from jointbench.analysis.gap.checks import campaign_limits
+from jointbench.analysis.gap.diagnose import diagnose
+from jointbench.analysis.gap.records import Finding, diagnosis_json
+
+_spec = importlib.util.spec_from_file_location(
+    "gap_bench", Path(__file__).with_name("gap_bench.py")
+)
+assert _spec is not None and _spec.loader is not None
+made = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(made)
+
+
+def test_a_campaign_with_nothing_missing_is_told_so() -> None:
+    """Verdict none, no effect, no gap beyond noise."""
+    found = diagnose(made.made_campaign([]))
+    assert found.verdict is Finding.NONE
+    assert found.effects == ()
+    assert found.gap_before.chi2_per_dof == pytest.approx(1.0, abs=0.06)
+
+
+def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap() -> None:
+    """40 microseconds on the top channel come back within 4 sd; the gap closes."""
+    campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
+    found = diagnose(campaign, entries=LINEAR)
+    assert found.verdict is Finding.NAMED
+    (effect,) = found.effects
+    assert (effect.name, effect.site) == ("delay", "channel:a1")
+    (tau,) = effect.parameters
+    assert abs(tau.value - 4e-5) < 4 * tau.sd
+    assert found.shrink > 0.9
+
+
+def test_a_delay_outside_the_catalogue_is_not_called_by_another_name() -> None:
+    """With delay taken out, nothing else explains it."""
+    campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
+    found = diagnose(campaign, without=frozenset({"delay"}), entries=LINEAR)
+    assert found.verdict is Finding.UNKNOWN
+    assert found.reason
+
+
+def test_the_json_holds_the_keys_of_the_contract() -> None:
+    """Plain JSON, with the keys that scripts rely on."""
+    text = json.dumps(diagnosis_json(diagnose(made.made_campaign([]))))
+    keys = set(json.loads(text))
+    assert keys >= {
+        "verdict",
+        "effects",
+        "candidates",
+        "where",
+        "gap_before",
+        "gap_after",
+        "shrink",
+        "experiment",
+    }
+
+
+def test_one_level_only_is_a_reason_not_to_name() -> None:
+    """The reason says what to do."""
+    campaign = made.quiet_campaign()
+    level = np.abs(campaign.force).max(axis=1)
+    flat = replace(campaign, force=campaign.force * (300.0 / level)[:, None])
+    assert "one level" in campaign_limits(flat)
+
+
+def test_no_repeats_are_a_reason_not_to_name() -> None:
+    """Without a repeat there is no repeatability."""
+    campaign = made.quiet_campaign()
+    alone = replace(campaign, level=campaign.level + np.arange(8.0))
+    assert "twice" in campaign_limits(alone)
+    assert campaign_limits(campaign) == ""
+
+
+def write(path: Path, campaign: Campaign, change: Callable[[h5py.File], None]) -> None:
+    """Write a campaign file and spoil it."""
+    with h5py.File(path, "w") as file:
+        file.attrs["schema"] = "two-body-campaign/1"
+        file.attrs["fs_hz"] = campaign.sample_rate
+        file.attrs["nominal"] = json.dumps(made.NOMINAL)
+        file.attrs["nominal_rel_sigma"] = json.dumps(made.SPREAD)
+        for i in range(campaign.force.shape[0]):
+            record = file.create_group(f"records/r{i:02d}")
+            record["force"] = campaign.force[i].astype(np.float32)
+            record["accel"] = campaign.response[i].astype(np.float32)
+            record.attrs["level_N"] = campaign.level[i]
+            record.attrs["hit_dof"] = int(campaign.hit[i])
+            record.attrs["preload_N"] = campaign.preload[i]
+            record.attrs["order"] = i
+        change(file)
+
+
+def nothing(file: h5py.File) -> None:
+    """Leave the file as it is."""
+
+
+def put_nan(file: h5py.File) -> None:
+    """Spoil one sample."""
+    file["records/r03/accel"][1, 40] = np.nan
+
+
+def wrong_schema(file: h5py.File) -> None:
+    """Claim to be something else."""
+    file.attrs["schema"] = "something/2"
+
+
+def no_nominal(file: h5py.File) -> None:
+    """Lose the sheet."""
+    del file.attrs["nominal"]
+
+
+def bad_sheet(file: h5py.File) -> None:
+    """Give a mass of zero."""
+    file.attrs["nominal"] = json.dumps({**made.NOMINAL, "m2": 0.0})
+
+
+def test_a_campaign_file_is_read_as_it_was_written(tmp_path: Path) -> None:
+    """Forces, hits and preloads survive the file."""
+    path = tmp_path / "c.h5"
+    campaign = made.made_campaign([])
+    write(path, campaign, nothing)
+    read = read_campaign(path)
+    assert np.allclose(read.force, campaign.force, rtol=1e-6, atol=1e-6)
+    assert read.hit.tolist() == campaign.hit.tolist()
+    assert read.model.nominal.tolist() == campaign.model.nominal.tolist()
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "word"),
+    [
+        (put_nan, BadData, "r03"),
+        (wrong_schema, FormatError, "something/2"),
+        (no_nominal, FormatError, "nominal"),
+        (bad_sheet, BadData, "m2"),
+    ],
+)
+def test_a_spoilt_campaign_file_is_refused_by_name(
+    tmp_path: Path,
+    change: Callable[[h5py.File], None],
+    error: type[Exception],
+    word: str,
+) -> None:
+    """The message names what is wrong."""
+    path = tmp_path / "c.h5"
+    write(path, made.quiet_campaign(), change)
+    with pytest.raises(error, match=word):
+        read_campaign(path)
+
+
+def test_records_that_are_too_short_are_refused(tmp_path: Path) -> None:
+    """The message says how many samples are needed."""
+    path = tmp_path / "c.h5"
+    write(path, made.quiet_campaign(samples=256), nothing)
+    with pytest.raises(BadData, match="512"):
+        read_campaign(path)

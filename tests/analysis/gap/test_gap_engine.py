@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""The engine on a bench without any dynamics: it must not know the difference."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.bench import Blocks, Stage
+from jointbench.analysis.gap.confidence import Evidence, confidence_of
+from jointbench.analysis.gap.effects import Candidate, Effect, Parameter, Site, Term
+from jointbench.analysis.gap.fit import make_problem, minimise
+from jointbench.analysis.gap.heldout import hold_out
+from jointbench.analysis.gap.loop import Outcome, investigate
+from jointbench.analysis.gap.screening import null_threshold
+
+ROWS, GROUPS = 4000, 8
+POWERS = {"square": 2, "cube": 3}
+
+
+def effect(name: str) -> Candidate:
+    """Return a toy effect: a power of the load."""
+    amplitude = Parameter("a", "-", "one", -50.0, 50.0, off=0.0)
+    return Candidate(Effect(name, "toy", (amplitude,), "made up"), Site("curve", "y"))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """A straight line through the origin, measured with unit noise of 0.01."""
+
+    measured: FloatArray
+    candidates: tuple[Candidate, ...]
+    base_names: tuple[str, ...] = ("slope",)
+
+    @property
+    def base_sd(self) -> FloatArray:
+        """10 % of the slope."""
+        return np.array([0.1])
+
+    @property
+    def blocks(self) -> Blocks:
+        """Eight groups of rows."""
+        group = np.repeat(np.arange(GROUPS), ROWS // GROUPS)
+        labels = tuple({"group": str(i)} for i in range(GROUPS))
+        return Blocks(group, labels, ROWS)
+
+    def scale(self, word: str) -> float:
+        """Everything is of order one."""
+        return 1.0
+
+    def phases(self, candidate: Candidate) -> int:
+        """No effect has a phase."""
+        return 0
+
+    def refine(self, base: FloatArray, terms: Sequence[Term]) -> "Curve":
+        """The noise is known."""
+        return self
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01."""
+        y = LOAD * np.exp(base[0])
+        for term in terms:
+            y = y + term.coordinates[0] * LOAD ** POWERS[term.candidate.effect.name]
+        return np.asarray((y - self.measured) / 0.01)
+
+
+LOAD = np.tile(np.linspace(-1, 1, ROWS // GROUPS), GROUPS)
+
+
+def curve(square: float = 0.0, cube: float = 0.0, seed: int = 3) -> Curve:
+    """Return a measured curve with hidden powers."""
+    noise = 0.01 * np.random.default_rng(seed).standard_normal(ROWS)
+    measured = 1.05 * LOAD + square * LOAD**2 + cube * LOAD**3 + noise
+    return Curve(measured, (effect("square"), effect("cube")))
+
+
+def run(bench: Curve) -> Outcome:
+    """Run the loop in silence."""
+    return investigate(bench, lambda line: None)
+
+
+def names(outcome: Outcome) -> list[str]:
+    """Return the names of the winner."""
+    return sorted(c.effect.name for c in outcome.best.candidates)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_curve_with_nothing_missing_has_no_effect(seed: int) -> None:
+    """Noise alone passes the null test."""
+    outcome = run(curve(seed=seed))
+    assert outcome.gate.passed
+    assert names(outcome) == []
+
+
+def test_a_single_effect_is_found_with_its_size() -> None:
+    """A square of 0.02 is found within 4 sd."""
+    outcome = run(curve(square=0.02))
+    assert outcome.gate.passed
+    assert names(outcome) == ["square"]
+    assert outcome.best.x[-1] == pytest.approx(0.02, abs=0.0015)
+
+
+def test_two_effects_are_found_one_after_the_other() -> None:
+    """A square and a cube are both named, in whichever order."""
+    outcome = run(curve(square=0.05, cube=0.1))
+    assert outcome.gate.passed
+    assert names(outcome) == ["cube", "square"]
+
+
+def test_an_effect_outside_the_catalogue_is_left_unexplained() -> None:
+    """A square with only a cube to offer does not pass the gate."""
+    bench = replace(curve(square=0.05), candidates=(effect("cube"),))
+    assert not run(bench).gate.passed
+
+
+def test_the_null_threshold_of_one_direction_is_the_quantile_of_chi_square() -> None:
+    """One two-sided direction: 99.5 % of chi2 with one degree of freedom is 7.88."""
+    one = np.ones((1, 1))
+    limit = null_threshold(one, np.array([False]), np.ones(1), seed=1)
+    assert limit == pytest.approx(7.88, abs=1.2)
+
+
+def test_holding_out_agrees_with_a_refit_without_the_group() -> None:
+    """The Newton step equals an explicit refit for a model linear in its parameter."""
+    bench = curve()
+    fit = minimise(make_problem(bench, (effect("square"),)), np.array([0.0, 0.1]))
+    held = hold_out(fit, bench.blocks)
+    out = bench.blocks.group == 2
+    keep = np.stack([LOAD * np.exp(fit.x[0]), LOAD**2], axis=1)[~out] / 0.01
+    normal = keep.T @ keep + np.diag(fit.prior)
+    start = bench.residual(fit.base, fit.terms, Stage())
+    step = -np.linalg.solve(normal, keep.T @ start[~out] + fit.prior * fit.x)
+    moved = start + fit.jacobian @ step
+    assert held.chi2[2] == pytest.approx(float(moved[out] @ moved[out]), rel=1e-4)
+
+
+def test_confidence_grows_with_the_margin_over_the_nearest_rival() -> None:
+    """More margin is never less sure."""
+    sure = [confidence_of(Evidence(m, 0.8, 20.0, 1)) for m in (15.0, 150.0, 1e4)]
+    assert sure == sorted(sure)
+    assert 0.5 < sure[0] < sure[-1] < 1.0

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""Forward models against another integrator, noise against its own statistics."""
+
+import importlib.util
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
+from jointbench.analysis.gap.forward import respond
+from jointbench.analysis.gap.lumped_make import make_bench
+from jointbench.analysis.gap.march import slide, slider_tables
+from jointbench.analysis.gap.noise import (
+    channel_sigma,
+    gain_scatter,
+    whitening_basis,
+)
+
+_spec = importlib.util.spec_from_file_location(
+    "gap_bench", Path(__file__).with_name("gap_bench.py")
+)
+assert _spec is not None and _spec.loader is not None
+made = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(made)
+
+
+def integrate(k3: float) -> FloatArray:
+    """Return both accelerations of the hardest hit by solve_ivp, shape (2, n)."""
+    m1, m2, k0, c0, kj, cj = (
+        made.NOMINAL[k] for k in ("m1", "m2", "k0", "c0", "kj", "cj")
+    )
+
+    def force(t: float) -> float:
+        return float(1000.0 * np.exp(-0.5 * ((t - 0.008) / 2.5e-4) ** 2))
+
+    def rate(t: float, x: FloatArray) -> list[float]:
+        r, v = x[1] - x[0], x[3] - x[2]
+        joint = kj * r + cj * v + k3 * r**3
+        return [
+            x[2],
+            x[3],
+            (joint - k0 * x[0] - c0 * x[2]) / m1,
+            (force(t) - joint) / m2,
+        ]
+
+    time = np.arange(made.SAMPLES) / made.RATE
+    run = solve_ivp(
+        rate,
+        (0, time[-1]),
+        np.zeros(4),
+        t_eval=time,
+        rtol=1e-9,
+        atol=1e-14,
+        method="DOP853",
+        max_step=2e-4,
+    )
+    return np.array([rate(t, x)[2:] for t, x in zip(time, run.y.T, strict=True)]).T
+
+
+@pytest.mark.parametrize("k3", [0.0, 1.5e16])
+def test_the_response_agrees_with_another_integrator(k3: float) -> None:
+    """Linear and cubic joints within 5e-5 of the peak."""
+    bench = make_bench(made.quiet_campaign())
+    terms = [made.term_of(bench, "cubic_stiffness", "link:joint", [k3])] if k3 else []
+    y = bench.response(np.zeros(6), terms, 8)[2]
+    reference = integrate(k3)
+    error = np.abs(y - reference)[:, :-64].max()
+    assert error < 5e-5 * np.abs(reference).max()
+
+
+def test_a_stiffer_body_count_uses_the_same_formula() -> None:
+    """The general inverse and the closed form agree for two bodies."""
+    bench = make_bench(made.quiet_campaign())
+    z = dynamic_stiffness(
+        bench.campaign.model,
+        bench.theta(np.zeros(6)),
+        bench.excitation.s,
+        bench.excitation.conditions,
+        (),
+    )
+    direct = np.linalg.inv(np.moveaxis(z, (0, 1), (-2, -1)))
+    assert np.allclose(np.moveaxis(invert(z), (0, 1), (-2, -1)), direct, rtol=1e-9)
+
+
+def test_a_delay_moves_the_response_by_whole_samples() -> None:
+    """Two samples of delay are a shift by two rows."""
+    bench = make_bench(made.quiet_campaign())
+    late = made.term_of(bench, "delay", "channel:a1", [2 / made.RATE])
+    plain = bench.response(np.zeros(6), ())
+    moved = bench.response(np.zeros(6), (late,))
+    size = np.abs(plain).max()
+    assert np.abs(moved[:, 1, 2:] - plain[:, 1, :-2]).max() < 1e-6 * size
+    assert np.array_equal(moved[:, 0], plain[:, 0])
+
+
+def test_a_slider_loads_along_its_curve_and_unloads_elastically() -> None:
+    """Loading saturates at 1; stepping back by d lowers u by d."""
+    tables, tops = slider_tables(1.0, 0.0, 12.0)
+    state = slide(0.0, 5.0, tables, tops)
+    grid = np.linspace(0, tops[0], tables.shape[1])
+    top = float(np.interp(abs(state), grid, tables[0]))
+    assert top == pytest.approx(1.0, abs=1e-4)
+    back = slide(state, -0.5, tables, tops)
+    assert float(np.interp(abs(back), grid, tables[0])) == pytest.approx(
+        top - 0.5, abs=1e-3
+    )
+
+
+def test_many_small_steps_move_a_slider_as_far_as_one() -> None:
+    """The state does not depend on the number of steps of a monotone path."""
+    tables, tops = slider_tables(0.3, 0.9, 1.0)
+    once, often = slide(0.0, 1.7, tables, tops), 0.0
+    for _ in range(100):
+        often = slide(often, 0.017, tables, tops)
+    assert often == pytest.approx(once, rel=1e-9)
+
+
+def test_white_noise_is_estimated_from_the_top_of_the_spectrum() -> None:
+    """Within 2 % for 16 records, whatever the low-frequency residual."""
+    rng = np.random.default_rng(5)
+    time = np.arange(2048) / made.RATE
+    misfit = 3.0 * np.sin(2 * np.pi * 300 * time)
+    residual = 0.2 * rng.standard_normal((16, 2, 2048)) + misfit
+    sigma = channel_sigma(residual, np.ones((16, 2)))
+    assert sigma == pytest.approx(0.2 * np.ones((16, 2)), rel=0.02)
+
+
+def test_scatter_is_found_when_repeats_differ_by_more_than_noise() -> None:
+    """A scatter of 0.15 % with noise of 0.01 % comes out within 40 %."""
+    rng = np.random.default_rng(8)
+    gains = 1e-4 * rng.standard_normal(16)
+    gains += np.repeat([1.5e-3, -1.5e-3], 8)
+    groups = [np.array([i, i + 8]) for i in range(8)]
+    found = gain_scatter(gains, np.full(16, 1e-8), groups)
+    assert found == pytest.approx(1.5e-3, rel=0.4)
+
+
+def test_whitening_leaves_unit_noise_where_a_direction_was_loud() -> None:
+    """I + b b^T becomes the identity along b."""
+    b = np.zeros((1, 50))
+    b[0, :10] = 2.0
+    basis, shrink = whitening_basis(b)
+    unit = b[0] / np.linalg.norm(b)
+    spread = np.sqrt(1 + np.sum(b**2))
+    loud = spread * unit
+    left = loud - basis.T @ (shrink * (basis @ loud))
+    assert np.linalg.norm(left) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_prediction_is_silent_without_force() -> None:
+    """No force, no response."""
+    bench = make_bench(made.quiet_campaign())
+    still = replace(bench.excitation, spectrum=0 * bench.excitation.spectrum)
+    y = respond(bench.campaign.model, bench.theta(np.zeros(6)), still)
+    assert not np.any(y)
