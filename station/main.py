@@ -230,6 +230,26 @@ def identify_command(
     run_identify(model, sessions, json_target=json)
 
 
+@app.command(name="gap")
+def gap_command(
+    campaign: Annotated[Path, typer.Argument(help="Two-body campaign file, HDF5.")],
+    without: Annotated[
+        str | None,
+        typer.Option(metavar="NAME,...", help="Effects to leave out of the catalogue."),
+    ] = None,
+    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Find where model and measurement disagree, and name what is missing.
+
+    Example: jointbench gap campaign.h5 --without jenkins,iwan --report gap.html
+    """
+    from jointbench.station.gap import run_gap
+
+    run_gap(campaign, without=without, report=report, json_target=json)
+
+
 @app.command(name="report")
 def report_command(
     session: Annotated[Path, typer.Argument(help="Session file.")],
