@@ -80,8 +80,8 @@ def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
         )
         for one in found.candidates[:MOST_CANDIDATES]
     ]
-    columns = ("explanation", "behind the best", "chi2/dof", "largest pull [sd]")
-    screen.print(table("Explanations tried", columns, ranked))
+    heads = ("explanation", "behind the best", "chi2/dof", "largest pull [sd]")
+    screen.print(table("Explanations tried", heads, ranked))
     if found.experiment:
         screen.print(f"\nnext: {found.experiment}", markup=False)
 
