@@ -4,11 +4,13 @@
 from pathlib import Path
 
 from rich.console import Console
+from rich.text import Text
 
 from jointbench.analysis.gap.campaign import read_campaign
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.records import Diagnosis, diagnosis_json
 from jointbench.station.output import console, table, with_sd, write_json
+from jointbench.station.outputs import check_outputs
 from jointbench.station.report_gap import gap_report
 from jointbench.station.report_page import write_report
 
@@ -34,13 +36,14 @@ def run_gap(
     names = frozenset(
         word.strip() for word in (without or "").split(",") if word.strip()
     )
+    check_outputs([campaign], [report, json_target])
     content = read_campaign(campaign)
     screen = Console(stderr=True, highlight=False)
-    with screen.status(f"reading {campaign.name}") as status:
+    with screen.status(Text(f"reading {campaign.name}")) as status:
         found = diagnose(
             content,
             without=names,
-            progress=lambda line: status.update(line),
+            progress=lambda line: status.update(Text(line)),
         )
     show_diagnosis(found, json_target)
     if report is not None:
