@@ -9,6 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
+from jointbench.acquisition.errors import FormatError
 from jointbench.acquisition.guards import open_guarded
 from jointbench.acquisition.netcdf_read import (
     dimension_names,
@@ -90,7 +91,8 @@ def _session(file: h5py.File) -> Description:
 def _recording(file: h5py.File, group: h5py.Group) -> Description:
     rate = number(group, "sample_rate")
     start = number(group, "start_time")
-    samples = int(group["samples"].shape[1])
+    channels = read_channels(group)
+    samples = _count_samples(group, len(channels), rate, start)
     hits = read_hits(file, group)
     verdicts = [hit.verdict.value for hit in hits]
     return {
@@ -111,11 +113,30 @@ def _recording(file: h5py.File, group: h5py.Group) -> Description:
                 "sensitivity_v_per_si": channel.sensitivity,
                 "range_si": channel.range,
             }
-            for channel in read_channels(group)
+            for channel in channels
         ],
         "verdicts": {word: verdicts.count(word) for word in dict.fromkeys(verdicts)},
         "hits": [_hit(hit, rate, start) for hit in hits],
     }
+
+
+def _count_samples(
+    group: h5py.Group, n_channels: int, rate: float, start: float
+) -> int:
+    """Return the samples of each channel, once they are what `read_session` takes."""
+    if not (math.isfinite(rate) and rate > 0 and math.isfinite(start)):
+        raise FormatError(
+            f"{group.name!r} is damaged: sample_rate is {rate:g} Hz and start_time "
+            f"{start:g} s, a rate must be finite and positive, a time finite"
+        )
+    samples = group["samples"]
+    whole = isinstance(samples, h5py.Dataset) and samples.dtype.kind in "fiu"
+    if not whole or samples.ndim != 2 or samples.shape[0] != n_channels:
+        raise FormatError(
+            f"{group.name!r} is damaged: its samples must be real numbers of shape "
+            f"({n_channels}, n), one row a channel"
+        )
+    return int(samples.shape[1])
 
 
 def _hit(hit: Hit, rate: float, start: float) -> Description:

@@ -22,7 +22,7 @@ from jointbench.acquisition.errors import (
 from jointbench.acquisition.even_steps import fit_even_steps
 from jointbench.acquisition.records import Provenance, Step, step
 from jointbench.acquisition.surfaces import Areal, Profile, Surface
-from jointbench.acquisition.tables import Table
+from jointbench.acquisition.tables import Table, split_row
 from jointbench.acquisition.text_files import named, shown
 
 # A coordinate may lie this far from its grid line [step], and two readings nearer
@@ -92,12 +92,21 @@ def surface_from_table(
     """
     if columns is None:
         raise UnitError(_what_to_type(table))
+    cells = len(split_row(table.rows[0], table.delimiter)) if table.rows else 0
+    if table.values.shape[0] < len(columns) == cells:
+        raise FormatError(
+            f"{named(table.path)}: column {table.values.shape[0] + 1} "
+            f"({columns[table.values.shape[0]].role!r}) holds no value in any row; "
+            "export it again, or leave its trailing separator out of --columns"
+        )
     if len(columns) != table.values.shape[0]:
         raise FormatError(
             f"{named(table.path)} has {table.values.shape[0]} columns, --columns names "
             f"{len(columns)}; name each, '-' for one that is not wanted"
         )
     place = {column.role: i for i, column in enumerate(columns)}
+    for role in {"x", "y"} & place.keys():
+        table.require_sane(place[role], columns[place[role]].factor, role)
     heights, valid = _heights(table, place["z"], columns[place["z"]])
     provenance = (origin, _describe(table, columns, valid))
     if "y" in place:
@@ -142,6 +151,12 @@ def _heights(table: Table, index: int, column: Column) -> tuple[FloatArray, Bool
             f"{named(table.path)}: {table.where(int(infinite[0]))}: height is "
             "infinite; leave the cell of a missing point empty"
         )
+    if missing.all():
+        raise FormatError(
+            f"{named(table.path)}: column {index + 1} ('z') holds no value in any row; "
+            "name the column that holds the heights"
+        )
+    table.require_sane(index, column.factor, "height", skip=missing)
     return np.where(missing, 0.0, values) * column.factor, ~missing
 
 

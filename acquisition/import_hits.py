@@ -127,6 +127,7 @@ def _time_steps(table: Table, columns: Sequence[Column]) -> EvenSteps:
     index = _time_column(columns)
     unit = columns[index].unit
     to_si(unit, "time")
+    table.require_sane(index, columns[index].factor, "time")
     try:
         return fit_even_steps(
             table.values[index],
@@ -151,6 +152,7 @@ def _samples(table: Table, index: int, column: Column) -> FloatArray:
             f"{values[row]:g}, every sample needs a number; cut the record there, or "
             "export it without gaps"
         )
+    table.require_sane(index, column.factor, column.role)
     return np.asarray(values * column.factor)
 
 

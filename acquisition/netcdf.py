@@ -13,6 +13,7 @@ Source:
 """
 
 import os
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -69,9 +70,8 @@ def new_file(
         part.replace(path)
         _sync(path.parent)
     except OSError as error:
-        reason = error.strerror or str(error).splitlines()[0]
         raise UsageError(
-            f"{named(path)} cannot be written: {reason}; choose another place"
+            f"{named(path)} cannot be written: {_reason(error)}; choose another place"
         ) from error
     finally:
         with suppress(OSError):
@@ -310,6 +310,13 @@ def _require_free(path: Path, overwrite: bool) -> None:
             f"{named(path)} is there already; choose another name, or say that it may "
             "be overwritten"
         )
+
+
+def _reason(error: OSError) -> str:
+    """Return the system's word for an error, without HDF5's account of itself."""
+    told = re.search(r"errno = (\d+)", str(error))
+    code = error.errno or (int(told[1]) if told else 0)
+    return os.strerror(code) if code else "the system refused"
 
 
 def _sync(path: Path) -> None:

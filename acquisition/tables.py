@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.errors import FormatError, HostileFile
 from jointbench.acquisition.text_files import (
     decode,
@@ -26,6 +26,8 @@ MAX_ROWS = 20_000_000
 MAX_COLUMNS = 512
 MAX_CELLS = 100_000_000
 MAX_HEADER_LINES = 1000
+# Beyond what any instrument reads, and its powers still fit a double [SI unit].
+LARGEST_VALUE = 1e30
 NPY_MAGIC = b"\x93NUMPY"
 # What NumPy lets through where the header of an array is no Python literal.
 _HEADER_ERRORS = (EOFError, SyntaxError, tokenize.TokenError, RecursionError)
@@ -65,6 +67,25 @@ class Table:
         if self.lines is None:
             return f"index {row}"
         return f"line {self.lines[row]}"
+
+    def require_sane(
+        self, column: int, factor: float, what: str, *, skip: BoolArray | None = None
+    ) -> None:
+        """Raise `FormatError` where |value * factor| exceeds `LARGEST_VALUE`.
+
+        `what` names the quantity; rows in `skip`, shape (n_rows,), hold no value.
+        """
+        values = self.values[column]
+        with np.errstate(over="ignore"):
+            beyond = np.isfinite(values) & (np.abs(values * factor) > LARGEST_VALUE)
+        if skip is not None:
+            beyond &= ~skip
+        if np.any(beyond):
+            row = int(np.argmax(beyond))
+            raise FormatError(
+                f"{named(self.path)}: {self.where(row)}: {what} is {values[row]:g}, "
+                f"beyond {LARGEST_VALUE:g} in SI; correct the number or its unit"
+            )
 
     def printed_units(self, column: int) -> FloatArray:
         """Return the unit of the last printed digit of each number of a column.

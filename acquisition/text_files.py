@@ -18,6 +18,7 @@ _BOMS = (
     (codecs.BOM_UTF16_LE, "utf-16"),
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
+_HDF5 = b"\x89HDF\r\n\x1a\n"
 # What a text never holds: control characters other than tab, line and page ends and
 # the Ctrl-Z that old programs put at the end.
 _BINARY = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f\x7f]")
@@ -99,6 +100,11 @@ def decode(data: bytes, path: Path | str) -> tuple[str, str]:
     Raises:
         FormatError: it is none of the three, or is no text at all.
     """
+    if data.startswith(_HDF5):
+        raise FormatError(
+            f"{named(path)} is an HDF5 file, not a table: a session needs no import, "
+            "give it to 'jointbench modal' or 'jointbench report' directly"
+        )
     for encoding in _candidates(data):
         try:
             text = data.decode(encoding)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
 from jointbench.analysis.asperity import FractalSurface
-from jointbench.analysis.contact_material import ContactMaterial
+from jointbench.analysis.contact_material import PRESSURE_RANGE, ContactMaterial
 from jointbench.analysis.contact_models import (
     REGIMES,
     ContactModel,
@@ -31,6 +31,13 @@ DAMPING_REASON = (
 # Above this many times the largest contact, the real area is made of contacts far
 # smaller than any the model's surface was measured at.
 _MANY_CONTACTS = 100.0
+# From a single atom's grip to a mountain's weight [N].
+_LOAD_RANGE = (1e-9, 1e12)
+# G is no length on the surface: height goes as G^(D - lowest), so smooth surfaces of
+# low dimension have G far below an atom, and only the upper end is a size [m].
+_ROUGHNESS_RANGE = (1e-60, 1.0)
+# Real surfaces are described with 1.5; the function is sparse far below this [-].
+_LARGEST_GAMMA = 1e3
 
 
 class ContactVerdict(StrEnum):
@@ -116,6 +123,11 @@ def predict_contact(
         preload=preload,
         gamma=gamma,
     )
+    if nominal_area is not None and not 0 < nominal_area < math.inf:
+        raise BadData(
+            f"nominal area is {nominal_area:g} m^2, it must be finite and positive; "
+            "give e.g. 0.01"
+        )
     verdict, reasons = _judge(sums, nominal_area)
     return ContactState(
         model=model.name,
@@ -158,7 +170,8 @@ def contact_curve(
         Areas, and load and stiffness by regime, of the broadcast shape.
 
     Raises:
-        BadData: a number outside the model's range.
+        BadData: a number outside the model's range, or outside what a solid joint can
+            have, or numbers that together overflow.
     """
     model = contact_model(model) if isinstance(model, str) else model
     hard = np.asarray(material.hardness if hardness is None else hardness, dtype=float)
@@ -170,9 +183,12 @@ def contact_curve(
         gamma,
     )
     _require_range(model, surface)
-    _require_positive("preload", force, "N", "4000")
-    log_largest = solve_largest_area(model, surface, material, force)
-    return joint_sums(model, surface, material, log_largest)
+    _require_within("preload", force, _LOAD_RANGE, "N", "4000")
+    with np.errstate(all="ignore"):  # what overflows is refused just below
+        log_largest = solve_largest_area(model, surface, material, force)
+        sums = joint_sums(model, surface, material, log_largest)
+    _require_finite(model, sums)
+    return sums
 
 
 def tangential_stiffness(
@@ -253,17 +269,37 @@ def _require_range(model: ContactModel, surface: FractalSurface) -> None:
             f"fractal dimension {first:g} is not between {low:g} and {low + 1:g}, as "
             f"model {model.name!r} ({model.topography.name}) needs; {way_out}"
         )
-    _require_positive("roughness", surface.roughness, "m", "1e-9")
-    _require_positive("hardness", surface.hardness, "Pa", "2.3e9")
-    if not surface.gamma > 1:
-        raise BadData(f"gamma is {surface.gamma:g}, it must exceed 1; usual is 1.5")
+    _require_within("roughness", surface.roughness, _ROUGHNESS_RANGE, "m", "1e-9")
+    _require_within("hardness", surface.hardness, PRESSURE_RANGE, "Pa", "2.3e9")
+    if not 1 < surface.gamma <= _LARGEST_GAMMA:
+        raise BadData(
+            f"gamma is {surface.gamma:g}, it must exceed 1 and be at most "
+            f"{_LARGEST_GAMMA:g}; usual is 1.5"
+        )
 
 
-def _require_positive(name: str, values: FloatArray, unit: str, example: str) -> None:
-    """Raise unless all `values` are finite and above zero."""
-    bad = ~(np.isfinite(values) & (values > 0))
+def _require_finite(model: ContactModel, sums: JointSums) -> None:
+    """Raise unless every area, load and stiffness is a number."""
+    for name in ("largest_area", "critical_area", "real_area", "load", "stiffness"):
+        if not np.all(np.isfinite(getattr(sums, name))):
+            raise BadData(
+                f"{name.replace('_', ' ')} of model {model.name!r} is not finite with "
+                "these numbers; check dimension, roughness (in metres) and preload"
+            )
+
+
+def _require_within(
+    name: str,
+    values: FloatArray,
+    limits: tuple[float, float],
+    unit: str,
+    example: str,
+) -> None:
+    """Raise unless all `values` are finite, positive and physically possible."""
+    low, high = limits
+    bad = ~((values >= low) & (values <= high))
     if np.any(bad):
         raise BadData(
             f"{name} is {values[bad].flat[0]:g} {unit}, it must be finite and "
-            f"positive; give e.g. {example}"
+            f"positive, {low:g} to {high:g} {unit}; give e.g. {example}"
         )

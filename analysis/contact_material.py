@@ -8,7 +8,11 @@ from enum import StrEnum
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, require_positive
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.errors import BadData, UsageError
+
+# From far below the softest gel to ten times the modulus of diamond [Pa]; what lies
+# outside is a number in the wrong unit.
+PRESSURE_RANGE = (1e3, 1e13)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +40,14 @@ class ContactMaterial:
         require_positive("friction_factor", self.friction_factor)
         if self.yield_strength is not None:
             require_positive("yield_strength", self.yield_strength)
+        low, high = PRESSURE_RANGE
+        for name in ("effective_modulus", "hardness", "yield_strength"):
+            value = getattr(self, name)
+            if value is not None and not low <= value <= high:
+                raise BadData(
+                    f"{name} is {value:g} Pa, a solid has {low:g} to {high:g} Pa; "
+                    "give it in Pa, e.g. 2.3e9"
+                )
         if not 0.0 <= self.poisson <= 0.5:
             raise UsageError(
                 f"poisson is {self.poisson:g}, a solid has 0 to 0.5; give e.g. 0.28"

@@ -2,6 +2,7 @@
 """Stiffness and damping of joints from measured modes of a lumped bench."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
@@ -26,6 +27,10 @@ from jointbench.analysis.measured_modes import MeasuredModes
 
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
+_NO_FIT = (
+    "the model does not fit the modes, so its value describes nothing; check masses, "
+    "mode numbers and links, then identify again"
+)
 # The model does not fit if noise alone would do worse this seldom.
 _MISFIT = 1e-3
 # More than this standard deviation in ln counts as not determined (100 %).
@@ -65,7 +70,7 @@ def identify_links(
         shapes the answer is "several solutions".
 
     Raises:
-        BadData: more modes than the model can have.
+        BadData: more modes than the model can have, or one response given twice.
         UsageError: a link, body or mode number that does not exist.
 
     Source:
@@ -82,6 +87,10 @@ def identify_links(
     fallen = [one for one in optima[1:] if one.chi2 >= limit]
     parameters = _parameters(problem, best, rivals, scale)
     verdict, reasons = _judge(problem, best, rivals, parameters, freedom)
+    if verdict is IdentificationVerdict.INCONSISTENT:
+        parameters = tuple(
+            replace(one, identifiable=False, reason=_NO_FIT) for one in parameters
+        )
     found = model_at(problem, best.unknowns)
     return Identification(
         verdict=verdict,

@@ -78,7 +78,7 @@ def pose_problem(
         The problem; damping is sought only where damping ratios were measured.
 
     Raises:
-        BadData: more modes than the model can have.
+        BadData: more modes than the model can have, or one response given twice.
         UsageError: a link, body or mode number that does not exist.
     """
     n_modes = measured.natural_frequency.size
@@ -86,6 +86,7 @@ def pose_problem(
         range(n_modes) if mode_numbers is None else mode_numbers, dtype=np.int64
     )
     _require_numbers(numbers, n_modes, len(model.bodies))
+    _require_own_outputs(measured)
     stiff = _links(model, unknown)
     omega = 2 * np.pi * float(np.exp(np.mean(np.log(measured.natural_frequency))))
     mass = float(np.mean([body.mass for body in model.bodies]))
@@ -280,3 +281,22 @@ def _require_numbers(numbers: IntArray, n_modes: int, n_bodies: int) -> None:
             f"mode {numbers.max() + 1} was measured, a model of {n_bodies} bodies has "
             f"at most {n_bodies} modes; narrow the band or add a body to the model"
         )
+
+
+def _require_own_outputs(measured: MeasuredModes) -> None:
+    """Raise where two outputs sit on one body, or two bodies read one channel."""
+    names = measured.outputs
+    for at, name in enumerate(names):
+        if name in names[:at]:
+            raise BadData(
+                f"body {name!r} has two outputs; give one output for each body"
+            )
+        if measured.shapes is None or measured.shapes.shape[0] < 2:
+            continue  # one mode alone may move two bodies alike
+        for before in range(at):
+            if np.array_equal(measured.shapes[:, before], measured.shapes[:, at]):
+                raise BadData(
+                    f"bodies {names[before]!r} and {name!r} read the same output: "
+                    "their shapes agree to the last digit in every mode; give each "
+                    "body the channel that sits on it"
+                )

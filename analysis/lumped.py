@@ -13,6 +13,9 @@ from jointbench.acquisition.records import step
 from jointbench.signal.frf import Frf, FrfKind
 
 GROUND = "ground"
+# A microgram to a million tonnes [kg]: nothing a hammer tests is outside, and
+# eigenvalues of masses beyond lose all their digits.
+_MASS_RANGE = (1e-9, 1e9)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +73,7 @@ class LumpedModel:
         _require_unique("link", [link.name for link in self.links])
         for body in self.bodies:
             _require_number(f"mass of body {body.name!r}", body.mass, above=True)
+            _require_mass(body)
             _require_number(f"mass_sd of body {body.name!r}", body.mass_sd)
         for link in self.links:
             _require_ends(link, names)
@@ -190,6 +194,16 @@ def _require_ends(link: Link, names: Sequence[str]) -> None:
         raise UsageError(
             f"link {link.name!r} joins {list(link.ends)}; it must join two different "
             f"ones of {sorted(known)}"
+        )
+
+
+def _require_mass(body: Body) -> None:
+    """Raise unless a body weighs what a tested body can weigh."""
+    low, high = _MASS_RANGE
+    if not low <= body.mass <= high:
+        raise UsageError(
+            f"mass of body {body.name!r} is {body.mass:g} kg, a body weighs {low:g} to "
+            f"{high:g} kg; give it in kg"
         )
 
 

@@ -91,6 +91,9 @@ class BenchModel(_Strict):
                     f"link {name!r} joins {list(link.between)}; it must join two of "
                     f"{sorted(known)}"
                 )
+        channels = [b.channel for b in self.bodies.values() if b.channel is not None]
+        if len(set(channels)) != len(channels):
+            raise ValueError(f"two bodies share a channel: {channels}")
         if self.contact is not None and self.contact.link not in self.links:
             raise ValueError(
                 f"contact.link is {self.contact.link!r}; links are {list(self.links)}"

@@ -17,6 +17,7 @@ from jointbench.signal.fractal import fit_fractal
 from jointbench.signal.structure_function import StructureFunction, combine
 from jointbench.station.inputs import read_surfaces
 from jointbench.station.output import console, table, write_json
+from jointbench.station.outputs import check_outputs
 from jointbench.station.surface import analyse_surface
 
 FACES = 2
@@ -45,6 +46,7 @@ def run_contact(
     json_target: str | None,
 ) -> tuple[ContactPoint, ...]:
     """Predict every model at every load and show them."""
+    check_outputs(surfaces, [json_target])
     chosen = [contact_model(name) for name in models]
     material = ContactMaterial(
         effective_modulus=parse_value(modulus, "pressure"),
@@ -101,7 +103,11 @@ def _surface(
 ) -> ContactSurface:
     if files and dimension is None and roughness is None:
         found = read_surfaces(files, columns=columns)
-        faces = found if len(found) == FACES else found[:1] * FACES
+        if len(found) > FACES:
+            raise UsageError(
+                f"{len(found)} surfaces for one joint; give one face or two"
+            )
+        faces = found if len(found) == FACES else found * FACES
         return equivalent_surface([analyse_surface(s).structure for _, s in faces])
     if dimension is None or roughness is None or files:
         raise UsageError(

@@ -14,6 +14,7 @@ from jointbench.station.demo_truth import compare_with_truth
 from jointbench.station.identify import show_joint
 from jointbench.station.modal import modal_json, show_modal
 from jointbench.station.output import console, table, working, write_json
+from jointbench.station.outputs import check_folder, check_outputs, write_text
 from jointbench.station.report_command import compose, joint_link
 from jointbench.station.report_joint import side_by_side
 from jointbench.station.report_page import DataTable, Section, write_report
@@ -24,6 +25,16 @@ from jointbench.station.toml_file import read_toml
 from jointbench.station.truth import Comparison, as_json
 
 EXIT_QUALITY = 5
+FILES = (
+    "bench.toml",
+    "face-a.csv",
+    "face-b.csv",
+    "report.html",
+    "session.h5",
+    "session.results.h5",
+    "summary.json",
+)
+"""All that the demo makes; it overwrites these and nothing else."""
 MODEL_FILE = """\
 # The demo's two-body bench: weighed masses, unknown links.
 [bodies.base]
@@ -63,6 +74,8 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     Returns:
         0, or 5 if an estimate misses the truth by more than the demo allows.
     """
+    check_folder(out, FILES)
+    check_outputs([], [json_target])
     out.mkdir(parents=True, exist_ok=True)
     screen = console(json_target)
     with working("measuring two faces and a dozen hits on the simulated bench"):
@@ -89,7 +102,7 @@ def _write_model(path: Path, visit: DemoVisit) -> Path:
         top_sd=visit.mass_sds["top"],
         preload=visit.truth.bench.preload,
     )
-    path.write_text(text, encoding="utf-8")
+    write_text(path, text)
     return path
 
 

@@ -8,15 +8,22 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray
 from jointbench.acquisition.errors import BadData
-from jointbench.analysis.identification import Identification, identification_json
+from jointbench.analysis.identification import (
+    Identification,
+    IdentificationVerdict,
+    identification_json,
+)
 from jointbench.analysis.identify import identify_links
 from jointbench.analysis.lumped import Body, Link, LumpedModel
 from jointbench.analysis.measured_modes import MeasuredModes
 from jointbench.signal.modal_model import ModalModel
+from jointbench.signal.modes import ModalSettings
 from jointbench.station.bench_model import BenchModel
-from jointbench.station.chain import run_chain
+from jointbench.station.chain import ChainSettings, run_chain
 from jointbench.station.inputs import read_recordings
+from jointbench.station.modal import parse_band
 from jointbench.station.output import console, table, with_sd, working, write_json
+from jointbench.station.outputs import check_outputs
 from jointbench.station.toml_file import read_toml
 
 SENSITIVITY_SD = 0.02
@@ -24,17 +31,28 @@ SENSITIVITY_SD = 0.02
 
 
 def run_identify(
-    model: Path, sessions: Sequence[Path], *, json_target: str | None
+    model: Path,
+    sessions: Sequence[Path],
+    *,
+    band: str | None = None,
+    json_target: str | None,
 ) -> Identification:
     """Identify the links of `model` from the modes of `sessions` and show them."""
+    check_outputs([model, *sessions], [json_target])
+    settings = ChainSettings(modal=ModalSettings(band=parse_band(band)))
     bench = read_toml(model, BenchModel)
     recordings = read_recordings(sessions, columns=None, point="1")
     with working("fitting modes, identifying links"):
-        modes = run_chain(recordings).result.model
+        modes = run_chain(recordings, settings).result.model
         result = identify_joint(bench, modes)
     show_joint(result, json_target)
     write_json(json_target, identification_json(result))
     return result
+
+
+def fits(result: Identification) -> bool:
+    """Tell whether the model can have the measured modes at all."""
+    return result.verdict is not IdentificationVerdict.INCONSISTENT
 
 
 def identify_joint(bench: BenchModel, modes: ModalModel) -> Identification:
@@ -69,18 +87,25 @@ def lumped_model(bench: BenchModel) -> LumpedModel:
 def measured_modes(bench: BenchModel, modes: ModalModel) -> MeasuredModes:
     """Return measured modes, with the shape at each body that has a channel.
 
-    The lowest modes are taken, as many as there are bodies: above, bodies bend.
+    Raises:
+        BadData: there are more modes than bodies: above, bodies bend.
     """
-    count = min(modes.natural_frequency.size, len(bench.bodies))
+    count, most = modes.natural_frequency.size, len(bench.bodies)
+    if count > most:
+        found = ", ".join(f"{f:.1f}" for f in modes.natural_frequency)
+        raise BadData(
+            f"{count} modes ({found} Hz) for {most} rigid bodies; add bodies to the "
+            "model, or give a --band that holds the rigid-body modes only"
+        )
     seen = {
         name: b.channel for name, b in bench.bodies.items() if b.channel is not None
     }
-    shapes = modes.shapes[:count][:, [_output(modes, c) for c in seen.values()]]
+    shapes = modes.shapes[:, [_output(modes, c) for c in seen.values()]]
     return MeasuredModes(
-        natural_frequency=modes.natural_frequency[:count],
-        frequency_sd=modes.frequency_sd[:count],
-        damping_ratio=modes.damping_ratio[:count],
-        damping_ratio_sd=modes.damping_ratio_sd[:count],
+        natural_frequency=modes.natural_frequency,
+        frequency_sd=modes.frequency_sd,
+        damping_ratio=modes.damping_ratio,
+        damping_ratio_sd=modes.damping_ratio_sd,
         shapes=shapes if len(seen) > 1 else None,
         shape_sd=_shape_sd(shapes) if len(seen) > 1 else None,
         outputs=tuple(seen),

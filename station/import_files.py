@@ -5,12 +5,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Channel, Recording
 from jointbench.acquisition.session import Session, new_session
 from jointbench.acquisition.session_file import write_session
 from jointbench.acquisition.surfaces import Surface
 from jointbench.station.inputs import read_foreign
 from jointbench.station.output import console, table, working, write_json
+from jointbench.station.outputs import check_outputs
 
 
 def run_import(
@@ -27,6 +29,10 @@ def run_import(
     Raises:
         BadData: a file cannot be read; nothing is written then.
     """
+    check_outputs([*files, out], [json_target])
+    check_outputs(files, [] if out.exists() else [out])
+    if out.resolve() in {path.resolve() for path in files}:
+        raise UsageError(f"'{out}' is an input; write the session to another file")
     recordings: list[Recording] = []
     surfaces: list[Surface] = []
     for path in files:

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.columns import SURFACE_EXAMPLES, parse_columns
-from jointbench.acquisition.errors import BadData, UnitError
+from jointbench.acquisition.errors import BadData, UnitError, UsageError
 from jointbench.acquisition.import_hits import read_recording
 from jointbench.acquisition.import_surfaces import read_surface
 from jointbench.acquisition.records import Recording
 from jointbench.acquisition.session_file import read_session
 from jointbench.acquisition.surfaces import Surface
+from jointbench.acquisition.text_files import file_digest
 
 SESSION_SUFFIXES = (".h5", ".hdf5")
 
@@ -60,6 +61,7 @@ def read_recordings(
     Raises:
         BadData: a file cannot be read, or none holds a recording.
     """
+    refuse_twice(files)
     found: list[Recording] = []
     for path in files:
         if is_session_name(path):
@@ -70,6 +72,19 @@ def read_recordings(
         names = ", ".join(path.name for path in files)
         raise BadData(f"no recording in {names}; 'jointbench inspect' shows what is")
     return tuple(found)
+
+
+def refuse_twice(files: Sequence[Path]) -> None:
+    """Raise `UsageError` where the same content is given twice: it is no repeat."""
+    digests: dict[str, Path] = {}
+    for path in files:
+        digest = file_digest(path)
+        if digest in digests:
+            raise UsageError(
+                f"'{path}' and '{digests[digest]}' hold the same data; a copy is no "
+                "second measurement, give each once"
+            )
+        digests[digest] = path
 
 
 def read_surfaces(

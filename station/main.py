@@ -5,6 +5,7 @@ Every command imports what it needs when it runs, so that ``--help`` stays insta
 """
 
 import sys
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
@@ -51,19 +52,25 @@ def run() -> None:
 
 def exit_code(command: Callable[..., object], *, debug: bool) -> int:
     """Call `command` and turn what it raises into the contract's exit code."""
+    if debug:
+        result = command(standalone_mode=False)
+        return result if isinstance(result, int) else 0
+    with warnings.catch_warnings():
+        # What a warning of a library means to the user is said by our own checks.
+        warnings.simplefilter("ignore")
+        return _quiet_exit_code(command)
+
+
+def _quiet_exit_code(command: Callable[..., object]) -> int:
     try:
         result = command(standalone_mode=False)
     except TyperException as error:
         return _fail(error.format_message(), EXIT_USAGE)
     except JointbenchError as error:
-        if debug:
-            raise
         return _fail(str(error), code_of(error))
     except (KeyboardInterrupt, typer.Abort):
         return _fail("interrupted; finished files are whole", EXIT_INTERRUPTED)
     except OSError as error:
-        if debug:
-            raise
         return _fail(f"{error.strerror or error}: {error.filename}", EXIT_BAD_DATA)
     return result if isinstance(result, int) else 0
 
@@ -86,7 +93,7 @@ def demo_command(
     out: Annotated[Path, typer.Option(help="Folder for all results.")] = Path(
         "demo-out"
     ),
-    seed: Annotated[int, typer.Option(help="Seed of the simulated bench.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of the simulated bench.", min=0)] = 1,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
@@ -218,16 +225,20 @@ def contact_command(
 def identify_command(
     model: Annotated[Path, typer.Argument(help="Bench model, TOML.")],
     sessions: Annotated[list[Path], typer.Argument(help="Session files.")],
+    band: Annotated[
+        str | None, typer.Option(help="Band of the rigid-body modes, '50:900' [Hz].")
+    ] = None,
     json: Json = None,
     debug: Debug = False,
-) -> None:
+) -> int:
     """Identify the links of a lumped bench from its measured modes.
 
     Example: jointbench identify bench.toml session.h5 --json joint.json
     """
-    from jointbench.station.identify import run_identify
+    from jointbench.station.identify import fits, run_identify
 
-    run_identify(model, sessions, json_target=json)
+    found = run_identify(model, sessions, band=band, json_target=json)
+    return 0 if fits(found) else EXIT_QUALITY
 
 
 @app.command(name="gap")

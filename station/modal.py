@@ -2,6 +2,7 @@
 """``jointbench modal``: FRFs and modes of sessions and hit files."""
 
 from collections.abc import Sequence
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from jointbench.signal.modes import ModalSettings
 from jointbench.station.chain import ChainSettings, ModalChain, run_chain
 from jointbench.station.inputs import is_session_name, read_recordings
 from jointbench.station.output import console, table, with_sd, working, write_json
+from jointbench.station.outputs import check_outputs
 from jointbench.station.results_file import results_path, write_results
 
 
@@ -29,10 +31,11 @@ def run_modal(
     settings = ChainSettings(
         modal=ModalSettings(band=parse_band(band), highest_order=order)
     )
+    target = out or _beside(files)
+    check_outputs(files, [target, json_target])
     recordings = read_recordings(files, columns=columns, point=point)
     with working("judging hits, estimating FRFs, fitting modes"):
         chain = run_chain(recordings, settings)
-    target = out or _beside(files)
     if target is not None:
         write_results(target, chain, files)
     show_modal(chain, json_target)
@@ -54,8 +57,10 @@ def parse_band(text: str | None) -> tuple[float, float] | None:
         raise UsageError(
             f"--band is {text!r}; write lowest and highest frequency in Hz, as 50:5000"
         ) from None
-    if not 0 <= low < high:
-        raise UsageError(f"--band is {text!r}; the lower end must come first")
+    if not 0 <= low < high < inf:
+        raise UsageError(
+            f"--band is {text!r}; write two frequencies in Hz, the lower one first"
+        )
     return low, high
 
 

@@ -15,6 +15,8 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from jointbench.station.outputs import write_text
+
 Jsonable = Mapping[str, object]
 WIDTH_WITHOUT_TERMINAL = 120
 PLAIN_FROM, PLAIN_TO = -3, 6
@@ -23,7 +25,8 @@ PLAIN_FROM, PLAIN_TO = -3, 6
 
 def console(json_target: str | None = None) -> Console:
     """Return the console for tables: standard error when JSON takes standard output."""
-    screen = Console(stderr=json_target == "-", highlight=False)
+    # Names out of files are shown as they are: brackets are no markup.
+    screen = Console(stderr=json_target == "-", highlight=False, markup=False)
     if not screen.is_terminal:
         screen.width = WIDTH_WITHOUT_TERMINAL
     return screen
@@ -36,7 +39,7 @@ def working(message: str) -> Iterator[None]:
     if not progress.is_terminal:
         yield
         return
-    with progress.status(f"{message} ..."):
+    with progress.status(Text(f"{message} ...")):
         yield
 
 
@@ -63,7 +66,7 @@ def write_json(target: str | None, content: Jsonable) -> None:
     if target == "-":
         sys.stdout.write(text)
     else:
-        Path(target).write_text(text, encoding="utf-8")
+        write_text(Path(target), text)
 
 
 def _plain(value: object) -> object:

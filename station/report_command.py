@@ -7,6 +7,7 @@ from jointbench.acquisition.records import Step, Verdict
 from jointbench.acquisition.session_file import read_session
 from jointbench.station.bench_model import BenchModel
 from jointbench.station.output import console, engineering, with_sd, write_json
+from jointbench.station.outputs import check_outputs
 from jointbench.station.report_hits import hits_section
 from jointbench.station.report_joint import joint_section
 from jointbench.station.report_modal import modal_sections
@@ -30,10 +31,11 @@ def run_report(
     session: Path, *, out: Path | None, model: Path | None, json_target: str | None
 ) -> Path:
     """Analyse `session` and write the page beside it, or to `out`."""
+    target = out or session.with_suffix(".html")
+    check_outputs([session, *([model] if model else [])], [target, json_target])
     content = read_session(session)
     bench = None if model is None else read_toml(model, BenchModel)
     analysis = analyse_session(content, bench)
-    target = out or session.with_suffix(".html")
     write_report(compose(analysis, bench, title=session.stem), target)
     console(json_target).print(f"report: {target}")
     write_json(json_target, {"report": str(target), "remarks": list(analysis.remarks)})
@@ -53,8 +55,9 @@ def compose(
     if analysis.remarks:
         notes = tuple(Text(remark, "notice") for remark in analysis.remarks)
         sections.append(Section("remarks", "Remarks", notes))
+    if analysis.recordings:
+        sections.append(hits_section(analysis.recordings))
     if analysis.modal is not None:
-        sections.append(hits_section(analysis.modal.recordings))
         sections += modal_sections(analysis.modal)
     if analysis.surfaces:
         sections.append(surface_section(analysis.surfaces))
@@ -90,7 +93,7 @@ def _lead(analysis: SessionAnalysis) -> str:
 
 def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, ...]:
     tiles: list[Tile] = []
-    if analysis.modal is not None:
+    if analysis.recordings:
         tiles += [_hits_tile(analysis), *_mode_tiles(analysis)]
     for chain in analysis.surfaces:
         scaling = chain.fit.scaling
@@ -111,8 +114,9 @@ def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, .
 
 
 def _hits_tile(analysis: SessionAnalysis) -> Tile:
-    recordings = analysis.modal.recordings if analysis.modal else ()
-    verdicts = [hit.verdict for recording in recordings for hit in recording.hits]
+    verdicts = [
+        hit.verdict for recording in analysis.recordings for hit in recording.hits
+    ]
     good = sum(verdict is Verdict.OK for verdict in verdicts)
     return Tile("hits accepted", f"{good} of {len(verdicts)}", _why_not(verdicts))
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Literal
 
 from jointbench.station.figures import Figure
+from jointbench.station.outputs import write_text
 
 PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
 """Columns of words, which read from the left."""
@@ -99,7 +100,7 @@ def render(report: Report) -> str:
 
 def write_report(report: Report, path: Path) -> None:
     """Write the rendered page to `path`."""
-    path.write_text(render(report), encoding="utf-8")
+    write_text(path, render(report))
 
 
 def _figures(report: Report) -> str:

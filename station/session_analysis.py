@@ -4,10 +4,11 @@
 from dataclasses import dataclass
 
 from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.records import Recording
 from jointbench.acquisition.session import Session
 from jointbench.analysis.identification import Identification
 from jointbench.station.bench_model import BenchModel
-from jointbench.station.chain import ModalChain, run_chain
+from jointbench.station.chain import ChainSettings, ModalChain, judge_hits, run_chain
 from jointbench.station.identify import identify_joint
 from jointbench.station.joint import ContactPrediction, predict_joint
 from jointbench.station.output import working
@@ -20,6 +21,7 @@ class SessionAnalysis:
 
     Attributes:
         session: as recorded.
+        recordings: with judged hits; empty if none holds a hit.
         modal: from its recordings.
         surfaces: from its surfaces.
         contact: predicted from the surfaces, if a model names a contact.
@@ -28,6 +30,7 @@ class SessionAnalysis:
     """
 
     session: Session
+    recordings: tuple[Recording, ...] = ()
     modal: ModalChain | None = None
     surfaces: tuple[SurfaceChain, ...] = ()
     contact: ContactPrediction | None = None
@@ -42,20 +45,31 @@ def analyse_session(session: Session, model: BenchModel | None) -> SessionAnalys
     """
     remarks: list[str] = []
     with working("judging hits, estimating FRFs, fitting modes"):
-        modal = _modal(session, remarks)
+        recordings = _judged(session, remarks)
+        modal = _modal(recordings, remarks)
     with working("fitting surfaces"):
         surfaces = tuple(analyse_surface(surface) for surface in session.surfaces)
     with working("predicting and identifying the joint"):
         contact = _contact(surfaces, model, remarks)
         joint = _joint(modal, model, remarks)
-    return SessionAnalysis(session, modal, surfaces, contact, joint, tuple(remarks))
+    return SessionAnalysis(
+        session, recordings, modal, surfaces, contact, joint, tuple(remarks)
+    )
 
 
-def _modal(session: Session, remarks: list[str]) -> ModalChain | None:
-    if not session.recordings:
+def _judged(session: Session, remarks: list[str]) -> tuple[Recording, ...]:
+    try:
+        return judge_hits(session.recordings, ChainSettings())
+    except BadData as error:
+        remarks.append(f"No hits: {error}")
+        return ()
+
+
+def _modal(recordings: tuple[Recording, ...], remarks: list[str]) -> ModalChain | None:
+    if not recordings:
         return None
     try:
-        return run_chain(session.recordings)
+        return run_chain(recordings)
     except BadData as error:
         remarks.append(f"No modes: {error}")
         return None

@@ -19,6 +19,7 @@ from jointbench.station.output import (
     working,
     write_json,
 )
+from jointbench.station.outputs import check_outputs
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,6 +41,7 @@ def run_surface(
     files: Sequence[Path], *, columns: str | None, json_target: str | None
 ) -> tuple[SurfaceChain, ...]:
     """Fit every surface in `files` and show the verdicts."""
+    check_outputs(files, [json_target])
     chains = []
     results: list[dict[str, object]] = []
     for path, surface in read_surfaces(files, columns=columns):

@@ -23,14 +23,14 @@ def read_toml(path: Path, model: type[Model]) -> Model:
     try:
         if path.stat().st_size > MOST_BYTES:
             raise BadData(f"{path}: larger than {MOST_BYTES} bytes, not a model file")
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
         return model.model_validate(content)
     except FileNotFoundError as error:
         raise BadData(f"{path}: no such file; check the path") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise BadData(f"{path}: not a TOML file ({error})") from error
     except ValidationError as error:
         raise BadData(f"{path}: {_first(error)}") from error
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError is a ValueError
+        raise BadData(f"{path}: not a TOML file ({error})") from error
 
 
 def _first(error: ValidationError) -> str:

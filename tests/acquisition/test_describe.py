@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.describe import describe_file
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.errors import BadData, FormatError
 from jointbench.acquisition.netcdf import (
     new_file,
     write_axis,
@@ -126,3 +126,27 @@ def test_a_session_with_a_part_missing_is_refused(tmp_path):
         del file["stream/hit/point"]
     with pytest.raises(BadData, match="damaged"):
         describe_file(tmp_path / "s.h5")
+
+
+@pytest.mark.parametrize("rate", [0.0, -1.0, np.nan])
+def test_a_rate_that_no_recording_has_is_damage(tmp_path, rate):
+    """Not a division by zero."""
+    make_session(tmp_path / "s.h5")
+    with h5py.File(tmp_path / "s.h5", "r+") as file:
+        file["stream/hit"].attrs["sample_rate"] = rate
+    with pytest.raises(FormatError, match=r"damaged: sample_rate"):
+        describe_file(tmp_path / "s.h5")
+
+
+@pytest.mark.parametrize(
+    "samples", [np.zeros(100), np.zeros((2, 100)), np.full((1, 100), b"x")]
+)
+def test_samples_of_another_shape_or_type_are_damage(tmp_path, samples):
+    """One axis, a row too many, and text."""
+    make_session(tmp_path / "s.h5")
+    with h5py.File(tmp_path / "s.h5", "r+") as file:
+        del file["stream/hit/samples"]
+        file["stream/hit/samples"] = samples
+    with pytest.raises(FormatError, match="damaged: its samples") as caught:
+        describe_file(tmp_path / "s.h5")
+    assert "\n" not in str(caught.value)

@@ -167,3 +167,10 @@ def test_force_records_in_volts_are_read_with_their_sensitivity(tip):
     assert recording.sample_rate == 50_000
     again = dataclasses.replace(recording, name="again")
     assert again.samples is recording.samples
+
+
+def test_a_value_beyond_all_instruments_is_refused_by_its_line(tmp_path):
+    """Its square would overflow."""
+    path = write(tmp_path / "a.csv", response=RESPONSE * 1e200)
+    with pytest.raises(FormatError, match=r"a\.csv.*line 2: acceleration is 1e\+200"):
+        read_recording(path, columns="time:s,force:N,acceleration:m/s^2")

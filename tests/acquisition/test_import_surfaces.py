@@ -360,3 +360,38 @@ def test_a_vendor_binary_is_refused():
     for name in ("plu-1.plu", "x3p-2.x3p", "opdx-3.opdx", "mitutoyo_mock.xlsx"):
         with pytest.raises(FormatError, match="binary"):
             read_surface(SURFACES / "various" / name)
+
+
+# --- numbers no surface has ------------------------------------------------------
+
+
+def test_a_height_beyond_all_instruments_is_refused_by_its_line(tmp_path):
+    """Its square would overflow."""
+    path = tmp_path / "p.csv"
+    path.write_text("0,1e300\n1,2e300\n2,1.5e300\n")
+    with pytest.raises(FormatError, match=r"p\.csv.*line 1: height is 1e\+300"):
+        read_surface(path, columns="x:mm,z:um")
+
+
+def test_a_large_code_of_missing_points_is_no_height(tmp_path):
+    """Programs write 1e38 where there is no point."""
+    path = tmp_path / "p.csv"
+    path.write_text("0,1\n1,1e38\n2,3\n")
+    surface = read_surface(path, columns="x:mm,z:um!1e38")
+    assert_array_equal(surface.valid, [True, False, True])
+
+
+@pytest.mark.parametrize(
+    ("text", "columns", "place"),
+    [
+        ("0,\n1,\n2,\n", "x:mm,z:um", 2),
+        ("0,nan\n1,nan\n2,nan\n", "x:mm,z:um", 2),
+        ("0,,5\n1,,5\n2,,5\n", "x:mm,z:um,-", 2),
+    ],
+)
+def test_heights_that_are_all_missing_are_called_so(tmp_path, text, columns, place):
+    """Not a file with too few columns."""
+    path = tmp_path / "p.csv"
+    path.write_text(text)
+    with pytest.raises(FormatError, match=f"column {place} .*'z'.* holds no value"):
+        read_surface(path, columns=columns)

@@ -173,3 +173,14 @@ def test_xarray_reads_variables_axes_and_texts(tmp_path, engine):
         assert_array_equal(dataset["frequency"], 10 + 0.25 * np.arange(500))
         assert list(dataset["label"].values) == ["a1", "µ2"]
         assert dataset["h"].attrs["units"] == "m/N"
+
+
+def test_a_path_that_leads_nowhere_is_refused_in_plain_words(tmp_path):
+    """The system's word, without HDF5's error number."""
+    with (
+        pytest.raises(UsageError, match="No such file or directory; choose") as caught,
+        new_file(tmp_path / "no" / "r.h5", schema="a/1", title="a"),
+    ):
+        pass
+    assert "errno" not in str(caught.value)
+    assert "\n" not in str(caught.value)

@@ -188,3 +188,11 @@ def test_what_is_no_file_is_refused(tmp_path):
         with pytest.raises(BadData) as caught:
             read_table(path)
         assert "\n" not in str(caught.value)
+
+
+def test_an_hdf5_file_is_called_by_its_name(tmp_path):
+    """And sent where it can be read."""
+    path = tmp_path / "s.h5"
+    path.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(500))
+    with pytest.raises(FormatError, match=r"is an HDF5 file.*'jointbench modal'"):
+        read_table(path)

@@ -211,3 +211,51 @@ def test_a_material_that_cannot_exist_is_refused():
     """Poisson ratios end at one half."""
     with pytest.raises(UsageError, match="poisson"):
         ContactMaterial(69e9, 2e9, 0.6)
+
+
+@pytest.mark.parametrize(
+    ("changed", "match"),
+    [
+        ({"preload": 1e300}, "preload is 1e"),
+        ({"roughness": 1e-300}, "roughness is 1e-300"),
+        ({"roughness": 50.0}, "roughness is 50"),
+        ({"gamma": 1e300}, "gamma"),
+        ({"nominal_area": np.nan}, "nominal area"),
+    ],
+)
+def test_a_number_beyond_every_joint_is_refused(changed, match):
+    """Not answered with infinite areas that call themselves usable."""
+    usual = {"dimension": 1.5, "roughness": 1e-9, "preload": 4e3}
+    with pytest.raises(BadData, match=match) as caught:
+        predict_contact("modified_2d", material=IRON, **(usual | changed))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("modulus", [1e-300, 1e300])
+def test_a_modulus_no_solid_has_is_refused(modulus):
+    """It would be a number in the wrong unit."""
+    with pytest.raises(BadData, match=r"effective_modulus.*Pa"):
+        ContactMaterial(modulus, 2e9)
+
+
+@pytest.mark.parametrize("model", CONTACT_MODELS)
+@pytest.mark.parametrize("offset", [1e-9, 0.02, 0.5, 0.98, 1 - 1e-9])
+@pytest.mark.parametrize("corner", list(np.ndindex(2, 2, 2, 2)))
+def test_every_corner_of_the_ranges_is_finite_or_refused(model, offset, corner):
+    """No prediction holds a number that is not finite."""
+    preload = (1e-9, 1e12)[corner[0]]
+    roughness = (1e-60, 1.0)[corner[1]]
+    material = ContactMaterial((1e3, 1e13)[corner[2]], (1e3, 1e13)[corner[3]])
+    try:
+        sums = contact_curve(
+            model,
+            dimension=lowest(model) + offset,
+            roughness=roughness,
+            material=material,
+            preload=preload,
+        )
+    except BadData as error:
+        assert "not finite" in str(error)
+    else:
+        assert np.all(np.isfinite([sums.largest_area, sums.real_area]))
+        assert np.all(np.isfinite(sums.stiffness))

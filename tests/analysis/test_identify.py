@@ -183,6 +183,19 @@ def test_frequencies_that_no_stiffness_explains_do_not_fit():
     result = identify_links(chain(), measured)
     assert result.verdict is IdentificationVerdict.INCONSISTENT
     assert result.solutions[0].chi2 > 100
+    assert not any(one.identifiable for one in result.parameters)
+    assert all("does not fit" in one.reason for one in result.parameters)
+
+
+def test_two_bodies_that_read_one_channel_are_refused():
+    """Shapes alike to the last digit in both modes, or one body named twice."""
+    measured = measure(TRUTH)
+    twice = replace(measured, shapes=measured.shapes[:, [0, 0]])
+    with pytest.raises(BadData, match="'base' and 'top' read the same output"):
+        identify_links(chain(), twice)
+    named_twice = replace(measured, outputs=("top", "top"))
+    with pytest.raises(BadData, match="'top' has two outputs"):
+        identify_links(chain(), named_twice)
 
 
 def test_damping_of_a_hardly_strained_joint_cannot_be_told_from_zero():

@@ -97,3 +97,10 @@ def test_a_model_that_cannot_be_built_is_refused(bodies, links, match):
     """Names, ends, masses and stiffnesses are checked once."""
     with pytest.raises(UsageError, match=match):
         LumpedModel(bodies, links)
+
+
+@pytest.mark.parametrize("mass", [1e-300, 1e300])
+def test_a_mass_no_body_has_is_refused(mass):
+    """Its eigenvalues would overflow."""
+    with pytest.raises(UsageError, match=r"mass of body 'a'.*1e-09 to 1e\+09 kg"):
+        LumpedModel((Body("a", mass),), (Link("k", ("a", "ground"), 1.0),))

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: MIT
+"""Where results may go: never over an input, never over a file of another kind."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from jointbench.acquisition.errors import UsageError
+
+HEAD_BYTES = 512
+HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
+
+
+def check_outputs(inputs: Sequence[Path], outputs: Sequence[Path | str | None]) -> None:
+    """Refuse outputs that would destroy something, before any work is done.
+
+    Args:
+        inputs: files that the command reads.
+        outputs: files it will write; None and ``-`` (standard output) are left out.
+
+    Raises:
+        UsageError: an output is an input or another output, lies in no folder, or is
+            an existing file of another kind than the one that would replace it.
+    """
+    taken = {path.resolve(): "an input" for path in inputs}
+    for output in outputs:
+        if output is None or str(output) == "-":
+            continue
+        path = Path(output)
+        place = path.resolve()
+        if place in taken:
+            raise UsageError(f"'{path}' is {taken[place]}; write to another file")
+        if not place.parent.is_dir():
+            raise UsageError(
+                f"'{path}': there is no folder '{path.parent}'; make it first"
+            )
+        if place.is_dir():
+            raise UsageError(f"'{path}' is a folder; name a file in it")
+        if place.exists() and not _of_its_kind(place):
+            raise UsageError(
+                f"'{path}' is there already and no earlier result of this kind; "
+                "choose another name or remove it"
+            )
+        taken[place] = "another output"
+
+
+def check_folder(folder: Path, own: Sequence[str]) -> None:
+    """Refuse a folder that holds anything else than earlier results.
+
+    Args:
+        folder: that will be filled.
+        own: names of the files that the command itself makes.
+
+    Raises:
+        UsageError: `folder` is a file, or holds a file of another name.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"'{folder}' is a file; name a folder")
+    names = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+    foreign = sorted(names - set(own))
+    if foreign:
+        raise UsageError(
+            f"'{folder}' holds {foreign[0]!r}, which no demo made; name another folder"
+        )
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text so that it is there whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    part.write_text(text, encoding="utf-8")
+    os.replace(part, path)  # noqa: PTH105 - replaces on Windows too, Path.rename not
+
+
+def _of_its_kind(path: Path) -> bool:
+    """Tell whether an existing file is a result that may be made again."""
+    with path.open("rb") as file:
+        head = file.read(HEAD_BYTES)
+    suffix = path.suffix.lower()
+    if suffix in {".h5", ".hdf5"}:
+        return head.startswith(HDF5_MAGIC) and not _is_session(path)
+    if suffix in {".html", ".htm"}:
+        return head.lower().startswith(b"<!doctype html>")
+    return not head or head.lstrip().startswith(b"{")
+
+
+def _is_session(path: Path) -> bool:
+    import h5py
+
+    try:
+        with h5py.File(path, "r") as file:
+            schema = file.attrs.get("schema", b"")
+    except OSError:
+        return True
+    text = schema if isinstance(schema, bytes) else str(schema).encode()
+    return not text.startswith(b"jointbench-results/")
