@@ -16,6 +16,8 @@ GROUND = "ground"
 # A microgram to a million tonnes [kg]: nothing a hammer tests is outside, and
 # eigenvalues of masses beyond lose all their digits.
 _MASS_RANGE = (1e-9, 1e9)
+# Far above any link [SI]; beyond, squares in the eigenvalue problem overflow.
+_LARGEST_NUMBER = 1e30
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +83,7 @@ class LumpedModel:
                 value = getattr(link, what)
                 if value is not None:
                     _require_number(f"{what} of link {link.name!r}", value)
+                    _require_moderate(link.name, what, value)
 
     def index(self, body: str) -> int:
         """Return the degree of freedom of `body`.
@@ -204,6 +207,15 @@ def _require_mass(body: Body) -> None:
         raise UsageError(
             f"mass of body {body.name!r} is {body.mass:g} kg, a body weighs {low:g} to "
             f"{high:g} kg; give it in kg"
+        )
+
+
+def _require_moderate(link: str, what: str, value: float) -> None:
+    """Raise where a link is stiffer, or damps more, than doubles can carry."""
+    if value > _LARGEST_NUMBER:
+        raise UsageError(
+            f"{what} of link {link!r} is {value:g}, at most {_LARGEST_NUMBER:g} in SI "
+            "is computed; give N/m and N s/m"
         )
 
 

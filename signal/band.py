@@ -53,9 +53,25 @@ def choose_band(
         raise BadData(
             f"the band {low:g} to {high:g} Hz holds {np.count_nonzero(keep)} lines of "
             f"this FRF ({frequency[0]:g} to {frequency[-1]:g} Hz), at least "
-            f"{_LEAST_LINES} are needed; give a wider --band"
+            f"{_LEAST_LINES} are needed; {_more_lines(frequency, low, high, band)}"
         )
     return keep, f"{low:g} to {high:g} Hz: {reason}"
+
+
+def _more_lines(
+    frequency: FloatArray,
+    low: float,
+    high: float,
+    band: tuple[float, float] | None,
+) -> str:
+    """Say what would put enough lines into a band: a longer record, a wider band."""
+    now = 1.0 / float(np.median(np.diff(frequency)))
+    width = min(high, float(frequency[-1])) - max(low, float(frequency[0]))
+    needed = (_LEAST_LINES + _DC_LINES + 1) / width if width > 0.0 else 0.0
+    longer = f"record {needed:.3g} s after each hit instead of {now:.3g} s"
+    if band is None and needed > now:
+        return longer
+    return f"give a wider --band or {longer}" if needed > now else "give a wider --band"
 
 
 def _above_drift(frf: Frf, high: float) -> float:

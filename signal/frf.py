@@ -19,7 +19,13 @@ from jointbench.acquisition.arrays import (
 from jointbench.acquisition.errors import ShapeError
 from jointbench.acquisition.records import Provenance, Quantity, Recording, Step, step
 from jointbench.signal.hits import accepted_hits, find_hits
-from jointbench.signal.spectra import HitSpectra, Pair, hit_spectra, pair_up
+from jointbench.signal.spectra import (
+    HitSpectra,
+    Pair,
+    hit_spectra,
+    pair_up,
+    require_alive,
+)
 from jointbench.signal.windows import HammerWindow, choose_window, join_windows
 
 # The scatter of a few hits is itself noisy; it is averaged over this many lines.
@@ -124,8 +130,8 @@ def estimate_frf(
     Raises:
         NoHitFound: no accepted hit.
         SamplingError: the sample rates differ.
-        ChannelMissing: responses of different quantities, or a pair of output and
-            input that was never measured together.
+        ChannelMissing: a dead response, responses of different quantities, or a pair
+            of output and input that was never measured together.
 
     Source:
         Bendat and Piersol, Random Data (2010), sec. 6.1 and 9.2 (H1, its variance).
@@ -133,6 +139,9 @@ def estimate_frf(
     if isinstance(recordings, Recording):
         recordings = (recordings,)
     judged = [r if r.hits else find_hits(r) for r in recordings]
+    for recording in judged:
+        for hit in accepted_hits(recording):
+            require_alive(recording, hit)
     if window is None:
         window = join_windows([choose_window(r) for r in judged if accepted_hits(r)])
     spectra = hit_spectra(judged, window)

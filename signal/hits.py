@@ -69,6 +69,12 @@ def find_hits(recording: Recording, criteria: HitCriteria | None = None) -> Reco
     triggers = trigger_indices(
         force, level=level, rearm=criteria.rearm_fraction * level, dead=dead
     )
+    if not triggers and force[0] >= level:
+        raise NoHitFound(
+            f"recording {recording.name!r} begins inside the pulse ({force[0]:.4g} N "
+            f"at its first sample, trigger level {level:.4g} N); record again with a "
+            "pre-trigger, so that the force starts from zero"
+        )
     if not triggers:
         raise NoHitFound(
             f"recording {recording.name!r}: no force sample rises through "

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray, freeze
-from jointbench.acquisition.errors import NoModeFound
+from jointbench.acquisition.errors import NoModeFound, UsageError
 from jointbench.acquisition.records import Step, step
 from jointbench.signal.band import choose_band
 from jointbench.signal.frf import Frf
@@ -28,6 +28,9 @@ _HIGHEST_ORDER = 100
 _ORDERS_TRIED = 50
 # An order needs at least this many lines for each coefficient it adds.
 _LINES_PER_ORDER = 6
+# Beyond these an order that is asked for cannot be meant: noise, or hours.
+_LARGEST_ORDER = 200
+_LEAST_LINES_PER_ORDER = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +39,7 @@ class ModalSettings:
 
     Attributes:
         band: lowest and highest frequency [Hz], or None for the automatic choice.
-        highest_order: of the fit, or None for 100 over the number of inputs.
+        highest_order: of the fit, 2 or more, or None for 100 over the number of inputs.
         stability: when a pole counts as stable.
         refine: whether poles are refined by nonlinear least squares.
     """
@@ -96,10 +99,12 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
         The modal model with the evidence for it.
 
     Raises:
-        NoModeFound: no pole is stable and needed.
+        NoModeFound: no pole is stable and needed, or a response is zero throughout.
         BadData: the band holds too few lines.
+        UsageError: the highest order asked for is out of range.
     """
     settings = settings or ModalSettings()
+    _require_alive(frf)
     keep, reason = choose_band(frf, settings.band)
     orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
     poles = fit_poles(
@@ -143,13 +148,36 @@ def orders_to_try(
 
     Returns:
         Ascending orders.
+
+    Raises:
+        UsageError: the highest order asked for is below 2, or beyond 200 poles or one
+            pole for every two lines.
     """
-    highest = settings.highest_order or max(
-        _LOWEST_ORDER + 4,
-        min(round(_HIGHEST_ORDER / n_inputs), n_lines // (_LINES_PER_ORDER * n_inputs)),
-    )
+    highest = settings.highest_order
+    if highest is None:
+        fitting = n_lines // (_LINES_PER_ORDER * n_inputs)
+        highest = max(_LOWEST_ORDER + 4, min(round(_HIGHEST_ORDER / n_inputs), fitting))
+    else:
+        poles = min(_LARGEST_ORDER, n_lines // _LEAST_LINES_PER_ORDER)
+        limit = max(_LOWEST_ORDER, poles // n_inputs)
+        if not _LOWEST_ORDER <= highest <= limit:
+            raise UsageError(
+                f"order is {highest}; give {_LOWEST_ORDER} to {limit} ({n_lines} lines "
+                f"in the band, {n_inputs} input{'s' * (n_inputs > 1)}), or none"
+            )
     pitch = max(1, -(-(highest - _LOWEST_ORDER) // _ORDERS_TRIED))
     return tuple(range(highest, _LOWEST_ORDER - 1, -pitch))[::-1]
+
+
+def _require_alive(frf: Frf) -> None:
+    """Raise `NoModeFound` that names the responses that are zero on every line."""
+    dead = ~np.any(frf.response, axis=2)
+    if dead.any():
+        names = sorted({frf.outputs[row] for row in np.flatnonzero(dead.any(axis=1))})
+        raise NoModeFound(
+            f"the FRF of {', '.join(map(repr, names))} is zero on every line: a dead "
+            "channel; check its cable and measure again, or leave it out"
+        )
 
 
 def _record(

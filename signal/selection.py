@@ -23,10 +23,11 @@ from jointbench.signal.refine import RefinedPoles, refine_poles
 
 # Relative model error taken for granted before a fit has shown its own [-].
 _FIRST_MODEL_ERROR = 0.02
-# Chance that one of many wiggles of noise passes for a mode.
-_CHANCE = 1e-9
-# A mode whose width, as measured, has an sd beyond this share of it is not known.
-_VAGUE = 0.5
+# Chance that any wiggle of noise in the whole band passes for a mode; every line is a
+# look of its own (Bonferroni).
+_CHANCE = 1e-6
+# A mode whose damping has an sd beyond this share of it is not known.
+_VAGUE = 1.0 / 3.0
 _STEPS = 30
 
 
@@ -101,14 +102,17 @@ def fit_modes(
 
 
 def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolArray:
-    """Tell which modes to give up because their width cannot be told.
+    """Tell which modes to give up because their damping cannot be told.
+
+    The damping without the window's: under a strong exponential window every wiggle of
+    noise has a width, and it is the window's.
 
     Two poles laid on one peak are both vague, and the fit is as good with one: of
     overlapping vague poles only the least significant goes, then the rest are refitted.
     """
     width = measured_width(lines, poles.pole)
     sd = np.sqrt(poles.covariance[:, 0, 0] * poles.inflation)
-    vague: BoolArray = sd > _VAGUE * width
+    vague: BoolArray = sd > _VAGUE * np.abs(poles.pole.real)
     apart = np.abs(poles.pole.imag[:, None] - poles.pole.imag)
     overlap = apart < 2.0 * (width[:, None] + width)
     rival = overlap & vague & (significance < significance[:, None])
@@ -120,7 +124,8 @@ def _needed(
 ) -> IntArray:
     """Drop the least needed pole until all that are left are needed; return indices."""
     left = np.arange(pole.size)
-    limit = float(scipy.stats.chi2.isf(_CHANCE, 2 * lines.response.shape[0]))
+    chance = _CHANCE / lines.laplace.size
+    limit = float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
     while left.size:
         fit = fit_residues(lines, pole[left], variance)
         significance = _significance(lines, fit, pole[left], noise)
@@ -138,4 +143,22 @@ def _significance(
 ) -> FloatArray:
     """Judge each mode by the noise or by the misfit around it, whichever is more."""
     misfit = local_misfit(lines.response - fit.synthesis)
-    return fit_residues(lines, pole, np.maximum(noise, misfit)).significance
+    apparent = fit_residues(lines, pole, np.maximum(noise, misfit)).significance
+    return np.asarray(apparent / _window_gain(lines, pole))
+
+
+def _window_gain(lines: Lines, pole: ComplexArray) -> FloatArray:
+    """Return how much more noise a mode meets than its lines show, 1 or more.
+
+    An exponential window exp(-a t) on a block T leaves the noise early in the block,
+    where the mode is too: its power there is 2 a T / (1 - exp(-2 a T)) times the mean.
+    Weighted with a decay exp(-(a + d) t), that is the factor below; 1 without a window.
+    In terms of lines: the window makes neighbours share one error.
+    """
+    added = float(lines.laplace.real[0])
+    if added <= 0.0:
+        return np.ones(pole.size)
+    exponent = 2.0 * added * 2.0 * np.pi / float(np.median(np.diff(lines.laplace.imag)))
+    early = exponent / -np.expm1(-exponent)
+    width = measured_width(lines, pole)
+    return np.asarray(np.maximum(1.0, early * width / (width + added)))

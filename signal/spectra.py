@@ -27,6 +27,8 @@ from jointbench.signal.windows import HammerWindow, apply_window
 # Segments shorter than this share of the median are padded, not allowed to cut others.
 _SHORT = 0.5
 _FFT_FACTORS = (2, 3, 5, 7)
+# A constant that a filter went over still varies by this share of itself.
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,6 +102,32 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
         block=block,
         block_reason=reason,
     )
+
+
+def require_alive(recording: Recording, hit: Hit) -> None:
+    """Refuse a hit that a response channel did not see at all.
+
+    Args:
+        recording: holds the hit.
+        hit: an accepted one.
+
+    Raises:
+        ChannelMissing: a response is constant throughout; the message names all such.
+    """
+    rows = list(response_rows(recording))
+    samples = recording.samples[rows, hit.start : hit.stop]
+    size = np.abs(samples).max(axis=1)
+    dead = np.flatnonzero(np.ptp(samples, axis=1) <= _ROUNDING * size)
+    if dead.size:
+        names = ", ".join(
+            f"{recording.channels[rows[i]].name!r} (always {samples[i, 0]:.4g})"
+            for i in dead
+        )
+        raise ChannelMissing(
+            f"recording {recording.name!r}: no signal from {names} in the hit at "
+            f"{hit.trigger / recording.sample_rate:.4g} s; check the cable and the "
+            "sensor, or leave the channel out"
+        )
 
 
 def choose_block(lengths: Sequence[int]) -> tuple[int, str]:

@@ -91,6 +91,7 @@ def test_a_body_that_does_not_exist_is_refused_by_name():
         ((Body("a", 1.0),), (Link("k", ("a", "b"), 1.0),), "two different"),
         ((Body("a", 1.0),), (Link("k", ("a", "ground"), -1.0),), "stiffness"),
         ((Body("a", 1.0),), (Link("k", ("a", "ground"), 1.0, np.nan),), "damping"),
+        ((Body("a", 1.0),), (Link("k", ("a", "ground"), 1e300),), "at most 1e"),
     ],
 )
 def test_a_model_that_cannot_be_built_is_refused(bodies, links, match):
