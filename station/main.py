@@ -15,6 +15,7 @@ from typer.exceptions import TyperException
 
 from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
 
+EXIT_INTERNAL = 1
 EXIT_USAGE = 2
 EXIT_BAD_DATA = 3
 EXIT_INSTRUMENT = 4
@@ -72,6 +73,12 @@ def _quiet_exit_code(command: Callable[..., object]) -> int:
         return _fail("interrupted; finished files are whole", EXIT_INTERRUPTED)
     except OSError as error:
         return _fail(f"{error.strerror or error}: {error.filename}", EXIT_BAD_DATA)
+    except Exception as error:  # noqa: BLE001 - a traceback helps no operator
+        kind = type(error).__name__
+        return _fail(
+            f"internal error ({kind}: {error}); run again with --debug and report it",
+            EXIT_INTERNAL,
+        )
     return result if isinstance(result, int) else 0
 
 

@@ -122,3 +122,19 @@ def test_inspect_shows_what_import_brought_in(tmp_path: Path) -> None:
     assert shown.returncode == 0
     assert "hit" in shown.stdout
     assert "acceleration" in shown.stdout
+
+
+def test_an_error_nobody_foresaw_is_one_line_too() -> None:
+    """The traceback is for --debug; the operator gets a line and code one."""
+    code = (
+        "from jointbench.station.main import exit_code\n"
+        "def broken(standalone_mode):\n"
+        "    raise ZeroDivisionError('by zero')\n"
+        "raise SystemExit(exit_code(broken, debug=False))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert done.stderr.count("\n") == 1
+    assert "--debug" in done.stderr
