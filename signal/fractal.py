@@ -23,8 +23,12 @@ from jointbench.signal.surface_verdict import FractalFit, LocalSlope, SurfaceVer
 FIT_LAGS = 25
 """Lags of the fit: more add cost, not knowledge [-]."""
 LONGEST_FIT_SHARE = 0.1
-"""Longest lag of the fit over the profile's length [-]: beyond, too few independent
-pairs are left for a Gaussian description of their mean."""
+"""Longest lag of the fit over the length of a profile [-]: beyond, too few
+independent pairs are left for a Gaussian description of their mean."""
+LONGEST_MAP_SHARE = 0.2
+"""The same on a map, where every row adds pairs [-]."""
+MAP_PROFILES = 16
+"""Profiles from which on a surface counts as a map [-]."""
 MODEL_TOLERANCE = 0.02
 """Relative misfit of S that still passes as a power law [-], tried where the
 scatter alone rejects it: real surfaces are never exact, long ones always show it."""
@@ -110,9 +114,13 @@ def fit_fractal(
     found, judgement = _search(problem)
     slope = local_slope(whole.estimate, whole.scatter(found.fit.seen))
     if judgement is None:
-        judgement = _not_straight(slope, problem)
+        judgement = Judgement(
+            SurfaceVerdict.NONE,
+            f"no decade of lags is straight within {100 * MODEL_TOLERANCE:g} %",
+        )
     if judgement.verdict is SurfaceVerdict.NONE:
-        return rejected_fit(estimate, judgement, slope)
+        said = f"{judgement.reason}; the slope of ln S runs {_course(slope, problem)}"
+        return rejected_fit(estimate, replace(judgement, reason=said), slope)
     return accepted_fit(found, judgement, slope, gamma=gamma, constant=constant)
 
 
@@ -131,17 +139,26 @@ def _search(problem: FractalProblem) -> tuple[Choice, Judgement | None]:
     return band, replace(judge(band), verdict=SurfaceVerdict.BAND)
 
 
+def _longest_share(estimate: StructureFunction) -> float:
+    """Return the longest lag of the fit over the length of a profile."""
+    is_map = estimate.profiles >= MAP_PROFILES
+    return LONGEST_MAP_SHARE if is_map else LONGEST_FIT_SHARE
+
+
 def _thinned(estimate: StructureFunction) -> tuple[BoolArray, BoolArray]:
     """Mark the lags of the fit, and those of the slope, which goes on beyond."""
     share = estimate.lag / (estimate.spacing * estimate.points)
-    inside = share <= LONGEST_FIT_SHARE * (1 + 1e-9)
+    inside = share <= _longest_share(estimate) * (1 + 1e-9)
     keep = np.zeros(estimate.lag.size, dtype=np.bool_)
     allowed = np.flatnonzero(inside)
     if allowed.size:
         log_lag = np.log(estimate.lag[allowed])
         wanted = np.linspace(log_lag[0], log_lag[-1], FIT_LAGS)
         keep[allowed[np.argmin(np.abs(log_lag[:, None] - wanted), axis=0)]] = True
-    return keep, keep | ~inside
+    beyond = np.flatnonzero(~inside)
+    slope = keep.copy()
+    slope[beyond[::2]] = True
+    return keep, slope
 
 
 def _worth_a_fit(estimate: StructureFunction) -> bool:
@@ -152,18 +169,18 @@ def _worth_a_fit(estimate: StructureFunction) -> bool:
 
 def _too_short(estimate: StructureFunction) -> Judgement:
     """Say why there is nothing to fit."""
-    if estimate.lag.size == 0:
-        return Judgement(
-            SurfaceVerdict.NONE,
-            f"no height differences at lags up to {100 * LONGEST_FIT_SHARE:g} % of the "
-            "length: the surface is flat, or too short",
+    count, share = estimate.lag.size, 100 * _longest_share(estimate)
+    if count == 0:
+        reason = (
+            f"no height differences at lags up to {share:g} % of the length: "
+            "the surface is flat, or too short"
         )
-    return Judgement(
-        SurfaceVerdict.NONE,
-        f"profiles of {estimate.points} points give {estimate.lag.size} lags up to "
-        f"{100 * LONGEST_FIT_SHARE:g} % of the length, less than a decade; "
-        "measure a longer line",
-    )
+    else:
+        reason = (
+            f"profiles of {estimate.points} points give {count} lags up to "
+            f"{share:g} % of the length, less than a decade; measure a longer line"
+        )
+    return Judgement(SurfaceVerdict.NONE, reason)
 
 
 def _unfitted_slope(estimate: StructureFunction) -> LocalSlope:
@@ -174,14 +191,9 @@ def _unfitted_slope(estimate: StructureFunction) -> LocalSlope:
     return local_slope(estimate, problem.scatter(problem.straight()))
 
 
-def _not_straight(slope: LocalSlope, problem: FractalProblem) -> Judgement:
-    """Say how the slope wanders where no decade is straight."""
+def _course(slope: LocalSlope, problem: FractalProblem) -> str:
+    """Say how the local slope wanders over the lags of the fit."""
     inside = slope.lag <= problem.estimate.lag[-1] * (1 + 1e-9)
     lag, value = slope.lag[inside], slope.slope[inside]
     marks = sorted({0, int(np.argmin(value)), int(np.argmax(value)), value.size - 1})
-    course = ", ".join(f"{value[k]:.2f} at {1e6 * lag[k]:.3g} um" for k in marks)
-    return Judgement(
-        SurfaceVerdict.NONE,
-        f"no decade of lags is straight within {100 * MODEL_TOLERANCE:g} %: "
-        f"the slope of ln S runs {course}",
-    )
+    return ", ".join(f"{value[k]:.2f} at {1e6 * lag[k]:.3g} um" for k in marks)

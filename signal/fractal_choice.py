@@ -6,7 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.signal.fractal_gls import GlsFit, Model, fit_model, polish, settle
+from jointbench.signal.fractal_gls import (
+    GlsFit,
+    Model,
+    Weights,
+    fit_model,
+    settle,
+    weigh,
+)
 from jointbench.signal.fractal_problem import FractalProblem
 from jointbench.signal.self_affine import InstrumentModel, rolled_off
 
@@ -19,7 +26,7 @@ DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
 NO_WEIGHT = 10.0
 """Loss of the criterion that leaves a model without weight in an average [-]."""
-CLEAR_CORNER = 6.0
+CLEAR_CORNER = 5.0
 """Gain of the likelihood criterion that makes a corner of the surface clear [-]."""
 RULE_FACTOR = 2.0
 """The surface rules S where the instrument changes it by less than this factor [-]."""
@@ -62,6 +69,14 @@ class Choice:
     def accepted(self) -> bool:
         """Whether the model describes the values within their scatter."""
         return self.fit.probability >= ACCEPT_PROBABILITY
+
+    @property
+    def ends_early(self) -> bool:
+        """Whether a corner shows at the longest lag of the fit."""
+        seen, longest = self.fit.seen, self.fit.lag[-1:]
+        ceiling = seen.amplitude * seen.corner**seen.exponent
+        power = seen.surface(longest)
+        return bool(rolled_off(power, ceiling)[0] < CORNER_FACTOR * power[0])
 
     @property
     def band(self) -> tuple[float, float] | None:
@@ -122,14 +137,19 @@ def choose(problem: FractalProblem) -> Choice:
         Inference (2002), eq. (4.9).
     """
     endless = _choose_instrument(problem, rolls_off=False)
+    # The whole family with a corner is fitted only where its nearest member gains.
+    nearest = Model(endless.fit.model.instrument, rolls_off=True)
+    glance = settle(problem, nearest, endless.fit.seen)
+    if endless.fit.likelihood_criterion <= glance.likelihood_criterion:
+        return endless
     cornered = _choose_instrument(problem, rolls_off=True)
     gain = endless.fit.likelihood_criterion - cornered.fit.likelihood_criterion
-    return cornered if gain > CLEAR_CORNER else endless
+    return cornered if gain > CLEAR_CORNER and cornered.ends_early else endless
 
 
-def choose_straight(problem: FractalProblem) -> Choice:
-    """Fit a straight line, without instrument or corner."""
-    fit = polish(problem, settle(problem, Model(), problem.straight()))
+def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
+    """Fit a straight line, without instrument or corner; it may be unacceptable."""
+    fit = fit_model(problem, Model(), weights)
     return _averaged(problem, fit, [fit], np.ones(1))
 
 
@@ -139,17 +159,17 @@ def _choose_instrument(problem: FractalProblem, *, rolls_off: bool) -> Choice:
     # All models are weighed by the covariance of the richest, so that their chi2
     # are comparable.
     richest = settle(problem, models[-1], problem.straight())
-    fits = [fit_model(problem, model, richest.seen) for model in models[:-1]]
-    start = richest.parameters
-    fits.append(fit_model(problem, models[-1], richest.seen, start=start))
+    common = weigh(problem, richest.seen)
+    fits = [fit_model(problem, model, common) for model in models[:-1]]
+    fits.append(fit_model(problem, models[-1], common, start=richest.parameters))
     least = min(fit.criterion for fit in fits)
     close = [fit for fit in fits if fit.criterion <= least + CLEAR_GAIN]
     simplest = min(close, key=lambda fit: (fit.parameters.size, fit.criterion))
-    own = fit_model(problem, simplest.model, simplest.seen, start=simplest.parameters)
-    likely = [fit for fit in fits if fit.criterion < least + NO_WEIGHT]
+    own = weigh(problem, simplest.seen)
+    chosen = fit_model(problem, simplest.model, own, start=simplest.parameters)
+    likely = [fit for fit in fits if fit.criterion <= least + NO_WEIGHT]
     weights = np.exp([(least - fit.criterion) / 2 for fit in likely])
-    polished = [polish(problem, fit) for fit in likely]
-    return _averaged(problem, polish(problem, own), polished, weights)
+    return _averaged(problem, chosen, likely, weights)
 
 
 def _averaged(

@@ -20,13 +20,17 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.signal.structure_function import Sampling, StructureFunction
 
-EXACT_STEPS = 40
+EXACT_STEPS = 30
 """Single steps on each side of a place where c(d) has a kink [samples]."""
-GROWTH = 1.03
+GROWTH = 1.04
 """Ratio of neighbouring steps beyond them [-]."""
-EXACT_ROWS = 20
+MAP_EXACT_STEPS = 30
+"""The same along the profiles of a map, whose other rows blunt the kinks [samples]."""
+MAP_GROWTH = 1.04
+"""The same beyond them [-]."""
+EXACT_ROWS = 16
 """Single steps between rows [rows]."""
-ROW_GROWTH = 1.06
+ROW_GROWTH = 1.08
 """Ratio of neighbouring steps between rows beyond them [-]."""
 
 Seen = Callable[[FloatArray], FloatArray]
@@ -124,7 +128,9 @@ def _plan(lag: FloatArray, face: Sampling) -> _Plan:
     # Lags on the face's own grid stay exact integers, so distances fall together.
     steps = np.where(np.abs(steps - whole) < 1e-6 * steps, whole, steps)
     first, second = np.triu_indices(lag.size)
-    offsets = _graded(face.points, EXACT_STEPS, GROWTH)
+    lone = face.profiles == 1
+    exact, growth = (EXACT_STEPS, GROWTH) if lone else (MAP_EXACT_STEPS, MAP_GROWTH)
+    offsets = _graded(face.points, exact, growth)
     offsets = np.concatenate([-offsets[:0:-1], offsets])
     points, weights = [], []
     for a, b in zip(steps[first], steps[second], strict=True):

@@ -6,8 +6,7 @@ weights from the full covariance reach the precision that the data allow. The
 covariance depends on the surface, so it is renewed with the fitted one.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
@@ -30,12 +29,22 @@ WIDEST_PSF = 30.0
 """Point spread beyond which no instrument would be sampled so finely [samples]."""
 WIDEST_PSF_SHARE = 0.25
 """The same as a share of the longest lag: beyond, nothing is left [-]."""
+BOUND_REBATE = -1.0
+"""What noise costs less than a free parameter's 2 [-]: it cannot fall below zero,
+so where there is none it fits chance in half of the cases only."""
+PSF_COST = 2.0
+"""What a point spread costs in the criterion beyond a parameter's 2 [-]: together
+with noise it can follow any bend at short lags, so it has to be clear."""
 CORNER_STARTS = (0.03, 0.5)
 """Corners from which the search starts, over the longest lag [-]."""
 CORNER_RANGE = (0.5, 10.0)
 """Corners searched, from so many samples to so many longest lags [-]."""
+MOST_STEPS = 60
+"""Steps of one search; fits of a surface take about 15, hopeless ones go on [-]."""
 JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
 """Variance added on the diagonal, as a share of it [-]; the first that suffices."""
+SMALLEST_INFORMATION = 1e-6
+"""Singular value of the scaled Jacobian taken for smaller ones [-]."""
 RENEWALS = 2
 """How often the covariance is renewed; it settles at once [-]."""
 
@@ -70,7 +79,7 @@ class GlsFit:
             (n_parameters, n_lags).
         pivot: [samples].
         chi2: sum of squares of the whitened residuals [-].
-        log_determinant: of the covariance that weighed them [-].
+        log_determinant: of the covariance of S that weighed them.
         dof: lags less parameters [-].
     """
 
@@ -95,9 +104,12 @@ class GlsFit:
     def criterion(self) -> float:
         """Akaike's information criterion up to a constant [-].
 
-        Between fits weighed by one covariance; `likelihood_criterion` otherwise.
+        Between fits with the same weights; `likelihood_criterion` otherwise.
         """
-        return self.chi2 + 2 * self.parameters.size
+        cost = 2.0 * self.parameters.size
+        cost += BOUND_REBATE if self.model.instrument.has_noise else 0.0
+        cost += PSF_COST if self.model.instrument.has_psf else 0.0
+        return self.chi2 + cost
 
     @property
     def likelihood_criterion(self) -> float:
@@ -115,69 +127,94 @@ class GlsFit:
         return float(np.sqrt(self.covariance[0, 0])) / 2
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Weights:
+    """How the lags are weighed.
+
+    Attributes:
+        reference: S that the residuals are taken relative to [m^2], shape (n_lags,).
+        root: lower Cholesky root of the covariance of S over `reference` [-].
+    """
+
+    reference: FloatArray
+    root: FloatArray
+
+    @property
+    def log_determinant(self) -> float:
+        """Logarithm of the determinant of the covariance of S."""
+        size = np.diag(self.root) * self.reference
+        return 2 * float(np.sum(np.log(size)))
+
+
+def weigh(
+    problem: FractalProblem, at: SeenSurface, *, scatter: FloatArray | None = None
+) -> Weights:
+    """Return the weights that belong to a surface and its instrument.
+
+    Args:
+        problem: the structure function to fit.
+        at: the surface and instrument.
+        scatter: covariance of S to take in place of the one at `at`, shape (n, n) [-].
+    """
+    reference = problem.predicted(at)
+    # A poor start may lose all to levelling; the values themselves then stand in.
+    reference = np.where(reference > 0, reference, problem.estimate.value)
+    own = problem.scatter(at) if scatter is None else scatter
+    return Weights(reference, _root(own + problem.misfit(at)))
+
+
 def fit_model(
     problem: FractalProblem,
     model: Model,
-    at: SeenSurface,
+    weights: Weights,
     *,
     start: FloatArray | None = None,
 ) -> GlsFit:
-    """Fit one model with the covariance that belongs to another.
+    """Fit one model with given weights.
+
+    Residuals are linear in S and the weights do not move with the parameters, so
+    they average to zero at the truth however skewed the spread of S.
 
     Args:
         problem: the structure function to fit.
         model: the model.
-        at: surface and instrument whose covariance weighs the lags. Models are
-            comparable by chi2 when they are fitted at the same one.
+        weights: models are comparable by chi2 when they are fitted with the same.
         start: parameters of an earlier fit of the model to start from; by default
             the search starts from several places.
 
     Returns:
         The best of all starts.
     """
-    scatter = problem.scatter(at)
-    # Mean squares are spread like chi2: their cube root is nearly Gaussian.
-    bias = np.diag(scatter) / 9
-    # A poor step of the search may lose everything to levelling.
-    floor = 1e-6 * problem.estimate.value
+    lower, upper = _bounds(problem, model)
+    margin = 1e-6 * (upper - lower)
 
-    def gap(expected: FloatArray) -> FloatArray:
-        """Return relative residuals that are nearly Gaussian, also far from 0."""
-        ratio = problem.estimate.value / np.maximum(expected, floor)
-        cubic: FloatArray = 3 * (np.cbrt(ratio) - 1 + bias)
-        return cubic
+    def residual(parameters: FloatArray) -> FloatArray:
+        """Return the whitened relative residuals."""
+        expected = problem.predicted(_unpack(problem, model, parameters))
+        gap = (problem.estimate.value - expected) / weights.reference
+        white: FloatArray = solve_triangular(weights.root, gap, lower=True)
+        return white
 
-    starts = _starts(problem, model) if start is None else [start]
-    root = _root(scatter + problem.misfit(at))
-    return _result(problem, model, root, _least(problem, model, root, gap, starts))
-
-
-def polish(problem: FractalProblem, fit: GlsFit) -> GlsFit:
-    """Return the fit with parameters free of the bias of curved residuals.
-
-    Residuals linear in S, with weights that do not move with the parameters, average
-    to zero at the truth whatever the spread of S; they need a good start. How well
-    the model fits is still said by the first fit.
-    """
-    reference = fit.predicted
-
-    def gap(expected: FloatArray) -> FloatArray:
-        """Return relative residuals linear in S."""
-        linear: FloatArray = (problem.estimate.value - expected) / reference
-        return linear
-
-    root = _root(problem.scatter(fit.seen) + problem.misfit(fit.seen))
-    best = _least(problem, fit.model, root, gap, [fit.parameters])
-    polished = _result(problem, fit.model, root, best)
-    return replace(polished, chi2=fit.chi2, log_determinant=fit.log_determinant)
+    found = [
+        least_squares(
+            residual,
+            np.clip(begin, lower + margin, upper - margin),
+            bounds=(lower, upper),
+            x_scale="jac",
+            max_nfev=MOST_STEPS,
+        )
+        for begin in (_starts(problem, model) if start is None else [start])
+    ]
+    best = min(found, key=lambda one: float(one.cost))
+    return _result(problem, model, weights, best)
 
 
 def settle(problem: FractalProblem, model: Model, at: SeenSurface) -> GlsFit:
-    """Fit one model and renew the covariance with the result until it settles."""
-    result = fit_model(problem, model, at)
+    """Fit one model and renew the weights with the result until they settle."""
+    result = fit_model(problem, model, weigh(problem, at))
     for _ in range(RENEWALS):
-        start = result.parameters
-        result = fit_model(problem, model, result.seen, start=start)
+        weights = weigh(problem, result.seen)
+        result = fit_model(problem, model, weights, start=result.parameters)
     return result
 
 
@@ -196,43 +233,15 @@ def _root(covariance: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(diagonal))
 
 
-def _least(
-    problem: FractalProblem,
-    model: Model,
-    root: FloatArray,
-    gap: Callable[[FloatArray], FloatArray],
-    starts: list[FloatArray],
-) -> OptimizeResult:
-    """Minimise the whitened residuals from every start; return the best."""
-    lower, upper = _bounds(problem, model)
-    margin = 1e-6 * (upper - lower)
-
-    def residual(parameters: FloatArray) -> FloatArray:
-        """Return the whitened residuals."""
-        expected = problem.predicted(_unpack(problem, model, parameters))
-        white: FloatArray = solve_triangular(root, gap(expected), lower=True)
-        return white
-
-    found = [
-        least_squares(
-            residual,
-            np.clip(start, lower + margin, upper - margin),
-            bounds=(lower, upper),
-            x_scale="jac",
-        )
-        for start in starts
-    ]
-    return min(found, key=lambda one: float(one.cost))
-
-
 def _result(
-    problem: FractalProblem, model: Model, root: FloatArray, best: OptimizeResult
+    problem: FractalProblem, model: Model, weights: Weights, best: OptimizeResult
 ) -> GlsFit:
     """Put the outcome of a search into a record."""
     seen = _unpack(problem, model, best.x)
     predicted = problem.predicted(seen)
-    covariance = np.linalg.pinv(best.jac.T @ best.jac)
-    whitening = solve_triangular(root, np.eye(predicted.size), lower=True)
+    covariance = _inverse(best.jac)
+    share = np.diag(predicted / weights.reference)
+    whitening = solve_triangular(weights.root, share, lower=True)
     return GlsFit(
         model=model,
         seen=seen,
@@ -243,9 +252,22 @@ def _result(
         gain=-covariance @ best.jac.T @ whitening,
         pivot=problem.pivot,
         chi2=float(2 * best.cost),
-        log_determinant=2 * float(np.sum(np.log(np.diag(root)))),
+        log_determinant=weights.log_determinant,
         dof=max(1, problem.lag.size - best.x.size),
     )
+
+
+def _inverse(jacobian: FloatArray) -> FloatArray:
+    """Return the covariance of the parameters.
+
+    What the data do not tell gets a huge variance instead of a division by zero.
+    """
+    size = np.linalg.norm(jacobian, axis=0)
+    scale = np.where(size > 0, size, 1.0)
+    _, values, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
+    spread = directions.T / np.maximum(values, SMALLEST_INFORMATION)
+    covariance: FloatArray = spread @ spread.T / np.outer(scale, scale)
+    return covariance
 
 
 def _unpack(
@@ -260,7 +282,7 @@ def _unpack(
         amplitude=float(np.exp(level - exponent * np.log(problem.pivot))),
         noise=0.5 * noise * float(problem.estimate.value.min()),
         psf_width=rest.pop(0) if instrument.has_psf else 0.0,
-        psf_axes=problem.psf_axes,
+        axes=problem.axes,
         band_limited=instrument is InstrumentModel.BAND_LIMIT,
         corner=float(np.exp(rest.pop(0))) if model.rolls_off else np.inf,
     )
@@ -293,12 +315,19 @@ def _starts(problem: FractalProblem, model: Model) -> list[FloatArray]:
     noises = [[n] for n in NOISE_STARTS] if model.instrument.has_noise else [[]]
     widths = [[w] for w in PSF_STARTS] if model.instrument.has_psf else [[]]
     if not model.rolls_off:
-        return [np.array([*base, *n, *w]) for n in noises for w in widths]
+        return [np.array([*base, *rest]) for rest in _crossed(noises, widths)]
     starts = []
     for corner in np.array(CORNER_STARTS) * problem.lag[-1]:
         below = problem.straight(up_to=float(corner))
         level = np.log(below.surface(np.array(problem.pivot)))
-        law, last = [below.exponent, level], np.log(corner)
-        starts += [np.array([*law, *n, *widths[0], last]) for n in noises]
-        starts += [np.array([*law, *noises[0], *w, last]) for w in widths[1:]]
+        starts += [
+            np.array([below.exponent, level, *rest, np.log(corner)])
+            for rest in _crossed(noises, widths)
+        ]
     return starts
+
+
+def _crossed(noises: list[list[float]], widths: list[list[float]]) -> list[list[float]]:
+    """Combine starts: every noise with the first width, every width with the first."""
+    with_noise = [[*noise, *widths[0]] for noise in noises]
+    return with_noise + [[*noises[0], *width] for width in widths[1:]]

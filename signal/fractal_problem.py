@@ -44,8 +44,8 @@ class FractalProblem:
         return float(np.sqrt(self.lag[0] * self.lag[-1]))
 
     @property
-    def psf_axes(self) -> int:
-        """A point spread blurs a map all around, a lone profile along itself."""
+    def axes(self) -> int:
+        """Directions the instrument acts in: all around on a map whose rows relate."""
         face = self.estimate.faces[0]
         hangs_together = face.row_distance < INDEPENDENT_ROWS * face.spacing
         return 2 if face.profiles > 1 and hangs_together else 1
@@ -72,18 +72,20 @@ class FractalProblem:
         predicted: FloatArray = seen.seen(self.lag) - self.loss(seen)
         return predicted
 
-    def scatter(self, seen: SeenSurface) -> FloatArray:
-        """Return the covariance of S over what `seen` shows, shape (n, n) [-].
+    @property
+    def tails(self) -> float:
+        """How much more S scatters than for Gaussian differences [-].
 
-        Differences with heavier tails than Gaussian ones scatter more, in proportion
-        to kurtosis - 1.
+        The variance of a mean of squares is in proportion to kurtosis - 1.
         """
+        return max(1.0, (float(np.median(self.estimate.kurtosis)) - 1) / 2)
+
+    def scatter(self, seen: SeenSurface) -> FloatArray:
+        """Return the covariance of S over what `seen` shows, shape (n, n) [-]."""
         spacing = self.estimate.spacing
-        tails = max(1.0, (float(np.median(self.estimate.kurtosis)) - 1) / 2)
-        scatter: FloatArray = tails * self.covariance_of(
-            lambda lag: seen.seen(lag / spacing)
-        )
-        return scatter
+        scatter = self.covariance_of(lambda lag: seen.seen(lag / spacing))
+        tailed: FloatArray = self.tails * scatter
+        return tailed
 
     def misfit(self, seen: SeenSurface) -> FloatArray:
         """Return the covariance of what the model leaves open, as `scatter` [-].

@@ -6,8 +6,8 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import betainc, hyp1f1
 from scipy.special import gamma as gamma_function
-from scipy.special import hyp1f1
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.signal.structure_constant import spectral_integral
@@ -15,6 +15,10 @@ from jointbench.signal.structure_constant import spectral_integral
 _ASYMPTOTIC_FROM = 40.0
 """Squared lag over 4 width^2 above which six terms give nine digits [-]."""
 _ASYMPTOTIC_TERMS = 6
+_QUADRATURE_NODES = 96
+_QUADRATURE_LAGS = 60.0
+"""Lag beyond which a cosine over the band averages out [samples]; the nodes follow
+it up to there."""
 _FRACTION_TERMS = 60
 """Depth of the continued fraction; gives twelve digits from pi upwards [-]."""
 
@@ -50,7 +54,8 @@ class SeenSurface:
         amplitude: structure function of the surface itself at a lag of one sample.
         noise: variance of white noise of each height.
         psf_width: standard deviation of the Gaussian point spread [samples].
-        psf_axes: 1 where it blurs along the profile only, 2 where all around.
+        axes: 1 where blur and limit act along the profile only, 2 where they act all
+            around on an isotropic map.
         band_limited: whether wavelengths under two samples are cut off sharply.
         corner: lag at which the surface stops to grow rougher [samples].
     """
@@ -59,7 +64,7 @@ class SeenSurface:
     amplitude: float
     noise: float = 0.0
     psf_width: float = 0.0
-    psf_axes: int = 1
+    axes: int = 1
     band_limited: bool = False
     corner: float = np.inf
 
@@ -76,9 +81,9 @@ class SeenSurface:
         """
         lag = np.abs(np.asarray(lag, dtype=np.float64))
         if self.psf_width > 0:
-            shape = blurred_power(lag, self.exponent, self.psf_width, self.psf_axes)
+            shape = blurred_power(lag, self.exponent, self.psf_width, self.axes)
         elif self.band_limited:
-            shape = band_limited_power(lag, self.exponent)
+            shape = band_limited_power(lag, self.exponent, self.axes)
         else:
             shape = lag**self.exponent
         if np.isfinite(self.corner):
@@ -135,12 +140,14 @@ def blurred_power(
     return blurred
 
 
-def band_limited_power(lag: FloatArray, exponent: float) -> FloatArray:
+def band_limited_power(lag: FloatArray, exponent: float, axes: int) -> FloatArray:
     """Return the structure function lag^s without wavelengths under two samples.
 
     Args:
         lag: [samples], not negative.
         exponent: s [-].
+        axes: 1 where waves along the profile only are cut off; 2 where waves of an
+            isotropic map are, along both directions of its grid.
 
     Source:
         S = integral of 2 P(f) (1 - cos 2 pi f lag) up to the Nyquist frequency with
@@ -153,8 +160,28 @@ def band_limited_power(lag: FloatArray, exponent: float) -> FloatArray:
     phase = np.asarray(-1j * angle, dtype=np.complex128)
     tail = np.real(_exponential_integral(1 + exponent, phase))
     missing[some] = np.pi**-exponent * (1 / exponent - tail)
+    if axes > 1:
+        missing += _missing_across(lag, exponent)
     limited: FloatArray = lag**exponent - missing / spectral_integral(exponent)
     return limited
+
+
+def _missing_across(lag: FloatArray, exponent: float) -> FloatArray:
+    """Return what a limit across a map takes from waves that run slantwise.
+
+    A profile of an isotropic map sees the waves of all directions; of those that are
+    slow along it, the ones too fast across it are missing. What is left of the power
+    at the angular frequency q is a regularised incomplete beta function.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(_QUADRATURE_NODES)
+    q = np.pi * (nodes + 1) / 2
+    cosine_square = q**2 / (np.pi**2 + q**2)
+    lost = betainc((1 + exponent) / 2, 0.5, cosine_square)
+    density = np.pi / 2 * weights * lost * q ** (-1 - exponent)
+    missing = np.full(lag.shape, float(density.sum()))
+    near = lag < _QUADRATURE_LAGS
+    missing[near] -= np.cos(np.outer(lag[near], q)) @ density
+    return missing
 
 
 def _exponential_integral(

@@ -19,6 +19,7 @@ from jointbench.acquisition.arrays import (
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Provenance, step
 from jointbench.acquisition.surfaces import Profile, Surface
+from jointbench.signal.lay import stretch_across
 from jointbench.signal.preparation import SurfaceTooSmall, level
 
 LAG_COUNT = 45
@@ -27,10 +28,6 @@ LARGEST_LAG_SHARE = 1 / 3
 """Largest default lag as a share of the length of a profile [-]."""
 MOST_BLOCKS = 16
 """Strips of neighbouring rows whose scatter checks the stated uncertainty [-]."""
-CROSS_LAGS = (1, 2, 4)
-"""Row distances at which the lay of a map is judged [rows]."""
-RATIO_LIMITS = (1e-3, 1e3)
-"""Bounds of the lay: identical rows one side, independent rows the other [-]."""
 
 Direction = Literal["x", "y"]
 
@@ -173,7 +170,7 @@ def structure_function(
         points=heights.shape[1],
         profiles=heights.shape[0],
         spacing=spacing,
-        row_distance=across * _lay(heights, valid, lag, value, across),
+        row_distance=across * stretch_across(heights, valid, lag, value, across),
         share=1.0,
         pairs=pairs.sum(axis=0),
         blocks=_blocks(sums, pairs),
@@ -330,46 +327,3 @@ def _blocks(sums: FloatArray, pairs: FloatArray) -> FloatArray:
         return np.empty((0, sums.shape[1]))
     strips: FloatArray = np.add.reduceat(sums, starts, axis=0) / total
     return strips
-
-
-def _lay(
-    heights: FloatArray,
-    valid: BoolArray,
-    lag: FloatArray,
-    value: FloatArray,
-    across: float,
-) -> float:
-    """Return how much farther apart rows are than they look, judged by S across.
-
-    1 on an isotropic map, near 0 where the rows repeat each other (a turned or
-    ground lay along y), large where they are independent.
-    """
-    usable = value > 0
-    if heights.shape[0] <= CROSS_LAGS[-1] or usable.sum() < 2:
-        return 1.0
-    ratios = []
-    for rows in CROSS_LAGS:
-        both = valid[rows:] & valid[:-rows]
-        if not both.any():
-            return 1.0
-        squares = np.square(heights[rows:] - heights[:-rows])
-        ratios.append(
-            _equivalent(float(squares[both].mean()), lag[usable], value[usable])
-            / (rows * across)
-        )
-    return float(np.clip(np.exp(np.mean(np.log(ratios))), *RATIO_LIMITS))
-
-
-def _equivalent(difference: float, lag: FloatArray, value: FloatArray) -> float:
-    """Return the lag along the rows at which S reaches `difference` [m]."""
-    reached = np.flatnonzero(value >= difference)
-    if difference <= 0:
-        return float(lag[0]) * RATIO_LIMITS[0]
-    if reached.size == 0:
-        return float(lag[-1])
-    k = int(reached[0])
-    if k == 0:
-        return float(lag[0]) * max(difference / float(value[0]), RATIO_LIMITS[0])
-    low, high = np.log(value[k - 1 : k + 1])
-    part = (np.log(difference) - low) / (high - low)
-    return float(lag[k - 1] * (lag[k] / lag[k - 1]) ** part)
