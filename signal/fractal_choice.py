@@ -19,6 +19,8 @@ from jointbench.signal.self_affine import InstrumentModel, rolled_off
 
 ACCEPT_PROBABILITY = 0.01
 """A model is accepted if a true one would fit worse at least this often [-]."""
+HOPELESS_PROBABILITY = 1e-6
+"""Where the richest model fits with a smaller chance, simpler ones need no trial."""
 CLEAR_GAIN = 2.0
 """Gain of Akaike's criterion that makes one more parameter worth it [-]: with it
 the likelihood ratio of one parameter is significant at about 5 %."""
@@ -30,6 +32,8 @@ CLEAR_CORNER = 5.0
 """Gain of the likelihood criterion that makes a corner of the surface clear [-]."""
 RULE_FACTOR = 2.0
 """The surface rules S where the instrument changes it by less than this factor [-]."""
+CORNER_SEEN = 0.5
+"""A corner is seen where it leaves less of S than this at the longest lag [-]."""
 CORNER_FACTOR = 0.8
 """Its power law ends where a corner leaves less of S than this share [-]."""
 
@@ -72,11 +76,14 @@ class Choice:
 
     @property
     def ends_early(self) -> bool:
-        """Whether a corner shows at the longest lag of the fit."""
+        """Whether a corner takes most of S at the longest lag of the fit.
+
+        Less of a bend is not told from what levelling does to a smooth map.
+        """
         seen, longest = self.fit.seen, self.fit.lag[-1:]
         ceiling = seen.amplitude * seen.corner**seen.exponent
         power = seen.surface(longest)
-        return bool(rolled_off(power, ceiling)[0] < CORNER_FACTOR * power[0])
+        return bool(rolled_off(power, ceiling)[0] < CORNER_SEEN * power[0])
 
     @property
     def band(self) -> tuple[float, float] | None:
@@ -159,6 +166,8 @@ def _choose_instrument(problem: FractalProblem, *, rolls_off: bool) -> Choice:
     # All models are weighed by the covariance of the richest, so that their chi2
     # are comparable.
     richest = settle(problem, models[-1], problem.straight())
+    if richest.probability < HOPELESS_PROBABILITY:
+        return _averaged(problem, richest, [richest], np.ones(1))
     common = weigh(problem, richest.seen)
     fits = [fit_model(problem, model, common) for model in models[:-1]]
     fits.append(fit_model(problem, models[-1], common, start=richest.parameters))

@@ -39,7 +39,9 @@ CORNER_STARTS = (0.03, 0.5)
 """Corners from which the search starts, over the longest lag [-]."""
 CORNER_RANGE = (0.5, 10.0)
 """Corners searched, from so many samples to so many longest lags [-]."""
-MOST_STEPS = 60
+SETTLED = 1e-6
+"""Relative change of chi2 or of the parameters that ends a search [-]."""
+MOST_STEPS = 40
 """Steps of one search; fits of a surface take about 15, hopeless ones go on [-]."""
 JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
 """Variance added on the diagonal, as a share of it [-]; the first that suffices."""
@@ -201,6 +203,8 @@ def fit_model(
             np.clip(begin, lower + margin, upper - margin),
             bounds=(lower, upper),
             x_scale="jac",
+            ftol=SETTLED,
+            xtol=SETTLED,
             max_nfev=MOST_STEPS,
         )
         for begin in (_starts(problem, model) if start is None else [start])
