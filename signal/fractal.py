@@ -69,7 +69,7 @@ def fractal_from_line(
         UsageError: the slope is not between 0 and 2, or gamma not above 1.
 
     Source:
-        S1 eqs. (9) and (10).
+        Appl. Sci. 2025, 15, 9040, eqs. (9) and (10).
     """
     dimension = (4 - slope) / 2
     level = intercept - np.log10(structure_constant(dimension, gamma, constant))
