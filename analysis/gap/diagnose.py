@@ -12,6 +12,7 @@ from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.checks import campaign_limits, flat_tops
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.effects import Candidate, Reported, Term
+from jointbench.analysis.gap.exhibit import make_exhibit
 from jointbench.analysis.gap.fit import Fit, make_problem, minimise
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
@@ -101,6 +102,7 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
         ),
         experiment=_experiment(outcome, finding),
         reason=reason,
+        exhibit=make_exhibit(bench, base, outcome),
     )
 
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+from jointbench.analysis.gap.exhibit_records import Exhibit, exhibit_json
+
 
 class Finding(StrEnum):
     """The four verdicts."""
@@ -110,6 +112,7 @@ class Diagnosis:
         null_statistic: largest directed drop of the base, and its 99.5 % limit.
         experiment: what to do next.
         reason: why the verdict is not a name, or what the name rests on.
+        exhibit: the evidence as curves and sentences; None where none was made.
     """
 
     verdict: Finding
@@ -123,6 +126,7 @@ class Diagnosis:
     null_statistic: tuple[float, float]
     experiment: str
     reason: str
+    exhibit: Exhibit | None = None
 
     @property
     def shrink(self) -> float:
@@ -171,6 +175,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "null_test": {"largest": d.null_statistic[0], "limit": d.null_statistic[1]},
         "experiment": d.experiment,
         "reason": d.reason,
+        "exhibit": None if d.exhibit is None else exhibit_json(d.exhibit),
     }
 
 
