@@ -20,13 +20,18 @@ import scipy.fft
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.assembly import Action, dynamic_stiffness, invert
-from jointbench.analysis.gap.march import COULOMB, QUADRATIC_DAMPING, march
+from jointbench.analysis.gap.march import (
+    COULOMB,
+    CURVES,
+    QUADRATIC_DAMPING,
+    march,
+)
 from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.physics import Conditions, Law
 
 DAMPING_EXPONENT = 18.0
 PASS_BAND = 0.42
-MOVING = (COULOMB, QUADRATIC_DAMPING)
+MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
 """Laws that look at the velocity."""
 
 

@@ -15,12 +15,14 @@ import numpy as np
 from numba import njit
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
+from jointbench.analysis.gap.curve_march import curve_force
 
 POLYNOMIAL = 0
 ONE_SIDED = 1
 SLIDERS = 2
 COULOMB = 3
 QUADRATIC_DAMPING = 4
+CURVES = 5
 TABLE_SIZE = 4096
 IDENTITY = 1e-7
 """Departure of a slider from elasticity that is passed over."""
@@ -120,6 +122,9 @@ def _forces(
     elif law == COULOMB:
         for k in range(n):
             force[k] = _rub(p[0], p[1], v[k], slope[k], guess[k])
+    elif law == CURVES:
+        for k in range(n):
+            force[k] = curve_force(tables, p, r[k], v[k])
     else:
         for k in range(n):
             force[k] = -p[0] * r[k]
@@ -218,7 +223,7 @@ def march(
     old, older = np.zeros(n_records), np.zeros(n_records)
     guess, before = np.zeros(n_records), np.zeros(n_records)
     r, v, force = np.zeros(n_records), np.zeros(n_records), np.zeros(n_records)
-    moving = law == COULOMB or law == QUADRATIC_DAMPING
+    moving = law == COULOMB or law == QUADRATIC_DAMPING or law == CURVES
     for i in range(n_steps):
         for k in range(n_records):
             guess[k] = 2.0 * old[k] - older[k]
