@@ -255,6 +255,10 @@ def gap_command(
         str | None,
         typer.Option(metavar="NAME,...", help="Effects to leave out of the catalogue."),
     ] = None,
+    effects: Annotated[
+        list[Path] | None,
+        typer.Option(help="Python file of your own effects, which is run."),
+    ] = None,
     report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
     json: Json = None,
     debug: Debug = False,
@@ -265,7 +269,13 @@ def gap_command(
     """
     from jointbench.station.gap import run_gap
 
-    run_gap(campaign, without=without, report=report, json_target=json)
+    run_gap(
+        campaign,
+        without=without,
+        effects=effects or [],
+        report=report,
+        json_target=json,
+    )
 
 
 @app.command(name="report")

@@ -17,10 +17,12 @@ from jointbench.analysis.gap.exhibit_records import (
     Wishes,
 )
 from jointbench.analysis.gap.exhibit_words import (
+    advise,
     describe,
     locate,
     pulled,
     relative_misfits,
+    telling_view,
 )
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import Outcome
@@ -71,17 +73,20 @@ def make_exhibit(bench: LumpedBench, base: Fit, outcome: Outcome) -> Exhibit:
     curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
     levels = recurrences(bench, bench.campaign.response - models[0])
     limits = _limits(bench, base, outcome)
+    view = telling_view(bench, residual, levels)
     where = ""
     look: tuple[str, ...] = ()
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
         where = locate(bench, residual, levels)
         look = describe(bench, residual, relative, levels, wishes, tests)
     elif not outcome.base_gate.passed:
-        where = pulled(bench, base)
+        where, view = pulled(bench, base), "sheet"
     return Exhibit(
         tried=" + ".join(c.label for c in best.candidates),
         where=where,
         look=look,
+        advice=advise(bench, relative, levels) if look else "",
+        view=view,
         relative=relative,
         curves=curves,
         spectra=spectra,

@@ -153,6 +153,9 @@ class Exhibit:
         tried: the explanation shown as after, in words; empty for the base itself.
         where: one sentence on where the base's misfit sits.
         look: what the misfit looks like, one sentence each.
+        advice: what to do where no effect explains it; empty where none is missing.
+        view: the view that tells most: level, hit point, preload, frequency, or sheet
+            where only the base's own parameters show it.
         relative: by view and slice, misfit over response, before [-].
         curves: the telling record.
         spectra: the telling condition.
@@ -164,6 +167,8 @@ class Exhibit:
     tried: str
     where: str
     look: tuple[str, ...]
+    advice: str
+    view: str
     relative: dict[str, dict[str, float]]
     curves: Curves
     spectra: Spectra

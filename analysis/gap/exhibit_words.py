@@ -27,6 +27,7 @@ CLEAR_SD = 4.0
 """Distance from 0 at which a wish of a record counts."""
 TAKEN = 0.3
 """Share of the misfit that the joint's own numbers must take to be worth telling."""
+CONTROLLED = ("hit point", "preload")
 ODD, EVEN = "cubic_stiffness", "quadratic_stiffness"
 
 Relative = dict[str, dict[str, float]]
@@ -40,7 +41,7 @@ def relative_misfits(bench: LumpedBench, residual: FloatArray) -> Relative:
         residual: whitened, shape (n_records, n_channels, n_samples).
     """
     size = bench.campaign.response / bench.noise.sigma[:, :, None]
-    counted = residual.shape[2] - TAIL - bench.campaign.lead
+    counted = _counted(bench)
     excess = np.sum(residual**2, axis=2) - counted
     power = np.sum(size**2, axis=2)
     found: Relative = {}
@@ -77,7 +78,7 @@ def locate(
         residual: whitened, shape (n_records, n_channels, n_samples).
         levels: recurrence at softer hits.
     """
-    counted = residual.shape[2] - TAIL - bench.campaign.lead
+    counted = _counted(bench)
     excess = np.maximum(np.sum(residual**2, axis=2) - counted, 0.0)
     total = max(float(excess.sum()), 1e-300)
     parts = [_level_words(bench, excess, levels)]
@@ -93,9 +94,7 @@ def locate(
     parts.append(f"at {low:.3g} to {high:.3g} Hz")
     signed = np.sum(residual**2, axis=2) - counted
     parts += [
-        words
-        for view in ("hit point", "preload")
-        if (words := _uneven_words(bench, signed, view))
+        words for view in CONTROLLED if (words := _uneven_words(bench, signed, view))
     ]
     return "the misfit " + ", ".join(parts)
 
@@ -162,29 +161,61 @@ def _band(residual: FloatArray, rate: float) -> tuple[float, float]:
     return first * rate / n, (last + 1) * rate / n
 
 
-def _uneven_words(bench: LumpedBench, excess: FloatArray, view: str) -> str:
-    """Say where misfit over response is far larger, all other conditions alike."""
+def telling_view(
+    bench: LumpedBench, residual: FloatArray, levels: Sequence[Recurrence]
+) -> str:
+    """Return the view in which a misfit stands out most.
+
+    Args:
+        bench: measurement and noise.
+        residual: whitened, shape (n_records, n_channels, n_samples).
+        levels: recurrence at softer hits.
+    """
+    if levels and not is_linear(levels):
+        return "level"
+    excess = np.sum(residual**2, axis=2) - _counted(bench)
+    ratios = {view: _unevenness(bench, excess, view)[0] for view in CONTROLLED}
+    top = max(ratios, key=lambda view: ratios[view])
+    return top if ratios[top] > UNEVEN else "frequency"
+
+
+def _counted(bench: LumpedBench) -> int:
+    """Return how many samples of a record carry weight."""
+    return int(bench.campaign.response.shape[2]) - TAIL - bench.campaign.lead
+
+
+def _unevenness(bench: LumpedBench, excess: FloatArray, view: str) -> tuple[float, str]:
+    """Return by how much misfit over response differs, all other conditions alike.
+
+    Returns:
+        A lower limit of the ratio [-], and the slice where it is largest.
+    """
     others = tuple(n for n in ("level", "hit point", "preload") if n != view)
     own, power = excess.sum(axis=1), _response_power(bench)
-    counted = float(np.prod(bench.campaign.response.shape[1:]))
     words = np.array([labels[view] for labels in bench.blocks.labels])
-    best, top = UNEVEN**2, ""
+    best, top = 1.0, ""
     for group in _matched(bench, others):
         low: dict[str, float] = {}
         high: dict[str, float] = {}
-        for word in dict.fromkeys(words[group]):
+        for word in dict.fromkeys(words[group].tolist()):
             rows = [k for k in group if words[k] == word]
-            noise = 3.0 * float(np.sqrt(2.0 * len(rows) * counted))
+            noise = 3.0 * float(np.sqrt(2.0 * len(rows) * _counted(bench)))
             low[word] = max(own[rows].sum() - noise, 0.0) / power[rows].sum()
             high[word] = (max(own[rows].sum(), 0.0) + noise) / power[rows].sum()
         word = max(low, key=lambda key: low[key])
-        ratio = low[word] / min(high.values())
+        ratio = float(np.sqrt(low[word] / min(high.values())))
         if ratio > best:
             best, top = ratio, word
-    if not top:
+    return best, top
+
+
+def _uneven_words(bench: LumpedBench, excess: FloatArray, view: str) -> str:
+    """Say where misfit over response is far larger, all other conditions alike."""
+    ratio, top = _unevenness(bench, excess, view)
+    if ratio < UNEVEN:
         return ""
     where = f"hits on {top}" if view == "hit point" else f"preload {top}"
-    return f"over {np.sqrt(best):.1f} times stronger for {where}"
+    return f"over {ratio:.2g} times stronger for {where}"
 
 
 def describe(
@@ -214,6 +245,29 @@ def describe(
     if wishes is not None:
         lines += _wish_lines(wishes)
     return tuple(line for line in lines if line)
+
+
+def advise(bench: LumpedBench, relative: Relative, levels: Sequence[Recurrence]) -> str:
+    """Say what would bring light into a misfit that no effect explains.
+
+    Args:
+        bench: measurement and noise.
+        relative: misfit over response by view and slice [-].
+        levels: recurrence at softer hits.
+    """
+    if np.unique(bench.campaign.level).size < 2:
+        return "hit at four levels over a factor of 30: one level cannot tell causes"
+    if not levels:
+        return "hit harder, or average more repeats: the noise hides the softer hits"
+    if not is_linear(levels):
+        return (
+            "hit at levels in between and from the other side, which tells even from "
+            "odd laws; then try a law of your own with --effects"
+        )
+    top = max(relative["output"], key=lambda name: relative["output"][name])
+    if relative["output"][top] > UNEVEN * min(relative["output"].values()):
+        return f"swap sensor {top} with another, or move it, and hit again"
+    return "hit at more points and preloads; look for a part that the model leaves out"
 
 
 def _level_line(levels: Sequence[Recurrence], *, several: bool) -> str:

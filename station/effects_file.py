@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Effects of the user's own, from a Python file named on the command line.
+
+Such a file is run, with all that the user may do. So it is taken from nowhere but the
+command line: no campaign, session, plan or environment can name one, and nothing is
+looked for in any folder.
+"""
+
+import importlib.util
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+
+from jointbench.acquisition.errors import UsageError
+from jointbench.analysis.gap.physics import LumpedEffect
+
+ATTRIBUTE = "EFFECTS"
+SITES = ("link", "body", "channel")
+HOOKS = ("stiffness", "law", "transfer", "mixing", "shape")
+NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+
+def read_effects(path: Path) -> tuple[LumpedEffect, ...]:
+    """Run a file and return the effects that it holds.
+
+    Args:
+        path: Python file with a tuple called ``EFFECTS``.
+
+    Returns:
+        Its effects, each checked as far as can be without a campaign.
+
+    Raises:
+        UsageError: the file cannot be run, or holds no sound effects.
+    """
+    found = getattr(_run(path), ATTRIBUTE, None)
+    if not isinstance(found, tuple | list) or not found:
+        raise UsageError(
+            f"'{path}' has no tuple called {ATTRIBUTE}; end it with "
+            f"{ATTRIBUTE} = (MY_EFFECT,)"
+        )
+    for entry in found:
+        _check(path, entry)
+    return tuple(found)
+
+
+def with_own(
+    catalogue: tuple[LumpedEffect, ...], own: Sequence[LumpedEffect]
+) -> tuple[LumpedEffect, ...]:
+    """Return a catalogue with effects of the user's own.
+
+    Args:
+        catalogue: what the engine knows.
+        own: to be added.
+
+    Raises:
+        UsageError: two effects have one name.
+    """
+    names = [entry.effect.name for entry in (*catalogue, *own)]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise UsageError(
+            f"two effects are called {twice[0]!r}; give your own another name"
+        )
+    return (*catalogue, *own)
+
+
+def _run(path: Path) -> ModuleType:
+    if not path.is_file():
+        raise UsageError(f"there is no effects file '{path}'; give a Python file")
+    spec = importlib.util.spec_from_file_location(f"own_effects_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise UsageError(f"'{path}' is no Python file; its name must end in .py")
+    module = importlib.util.module_from_spec(spec)
+    kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise UsageError(
+            f"'{path}' cannot be run ({type(error).__name__}: {error}); "
+            f"try 'python {path}'"
+        ) from error
+    finally:
+        sys.dont_write_bytecode = kept
+    return module
+
+
+def _check(path: Path, entry: object) -> None:
+    """Refuse what the engine would stumble over long after."""
+    if not isinstance(entry, LumpedEffect):
+        raise UsageError(
+            f"'{path}': {ATTRIBUTE} holds a {type(entry).__name__}; "
+            "each must be a LumpedEffect"
+        )
+    name, parameters = entry.effect.name, entry.effect.parameters
+    fault = ""
+    if not NAME.fullmatch(name):
+        fault = "the name must be words in small letters joined by _"
+    elif not parameters:
+        fault = "it has no parameter; the first is its amplitude"
+    elif parameters[0].off != 0.0:
+        fault = "its first parameter must be an amplitude with off=0.0"
+    elif not entry.sites or not set(entry.sites) <= set(SITES):
+        fault = f"its sites must be among {', '.join(SITES)}"
+    elif all(getattr(entry, hook) is None for hook in HOOKS):
+        fault = f"it acts through no hook; give one of {', '.join(HOOKS)}"
+    if fault:
+        raise UsageError(f"'{path}', effect {name!r}: {fault}")
