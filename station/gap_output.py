@@ -29,6 +29,8 @@ WIDEST = 110
 LABEL = 9
 """Width of the words that lead the lines."""
 LONGEST_NAME = 34
+VIEW_HEADS = ("view", "largest shares")
+TRIED_HEADS = ("explanation", "behind", "chi2/dof", "pull", "why")
 
 
 def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
@@ -56,12 +58,10 @@ def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
     _say(screen, "limits", _limit_words(found))
     where = _where(found)
     if where:
-        heads = ("view", "largest shares")
-        screen.print(_table("Where the gap sits", heads, where, words={0, 1}))
+        screen.print(_table("Where the gap sits", VIEW_HEADS, where, words={0, 1}))
     if len(found.candidates) > 1:
-        heads = ("explanation", "behind", "chi2/dof", "pull", "why")
         tried = _candidates(screen, found)
-        screen.print(_table("Explanations tried", heads, tried, words={0, 4}))
+        screen.print(_table("Explanations tried", TRIED_HEADS, tried, words={0, 4}))
     if next_step(found):
         screen.print()
         _say(screen, "next", next_step(found))

@@ -4,8 +4,8 @@
 from jointbench.acquisition.session import software_version
 from jointbench.analysis.gap.exhibit_records import Exhibit
 from jointbench.analysis.gap.records import Diagnosis, Finding, Gap
+from jointbench.station.gap_hero import hero
 from jointbench.station.gap_pictures import (
-    hero,
     misfit_spectrum,
     response_function,
     view_grid,
