@@ -81,7 +81,7 @@ def _tiles(found: Diagnosis) -> tuple[Tile, ...]:
     pull = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
     pulls = f"{short(pull)} sd"
     if _after(found) is not None:
-        pulls = f"{pull:.2g} → {short(after.pull)} sd"
+        pulls = f"{short(pull)} → {short(after.pull)} sd"
     tiles.append(Tile("pull of the sheet", pulls, "up to 4 is fair"))
     return tuple(tiles)
 
@@ -202,12 +202,13 @@ def _spectra(exhibit: Exhibit, tried: str) -> list[Item]:
         ),
     ]
     if exhibit.wishes is not None:
+        against = "preload" if exhibit.view == "preload" else "level"
         items.append(
             Plot(
                 "wishes",
                 "The stiffness and damping of the joint that each record would choose "
                 "by itself, as a change from the model; a right model leaves 0.",
-                wish_figure(exhibit.wishes, against="level", tried=tried),
+                wish_figure(exhibit.wishes, against=against, tried=tried),
                 320,
             )
         )

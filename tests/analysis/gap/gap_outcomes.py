@@ -1,0 +1,66 @@
+"""Outcomes of the gap engine made by hand: no race, so that tests stay fast."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.analysis.gap.fit import Fit, make_problem, minimise
+from jointbench.analysis.gap.loop import Outcome, fit_base
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_make import make_bench
+from jointbench.analysis.gap.naming import gate
+from jointbench.analysis.gap.screening import screen
+
+_spec = importlib.util.spec_from_file_location(
+    "gap_bench", Path(__file__).with_name("gap_bench.py")
+)
+assert _spec is not None and _spec.loader is not None
+made = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(made)
+
+Hidden = tuple[str, str, list[float]]
+
+
+def outcome_of(
+    hidden: list[Hidden], *tried: tuple[str, str], seed: int = 1, rivals: int = 1
+) -> tuple[Outcome, LumpedBench]:
+    """Fit the base and the tried effects to a campaign with hidden ones.
+
+    Args:
+        hidden: name, site and values of what is in the campaign.
+        tried: name and site of single explanations, best first.
+        seed: of the noise.
+        rivals: how many of them are not told apart.
+    """
+    start = make_bench(made.made_campaign(hidden, seed=seed))
+    refined, base = fit_base(start)
+    assert isinstance(refined, LumpedBench)
+    labels = [f"{name}@{site}" for name, site in tried]
+    tests = screen(refined, base, [c for c in refined.candidates if linear(c.label)])
+    fits = [with_effect(refined, base, label) for label in labels]
+    if fits:
+        again = refined.refine(fits[0].base, fits[0].terms)
+        fits = [minimise(make_problem(again, f.candidates), f.x) for f in fits]
+        refined = again
+        base = minimise(make_problem(again, ()), base.x)
+    best = fits[0] if fits else base
+    null = gate(refined, base, base, tests)
+    judged = gate(refined, best, base, None) if fits else null
+    level = tuple(fits[:rivals]) or (base,)
+    outcome = Outcome(refined, base, null, tests, best, judged, tuple(fits), level)
+    return outcome, refined
+
+
+def linear(label: str) -> bool:
+    """Return whether an effect is quick to screen."""
+    return label.partition("@")[0] in {"delay", "gain_error", "added_mass", "maxwell"}
+
+
+def with_effect(bench: LumpedBench, base: Fit, label: str) -> Fit:
+    """Fit the base with one more effect, from a small amplitude."""
+    (candidate,) = [c for c in bench.candidates if c.label == label]
+    problem = make_problem(bench, (candidate,))
+    parameters = candidate.effect.parameters
+    start = [p.encode(p.starts[0]) if p.starts else 1e-3 for p in parameters]
+    return minimise(problem, np.concatenate([base.x, start]))

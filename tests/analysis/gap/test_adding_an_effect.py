@@ -1,0 +1,133 @@
+"""The worked example of docs/adding-an-effect.md, taken from the page and used."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jointbench.acquisition.errors import UsageError
+from jointbench.analysis.gap.catalogue import CATALOGUE
+from jointbench.analysis.gap.curve_law import curve_law
+from jointbench.analysis.gap.curve_march import REACH, finest_of, look_up, tabulate
+from jointbench.analysis.gap.physics import LumpedEffect
+from jointbench.simulators.campaign import make_campaign
+from jointbench.simulators.campaign_file import write_campaign
+from jointbench.station.effects_file import read_effects, with_own
+from jointbench.station.gap import run_gap
+
+PAGE = Path(__file__).parents[3] / "docs" / "adding-an-effect.md"
+
+
+def example(folder: Path) -> Path:
+    """Write the first code block of the page to a file."""
+    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+    path = folder / "my_effects.py"
+    path.write_text(blocks[0], encoding="utf-8")
+    return path
+
+
+def written(folder: Path, text: str) -> Path:
+    """Write an effects file."""
+    path = folder / "own.py"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_an_effect_from_the_page_is_named_where_it_is_hidden(tmp_path: Path) -> None:
+    """A quintic spring, outside the built-in catalogue, is found with its size.
+
+    The slowest of the built-in effects are left out; its nearest rivals stay.
+    """
+    campaign = make_campaign(
+        8, effects=("quintic_stiffness",), margin=3000.0, grid="small", noise=0.05
+    )
+    path = tmp_path / "campaign.h5"
+    write_campaign(campaign, path)
+    found = run_gap(
+        path,
+        without="bouc_wen,iwan,jenkins,coulomb,hidden_mode,maxwell,hum",
+        effects=[example(tmp_path)],
+        report=None,
+        json_target=None,
+    )
+    assert [e.name for e in found.effects] == ["quintic_stiffness"]
+    (k5,) = found.effects[0].parameters
+    truth = campaign.effects[0].parameters["k5"]
+    assert abs(k5.value - truth) < 5 * k5.sd + 0.02 * abs(truth)
+
+
+@pytest.mark.parametrize("power", [2, 3, 5, 7])
+def test_a_tabulated_power_is_close_to_the_power(power: int) -> None:
+    """From 10 nm to 9 mm within 1e-6, on both sides of zero."""
+    table = np.stack([tabulate(lambda r: r**power, REACH)])
+    x = np.geomspace(1e-8, 9e-3, 501)
+    x = np.concatenate([-x, x])
+    seen = [look_up(table, 0, finest_of(REACH), float(v)) for v in x]
+    assert np.allclose(seen, x**power, rtol=1e-6, atol=0.0)
+
+
+def test_a_corner_is_rounded_over_little_of_its_distance() -> None:
+    """A clearance of 5 um: 1 % beyond it, the curve is its own again."""
+    table = np.stack([tabulate(lambda r: np.where(np.abs(r) > 5e-6, 3.0, 0.0), REACH)])
+    inside, outside = (
+        look_up(table, 0, finest_of(REACH), x) for x in (4.95e-6, -5.05e-6)
+    )
+    assert (inside, outside) == (0.0, 3.0)
+
+
+def test_a_curve_that_is_not_finite_is_refused() -> None:
+    """The message says how many values are wrong."""
+    with pytest.raises(UsageError, match="not finite"), np.errstate(invalid="ignore"):
+        curve_law(drag=lambda v: np.sqrt(v))
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("EFFECTS = ()", "EFFECTS"),
+        ("EFFECTS = (1,)", "LumpedEffect"),
+        ("import nothing_of_the_kind", "ModuleNotFoundError"),
+        ("x = (", "SyntaxError"),
+    ],
+)
+def test_an_effects_file_that_is_unsound_is_refused(
+    tmp_path: Path, text: str, word: str
+) -> None:
+    """One line that says what is wrong, whatever the file does."""
+    with pytest.raises(UsageError, match=word):
+        read_effects(written(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "word"),
+    [
+        ("quintic_stiffness", "Quintic", "small letters"),
+        ("off=0.0", "off=None", "amplitude"),
+        ('("link",)', '("joint",)', "sites"),
+        ("law=quintic,", "", "hook"),
+    ],
+)
+def test_an_effect_that_the_engine_cannot_use_is_refused(
+    tmp_path: Path, old: str, new: str, word: str
+) -> None:
+    """The fault is named before any record is read."""
+    text = example(tmp_path).read_text("utf-8")
+    assert old in text
+    with pytest.raises(UsageError, match=word):
+        read_effects(written(tmp_path, text.replace(old, new)))
+
+
+def test_an_effect_that_bears_a_built_in_name_is_refused(tmp_path: Path) -> None:
+    """Two effects of one name could not be told apart in a verdict."""
+    text = example(tmp_path).read_text("utf-8")
+    own = read_effects(written(tmp_path, text.replace("quintic_", "cubic_")))
+    with pytest.raises(UsageError, match="cubic_stiffness"):
+        with_own(CATALOGUE, own)
+
+
+def test_an_effects_file_leaves_nothing_behind(tmp_path: Path) -> None:
+    """No cache of compiled code appears beside a file that was run."""
+    (entry,) = read_effects(example(tmp_path))
+    assert isinstance(entry, LumpedEffect)
+    assert [path.name for path in tmp_path.iterdir()] == ["my_effects.py"]
