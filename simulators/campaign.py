@@ -20,11 +20,13 @@ from jointbench.simulators.effect_draws import (
     OUTSIDE_CATALOGUE,
     draw_effect,
     resize_effect,
+    specimen_scales,
 )
 from jointbench.simulators.expected_margin import (
     Margin,
     MarginScale,
     expected_margin,
+    first_order_margin,
     margin_scale,
 )
 from jointbench.simulators.hidden_effects import HiddenEffect
@@ -32,6 +34,8 @@ from jointbench.simulators.hidden_effects import HiddenEffect
 MARGIN_RANGE = (1.0, 1e4)
 _CLOSE = 0.15  # relative, at which the size of an effect is close enough
 _MOST_SIZES = 6
+_FAR = 3.0  # ratio of margins at which rivals at their best call for another size
+_MORE_SIZES = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +45,8 @@ class Campaign:
     Attributes:
         design: specimen, hits and noise.
         effects: what is hidden in it.
-        margins: what an ideal analyst could make of each effect, same order.
+        margins: what an ideal analyst could make of each effect, same order; empty
+            where nobody worked them out.
         force: hammer force [N], shape (n_records, n).
         acceleration: of base and top [m/s^2], shape (n_records, 2, n).
     """
@@ -115,6 +120,42 @@ def make_campaign(
     return Campaign(design, hidden, margins, force, acceleration)
 
 
+def quick_campaign(
+    seed: int,
+    *,
+    effects: Sequence[str] = (),
+    size: float = 0.3,
+    grid: str | None = None,
+    noise: float | None = None,
+    hit_scatter: float = 0.0,
+) -> Campaign:
+    """Draw a campaign as `make_campaign` does, without working out margins.
+
+    Margins take ten times as long as the records themselves.
+
+    Args:
+        seed: of everything that is drawn.
+        effects: names, whose parameters are drawn.
+        size: share of the largest physical size of each effect [-].
+        grid: of hits, one of `GRIDS`; None draws it.
+        noise: of each acceleration [m/s^2]; None draws it.
+        hit_scatter: relative standard deviation between hits [-].
+
+    Raises:
+        UsageError: an effect is unknown, or named twice.
+    """
+    if len(set(effects)) < len(effects):
+        raise UsageError(f"effects {effects} name one twice; hide each of them once")
+    design = draw_design(seed, grid=grid, noise=noise, hit_scatter=hit_scatter)
+    rng = np.random.default_rng([seed, 12])
+    scales = specimen_scales(design)
+    hidden = tuple(
+        resize_effect(draw_effect(name, scales, rng), size) for name in effects
+    )
+    force, acceleration = _with_noise(design, *simulate_records(design, hidden))
+    return Campaign(design, hidden, (), force, acceleration)
+
+
 def campaign_noise_free(
     campaign: Campaign, *, with_effects: bool = True
 ) -> tuple[FloatArray, FloatArray]:
@@ -142,14 +183,36 @@ def size_to_margin(
         wanted: expected margin [-].
 
     Returns:
-        The effect, within 15 % of the margin, or as large as `largest`.
+        The effect, within 15 % of the margin by the first-order one, and within a
+        factor of 3, mostly, by that of rivals at their best; or as large as
+        `largest`.
     """
     if not FAMILIES[largest.name].resizable:
         return largest
+    share = _first_share(scale, largest, wanted)
+    last: tuple[float, float] | None = None
+    for _ in range(_MORE_SIZES):
+        sized = resize_effect(largest, share)
+        margin = max(expected_margin(scale, sized).margin, 1e-12)
+        missing = float(np.log(wanted / margin))
+        if abs(missing) < np.log(_FAR) or (share == 1.0 and missing > 0):
+            break
+        # Between a change that grows as the square and a second-order one.
+        power = 3.0
+        if last is not None and last[0] != share:
+            slope = np.log(margin / last[1]) / np.log(share / last[0])
+            power = float(np.clip(slope, 1.0, 5.0))
+        last = share, margin
+        share = min(1.0, share * float(np.exp(np.clip(missing / power, -3.0, 3.0))))
+    return resize_effect(largest, share)
+
+
+def _first_share(scale: MarginScale, largest: HiddenEffect, wanted: float) -> float:
+    """Return the share of the size at which the first-order margin is the wanted."""
     share, power = 0.01, 2.0
     known: list[tuple[float, float]] = []
     for _ in range(_MOST_SIZES):
-        margin = expected_margin(scale, resize_effect(largest, share)).margin
+        margin = first_order_margin(scale, resize_effect(largest, share)).margin
         if abs(np.log(max(margin, 1e-12) / wanted)) < _CLOSE:
             break
         known.append((np.log(share), np.log(max(margin, 1e-12))))
@@ -163,7 +226,7 @@ def size_to_margin(
         share = min(1.0, share * float(np.exp(np.clip(step, -5.0, 5.0))))
         if share == 1.0 and known[-1][0] == 0.0:
             break
-    return resize_effect(largest, share)
+    return share
 
 
 def _hide(

@@ -13,16 +13,21 @@ import scipy.linalg
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.simulators.base_refit import (
+    BaseFit,
     BaseView,
     base_view,
     project,
-    refit_residual,
+    refit_base,
 )
 from jointbench.simulators.campaign_design import CampaignDesign
 from jointbench.simulators.campaign_response import sketch_responses
 from jointbench.simulators.effect_draws import FAMILIES, Scales, specimen_scales
 from jointbench.simulators.hidden_effects import HiddenEffect
 from jointbench.simulators.rival_effects import rival_effects
+from jointbench.simulators.rival_refit import best_shape, refit_rival, sized_twin
+
+_REFITTED = 4  # rivals, the most alike by the grid
+_ALIKE = 0.7  # correlation below which a rival is not worth a refit
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,19 +49,33 @@ class Margin:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Rival:
+    """Small effects of one name and site, and what the base leaves of them.
+
+    Attributes:
+        shapes: the effects.
+        directions: what the base leaves of each, (n_rows,) each.
+        plane: orthonormal columns that span the directions.
+    """
+
+    shapes: tuple[HiddenEffect, ...]
+    directions: tuple[FloatArray, ...]
+    plane: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class MarginScale:
     """Everything about a design that margins need, computed once.
 
     Attributes:
         scales: what its specimen does.
         view: its base as least squares sees it.
-        rivals: orthonormal directions that the base cannot follow, by name and site
-            of the rival, each (n_rows, n_directions).
+        rivals: of any hidden effect, by name and site.
     """
 
     scales: Scales
     view: BaseView
-    rivals: Mapping[str, FloatArray] = field(repr=False)
+    rivals: Mapping[str, Rival] = field(repr=False)
 
 
 def margin_scale(design: CampaignDesign) -> MarginScale:
@@ -69,14 +88,10 @@ def margin_scale(design: CampaignDesign) -> MarginScale:
         Base responses, weights, slopes and rivals.
     """
     view, scales = base_view(design), specimen_scales(design)
-    families: dict[str, list[FloatArray]] = {}
+    families: dict[str, list[HiddenEffect]] = {}
     for rival in rival_effects(scales):
-        change = sketch_responses(design, [rival]) - view.responses
-        families.setdefault(_site(rival), []).append(project(view, change))
-    rivals = {
-        site: np.asarray(scipy.linalg.orth(np.stack(directions, axis=1), 1e-6))
-        for site, directions in families.items()
-    }
+        families.setdefault(_site(rival), []).append(rival)
+    rivals = {site: _rival(view, shapes) for site, shapes in families.items()}
     return MarginScale(scales, view, rivals)
 
 
@@ -88,24 +103,81 @@ def expected_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
         effect: the hidden effect, at its size.
 
     Returns:
-        rho, the best rival and the margin; a rival may mix all shapes of its grid,
-        so the margin errs on the low side.
+        rho, the best rival and the margin. The rivals most alike by their grids, and
+        the effect itself at its other site, are refitted with all their parameters
+        and the base's; the correlation is that of the best fit.
+    """
+    responses = sketch_responses(scale.view.design, [effect])
+    alone = refit_base(scale.view, responses)
+    norm = max(float(np.sqrt(alone.cost)), 1e-300)
+    alike = _correlations(scale, effect, alone.left)
+    rival, remaining = max(alike, key=lambda site: alike[site]), norm
+    for site, start in _starts(scale, effect, alone, alike):
+        distance = refit_rival(scale.view, responses, alone, start)
+        if distance < remaining:
+            rival, remaining = site, distance
+    return _margin(effect, norm, rival, 1 - (remaining / norm) ** 2)
+
+
+def first_order_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
+    """Judge an effect by the grid of small rivals alone, for a quick first size.
+
+    Args:
+        scale: the design, prepared.
+        effect: the hidden effect, at its size.
+
+    Returns:
+        As `expected_margin`; a rival may mix all shapes of its grid, but no others.
 
     Source:
         Cook and Weisberg's added-variable projection, with the rival's plane in
         place of one regressor.
     """
-    left = refit_residual(scale.view, sketch_responses(scale.view.design, [effect]))
-    norm = float(np.linalg.norm(left))
-    correlations = {
-        site: float(np.linalg.norm(directions.T @ left)) / max(norm, 1e-300)
-        for site, directions in scale.rivals.items()
-        if site != _site(effect) and not _same_thing(effect, site)
+    responses = sketch_responses(scale.view.design, [effect])
+    alone = refit_base(scale.view, responses)
+    alike = _correlations(scale, effect, alone.left)
+    rival = max(alike, key=lambda site: alike[site])
+    return _margin(effect, float(np.sqrt(alone.cost)), rival, alike[rival] ** 2)
+
+
+def _rival(view: BaseView, shapes: list[HiddenEffect]) -> Rival:
+    changes = (sketch_responses(view.design, [s]) - view.responses for s in shapes)
+    directions = tuple(project(view, change) for change in changes)
+    plane = np.asarray(scipy.linalg.orth(np.stack(directions, axis=1), 1e-6))
+    return Rival(tuple(shapes), directions, plane)
+
+
+def _correlations(
+    scale: MarginScale, effect: HiddenEffect, left: FloatArray
+) -> dict[str, float]:
+    """Return how much of what is left lies in the plane of each rival."""
+    norm = max(float(np.linalg.norm(left)), 1e-300)
+    return {
+        site: min(float(np.linalg.norm(rival.plane.T @ left)) / norm, 1.0)
+        for site, rival in scale.rivals.items()
+        if not _same_thing(effect, site)
     }
-    rival = max(correlations, key=lambda site: correlations[site])
-    correlation = min(correlations[rival], 1.0)
+
+
+def _starts(
+    scale: MarginScale, effect: HiddenEffect, alone: BaseFit, alike: dict[str, float]
+) -> list[tuple[str, HiddenEffect]]:
+    """Return the rivals worth a refit, each as it should start."""
+    starts: list[tuple[str, HiddenEffect]] = []
+    for site in sorted(alike, key=lambda site: -alike[site]):
+        if alike[site] < _ALIKE:
+            break
+        known = scale.rivals[site]
+        best = best_shape(known.shapes, known.directions, alone.left)
+        if best is not None and len(starts) < _REFITTED:
+            starts.append((site, best[0]))
+    twin = sized_twin(scale.view, effect, alone.left)
+    return starts if twin is None else [*starts, (_site(twin), twin)]
+
+
+def _margin(effect: HiddenEffect, norm: float, rival: str, square: float) -> Margin:
     rho = norm / float(np.sqrt(max(FAMILIES[effect.name].free, 1)))
-    return Margin(rho, correlation, rival, rho**2 * (1 - correlation**2))
+    return Margin(rho, float(np.sqrt(square)), rival, rho**2 * (1 - square))
 
 
 def _site(effect: HiddenEffect) -> str:
@@ -113,5 +185,13 @@ def _site(effect: HiddenEffect) -> str:
 
 
 def _same_thing(effect: HiddenEffect, site: str) -> bool:
-    """Say whether a rival is the effect itself: a turned sign is a gain of -2."""
-    return effect.name == "polarity" and site == f"gain_error {effect.site}"
+    """Say whether a rival is the effect itself, perhaps under another name.
+
+    A turned sign is a gain of -2; a limit on all channels is one on that which clips.
+    """
+    name = site.split()[0]
+    return (
+        site == _site(effect)
+        or (effect.name == "polarity" and site == f"gain_error {effect.site}")
+        or (effect.name == name == "saturation")
+    )

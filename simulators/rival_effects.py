@@ -1,15 +1,47 @@
 # SPDX-License-Identifier: MIT
 """Small catalogue effects on a coarse grid of shapes: the rivals of a hidden one."""
 
+from collections.abc import Mapping
 from itertools import product
 
 import numpy as np
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.simulators.effect_draws import Scales
 from jointbench.simulators.hidden_effects import HiddenEffect
 
 # Small enough to change the responses in proportion, large enough for differences.
-_SMALL = 1e-3
+_SMALL = 1e-5
+
+# What an analyst would fit of each, size first.
+_FREE: Mapping[str, tuple[str, ...]] = {
+    "cubic_stiffness": ("k3",),
+    "quadratic_stiffness": ("k2",),
+    "gap": ("k", "g"),
+    "jenkins": ("kt", "Fs"),
+    "iwan": ("kt", "phimax", "chi"),
+    # zy absorbs b: only their ratio to g matters.
+    "bouc_wen": ("k", "zy", "n", "g"),
+    "coulomb": ("Fc",),
+    "quadratic_damping": ("c",),
+    "maxwell": ("k", "tau"),
+    "extra_damping": ("c",),
+    "added_mass": ("m",),
+    "hidden_mode": ("m", "k", "c"),
+    "preload_stiffness": ("n",),
+    "preload_damping": ("n",),
+    "loosening": ("frac",),
+    "cross_talk": ("frac",),
+    "delay": ("tau",),
+    "gain_error": ("frac",),
+    "sensor_lowpass": ("fc",),
+}
+_SIGNED = frozenset(
+    (
+        *("cubic_stiffness", "quadratic_stiffness", "gap", "loosening", "delay"),
+        *("preload_stiffness", "preload_damping", "cross_talk", "gain_error"),
+    )
+)
 
 
 def rival_effects(scales: Scales) -> list[HiddenEffect]:
@@ -29,6 +61,41 @@ def rival_effects(scales: Scales) -> list[HiddenEffect]:
         *_by_record(),
         *_sensors(),
     ]
+
+
+def may_turn(name: str) -> bool:
+    """Say whether a rival of negative size is physical."""
+    return name in _SIGNED
+
+
+def free_count(rival: HiddenEffect) -> int:
+    """Return how many parameters of a rival can move."""
+    return len(_FREE[rival.name])
+
+
+def move_rival(rival: HiddenEffect, moves: FloatArray) -> HiddenEffect:
+    """Move the free parameters of a rival.
+
+    Args:
+        rival: where the moves start.
+        moves: by which the logarithms of its free parameters change, and by which
+            those change that may be zero [-], shape (n_free,).
+
+    Returns:
+        The moved rival, every parameter within what its law allows.
+    """
+    moved = dict(rival.parameters)
+    for name, move in zip(_FREE[rival.name], moves, strict=True):
+        start, factor = moved[name], float(np.exp(np.clip(move, -30, 30)))
+        if name == "chi":
+            moved[name] = min((1 + start) * factor, 3.0) - 1
+        elif rival.name == "bouc_wen" and name == "g":
+            moved[name] = float(np.clip(start + move, -moved["b"], moved["b"]))
+        elif rival.name == "bouc_wen" and name == "n":
+            moved[name] = float(np.clip(start * factor, 0.5, 6.0))
+        else:
+            moved[name] = start * factor
+    return HiddenEffect(rival.name, moved)
 
 
 def _elastic(s: Scales) -> list[HiddenEffect]:
@@ -78,21 +145,23 @@ def _frictional(s: Scales) -> list[HiddenEffect]:
 
 def _viscous(s: Scales) -> list[HiddenEffect]:
     return [
-        HiddenEffect("quadratic_damping", {"c": 0.02 * s.cj / s.rate}),
+        HiddenEffect("quadratic_damping", {"c": 20 * _SMALL * s.cj / s.rate}),
         *(
             HiddenEffect("maxwell", {"k": _SMALL * s.kj, "tau": tau})
             for tau in (1e-4, 4e-4)
         ),
-        HiddenEffect("extra_damping", {"c": 0.02 * s.cj}),
+        HiddenEffect("extra_damping", {"c": 20 * _SMALL * s.cj}),
     ]
 
 
 def _masses(s: Scales) -> list[HiddenEffect]:
     first, second = s.frequency
     modes = (0.7 * first, 1.3 * first, 0.8 * second, 1.2 * second, 2.5 * second)
-    rivals = [HiddenEffect("added_mass", {"m": 2e-3, "dof": d}) for d in (0.0, 1.0)]
+    rivals = [
+        HiddenEffect("added_mass", {"m": 2 * _SMALL, "dof": d}) for d in (0.0, 1.0)
+    ]
     for dof, frequency in product((0.0, 1.0), modes):
-        mass, omega = 1e-3, 2 * np.pi * frequency
+        mass, omega = _SMALL, 2 * np.pi * frequency
         rivals.append(
             HiddenEffect(
                 "hidden_mode",
@@ -110,7 +179,7 @@ def _masses(s: Scales) -> list[HiddenEffect]:
 def _by_record() -> list[HiddenEffect]:
     return [
         HiddenEffect("preload_stiffness", {"n": _SMALL}),
-        HiddenEffect("preload_damping", {"n": 0.01}),
+        HiddenEffect("preload_damping", {"n": 10 * _SMALL}),
         HiddenEffect("loosening", {"frac": _SMALL}),
     ]
 
@@ -122,9 +191,9 @@ def _sensors() -> list[HiddenEffect]:
             HiddenEffect(name, {parameter: value, "dof": dof})
             for dof in (0.0, 1.0)
             for name, parameter, value in (
-                ("delay", "tau", 2e-7),
+                ("delay", "tau", 2e-4 * _SMALL),
                 ("gain_error", "frac", _SMALL),
-                ("sensor_lowpass", "fc", 8e5),
+                ("sensor_lowpass", "fc", 800 / _SMALL),
             )
         ),
     ]
