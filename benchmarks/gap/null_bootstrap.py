@@ -23,10 +23,16 @@ from typing import Any
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
+from null_directions import (
+    directions,
+    fixed_starts,
+    linearised_drops,
+    score_variance,
+)
+from null_page import QUANTILES, page
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.campaign import Campaign, read_campaign
-from jointbench.analysis.gap.effects import Term
 from jointbench.analysis.gap.fit import Fit, make_problem, minimise
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.loop import fit_base
@@ -34,7 +40,7 @@ from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.naming import gate, noise_sd
-from jointbench.analysis.gap.screening import PROBE, SCREEN, screen, start_grid
+from jointbench.analysis.gap.screening import screen
 from jointbench.analysis.gap.verify import verify_fit
 from jointbench.simulators.campaign import make_campaign
 from jointbench.simulators.campaign_file import write_campaign
@@ -67,37 +73,6 @@ def fitted(campaign: Campaign) -> tuple[LumpedBench, Fit]:
     if not isinstance(bench, LumpedBench):
         raise TypeError("the loop must hand back the bench it was given")
     return bench, fit
-
-
-def linearised_drops(bench: LumpedBench, fit: Fit, rng: np.random.Generator) -> Any:
-    """Draw the largest drop from directions projected by least squares.
-
-    The engine draws from the same directions in single precision and by normal
-    equations; this is its check.
-    """
-    plain = bench.residual(fit.base, (), SCREEN)
-    prior = np.diag(np.sqrt(fit.prior))
-    base, _ = np.linalg.qr(np.concatenate([fit.jacobian, prior]))
-    kept, one_sided = [], []
-    for candidate in bench.candidates:
-        first = candidate.effect.parameters[0]
-        for start in start_grid(candidate):
-            unit = 1.0 if first.starts else PROBE
-            probe = start.copy()
-            probe[0] = probe[0] if first.starts else PROBE
-            moved = bench.residual(fit.base, (Term(candidate, probe),), SCREEN)
-            row = np.concatenate([(moved - plain) / unit, np.zeros(fit.n_base)])
-            left = row - base @ (base.T @ row)
-            seen = left @ left > 1e-7 * (row @ row)
-            if seen and bench.phases(candidate) == 0:
-                kept.append(left / np.linalg.norm(left))
-                one_sided.append(first.lower >= 0.0)
-    rows = np.array(kept)
-    values, vectors = np.linalg.eigh(rows @ rows.T)
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    draws = rng.standard_normal((LINEARISED, len(root))) @ root.T
-    draws = np.where(np.array(one_sided) & (draws < 0), 0.0, draws)
-    return np.max(draws**2, axis=1)
 
 
 def drawn_campaign(bench: LumpedBench, fit: Fit, rng: np.random.Generator) -> Campaign:
@@ -147,8 +122,14 @@ def judge(bench: LumpedBench, fit: Fit) -> dict[str, Any]:
     """Return what the null test makes of a fitted base."""
     tested = screen(bench, fit, bench.candidates)
     verdict = gate(bench, fit, fit, tested)
+    fixed = {(c.label, *u[1:]) for c, u in fixed_starts(bench)}
     return {
         "largest": tested.largest,
+        "fixed": max(
+            d.drop
+            for d in tested.directions
+            if (d.candidate.label, *d.coordinates[1:]) in fixed
+        ),
         "threshold": tested.threshold,
         "which": tested.directions[0].candidate.label,
         "chi2_per_dof": fit.chi2 / bench.blocks.dof,
@@ -170,6 +151,23 @@ def with_known_noise(true: LumpedBench, truth: Fit, drawn: Campaign) -> dict[str
     return judge(bench, fit)
 
 
+def about_parent(bench: LumpedBench, fit: Fit, seed: int) -> dict[str, Any]:
+    """Return what the draws of a parent are to be compared with."""
+    tested = directions(bench, fit)
+    rng = np.random.default_rng([seed, 1])
+    drops = linearised_drops(tested, LINEARISED, rng)
+    verified = verify_fit(bench, fit)
+    return {
+        "draw": -1,
+        "linearised": np.quantile(drops, QUANTILES).tolist(),
+        "score_variance": float(score_variance(bench, fit, tested).max()),
+        "found_scatter": bench.noise.scatter,
+        "noise_sd": noise_sd(bench),
+        "apart": float(verified.over_peak.max()),
+        "chi2_apart": verified.chi2,
+    } | judge(bench, fit)
+
+
 def run_parent(path: Path, key: tuple[str, float, int], draws: int) -> None:
     """Draw and judge campaigns of one parent, one line each."""
     grid, scatter, seed = key
@@ -177,18 +175,7 @@ def run_parent(path: Path, key: tuple[str, float, int], draws: int) -> None:
     head = {"grid": grid, "scatter": scatter, "seed": seed}
     done = [r for r in read_runs(path) if r["seed"] == seed]
     if not done:
-        rng = np.random.default_rng([seed, 1])
-        drops = linearised_drops(bench, fit, rng)
-        levels = np.quantile(drops, [0.5, 0.9, 0.99, 0.995])
-        verified = verify_fit(bench, fit)
-        append(
-            path,
-            head
-            | {"draw": -1, "linearised": levels.tolist()}
-            | {"found_scatter": bench.noise.scatter, "noise_sd": noise_sd(bench)}
-            | {"apart": float(verified.over_peak.max()), "chi2_apart": verified.chi2}
-            | judge(bench, fit),
-        )
+        append(path, head | about_parent(bench, fit, seed))
     for k in range(max(len(done) - 1, 0), draws):
         began = time.process_time()
         drawn = drawn_campaign(bench, fit, np.random.default_rng([seed, 2, k]))
@@ -221,8 +208,6 @@ def main() -> None:
     parser.add_argument("--table", action="store_true")
     arguments = parser.parse_args()
     if arguments.table:
-        from null_page import page
-
         sys.stdout.write(page(read_runs(arguments.runs)))
         return
     for key in PARENTS:
