@@ -13,12 +13,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
+
 from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.gap.physics import LumpedEffect
+from jointbench.analysis.gap.effects import Parameter
+from jointbench.analysis.gap.march import CURVES
+from jointbench.analysis.gap.physics import Conditions, ElementState, LumpedEffect
 
 ATTRIBUTE = "EFFECTS"
 SITES = ("link", "body", "channel")
 HOOKS = ("stiffness", "law", "transfer", "mixing", "shape")
+TRIED_LINES = 16
+TRIED_DAMPING = 100.0
+"""Of the Laplace variable at which a linear effect is tried [1/s]."""
 NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
@@ -105,5 +112,51 @@ def _check(path: Path, entry: object) -> None:
         fault = f"its sites must be among {', '.join(SITES)}"
     elif all(getattr(entry, hook) is None for hook in HOOKS):
         fault = f"it acts through no hook; give one of {', '.join(HOOKS)}"
+    else:
+        fault = _loud(entry)
     if fault:
         raise UsageError(f"'{path}', effect {name!r}: {fault}")
+
+
+def _loud(entry: LumpedEffect) -> str:
+    """Return what is wrong with an effect at amplitude 0, or an empty text."""
+    try:
+        silent = _silent(entry)
+    except UsageError:
+        raise
+    except Exception as error:
+        raise UsageError(
+            f"effect {entry.effect.name!r} fails at amplitude 0 "
+            f"({type(error).__name__}: {error}); try its hook by itself"
+        ) from error
+    return "" if silent else "at amplitude 0 it must vanish to the last bit"
+
+
+def _silent(entry: LumpedEffect) -> bool:
+    """Return whether an effect of amplitude 0 leaves the base as it is.
+
+    A `shape` looks at the whole response and is not tried; neither is a law other
+    than one of curves, whose amplitude stands in parameters of its own.
+    """
+    values = np.array([p.starts[0] if p.starts else 1.0 for p in _shapes(entry)])
+    values = np.concatenate([[0.0], values])
+    s = np.asarray(
+        TRIED_DAMPING + 2j * np.pi * np.geomspace(1.0, 1e4, TRIED_LINES),
+        dtype=np.complex128,
+    )
+    one = np.ones(1)
+    state = ElementState(s, 1.0, 1.0, 1.0, Conditions(one, one))
+    left: list[object] = []
+    if entry.stiffness is not None:
+        left.append(np.any(entry.stiffness(state, values)))
+    if entry.transfer is not None:
+        left.append(np.any(entry.transfer(s, values) != 1.0))
+    if entry.mixing is not None:
+        left.append(entry.mixing(values) != 0.0)
+    if entry.law is not None and (law := entry.law(values)).kind == CURVES:
+        left.append(np.any(law.tables))
+    return not any(left)
+
+
+def _shapes(entry: LumpedEffect) -> tuple[Parameter, ...]:
+    return entry.effect.parameters[1:]

@@ -128,6 +128,8 @@ def next_step(found: Diagnosis) -> str:
     advice = found.exhibit.advice if found.exhibit is not None else ""
     if found.verdict is Finding.UNKNOWN and advice:
         return advice
+    if found.verdict is Finding.NAMED and found.experiment:
+        return f"use it; to be surer still: {found.experiment}"
     return found.experiment
 
 

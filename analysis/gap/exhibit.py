@@ -16,14 +16,13 @@ from jointbench.analysis.gap.exhibit_records import (
     Spectra,
     Wishes,
 )
-from jointbench.analysis.gap.exhibit_words import (
-    advise,
-    describe,
+from jointbench.analysis.gap.exhibit_where import (
     locate,
     pulled,
     relative_misfits,
     telling_view,
 )
+from jointbench.analysis.gap.exhibit_words import advise, describe
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import TAIL, LumpedBench

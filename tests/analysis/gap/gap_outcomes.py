@@ -1,6 +1,7 @@
 """Outcomes of the gap engine made by hand: no race, so that tests stay fast."""
 
 import importlib.util
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,11 @@ Hidden = tuple[str, str, list[float]]
 
 
 def outcome_of(
-    hidden: list[Hidden], *tried: tuple[str, str], seed: int = 1, rivals: int = 1
+    hidden: list[Hidden],
+    *tried: tuple[str, str],
+    seed: int = 1,
+    rivals: int = 1,
+    continuous: bool = False,
 ) -> tuple[Outcome, LumpedBench]:
     """Fit the base and the tried effects to a campaign with hidden ones.
 
@@ -32,8 +37,12 @@ def outcome_of(
         tried: name and site of single explanations, best first.
         seed: of the noise.
         rivals: how many of them are not told apart.
+        continuous: as if a shaker had done it, that never stops.
     """
-    start = make_bench(made.made_campaign(hidden, seed=seed))
+    campaign = made.made_campaign(hidden, seed=seed)
+    if continuous:
+        campaign = replace(campaign, continuous=True, repeatability=1e-4)
+    start = make_bench(campaign)
     refined, base = fit_base(start)
     assert isinstance(refined, LumpedBench)
     labels = [f"{name}@{site}" for name, site in tried]

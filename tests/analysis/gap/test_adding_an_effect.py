@@ -106,6 +106,8 @@ def test_an_effects_file_that_is_unsound_is_refused(
         ("off=0.0", "off=None", "amplitude"),
         ('("link",)', '("joint",)', "sites"),
         ("law=quintic,", "", "hook"),
+        ("k5 * r**5", "(k5 + 1.0) * r**5", "last bit"),
+        ("k5 = values[0]", "k5 = values[7]", "IndexError"),
     ],
 )
 def test_an_effect_that_the_engine_cannot_use_is_refused(

@@ -144,3 +144,12 @@ def test_the_json_of_an_exhibit_holds_words_and_no_samples() -> None:
     text = json.dumps(exhibit_json(case("delay")[2]))
     assert "delay@channel:a1" in text
     assert len(text) < 8000
+
+
+def test_a_shaken_bench_without_hits_has_its_exhibit_too() -> None:
+    """No hit to cut out and no level to compare: the sentences go without them."""
+    outcome, bench = outcomes.outcome_of([LATE], continuous=True)
+    exhibit = make_exhibit(bench, outcome.base, outcome)
+    assert "a1" in exhibit.where
+    assert not any(line.startswith("time:") for line in exhibit.look)
+    assert exhibit.curves.time.size > 100
