@@ -29,6 +29,7 @@ from jointbench.acquisition.session_streams import (
     number,
     read_channels,
     read_hits,
+    read_preload,
 )
 from jointbench.acquisition.units import example_unit
 
@@ -102,6 +103,7 @@ def _recording(file: h5py.File, group: h5py.Group) -> Description:
         "samples": samples,
         "duration_s": samples / rate,
         "start_time_s": start,
+        "preload_n": read_preload(group),
         "channels": [
             {
                 "name": channel.name,

@@ -120,6 +120,8 @@ class Recording:
         start_time: time of the first sample since the session began [s].
         hits: judged hits, in order of time; empty before detection.
         provenance: how the samples came about.
+        preload: on the joint while this was recorded [N]; None where it was that of
+            the session, or nobody said.
     """
 
     name: str
@@ -129,12 +131,15 @@ class Recording:
     start_time: float = 0.0
     hits: tuple[Hit, ...] = ()
     provenance: Provenance = field(default=())
+    preload: float | None = None
 
     def __post_init__(self) -> None:
         """Check shapes once and make the samples read-only."""
         require_shape("samples", self.samples, (len(self.channels), None))
         require_finite("samples", self.samples)
         require_positive("sample_rate", self.sample_rate)
+        if self.preload is not None:
+            require_positive("preload", self.preload)
         names = [channel.name for channel in self.channels]
         if len(set(names)) != len(names):
             raise ShapeError(f"channel names must be unique, got {names}")

@@ -4,7 +4,8 @@
 Each recording is one group that xarray opens by itself::
 
     /stream/<recording>   samples (channel, time), time, and one row a channel of
-                          channel_name, quantity, point, direction, unit, ...
+                          channel_name, quantity, point, direction, unit, ...;
+                          attribute preload [N] where it is this recording's own
     /hits/<recording>     start, trigger, stop, peak_force, verdict, reason (hit)
 
 The time axis is a plain coordinate to whoever opens the file, but stored as whole
@@ -108,6 +109,7 @@ def write_recording(file: h5py.File, recording: Recording, position: int) -> Non
             "position": position,
             "sample_rate": float(recording.sample_rate),
             "start_time": float(recording.start_time),
+            "preload": None if recording.preload is None else float(recording.preload),
         },
     )
     write_axis(
@@ -144,7 +146,13 @@ def recording_from_group(
         start_time=float(number(group, "start_time")),
         hits=read_hits(file, group),
         provenance=provenance,
+        preload=read_preload(group),
     )
+
+
+def read_preload(group: h5py.Group) -> float | None:
+    """Return the preload of a recording [N], None where it has none of its own."""
+    return float(number(group, "preload")) if "preload" in group.attrs else None
 
 
 def read_channels(group: h5py.Group) -> tuple[Channel, ...]:

@@ -34,3 +34,17 @@ class Source(Protocol):
     def blocks(self) -> Iterator[FloatArray]:
         """Yield successive samples in SI units, shape (n_channels, block)."""
         ...
+
+
+class Run(Source, Protocol):
+    """One stretch of a visit to the bench, recorded under one setting of the joint."""
+
+    @property
+    def preload(self) -> float | None:
+        """Preload on the joint meanwhile [N]; None where nobody says."""
+        ...
+
+    @property
+    def start_time(self) -> float:
+        """Time of the first sample since the visit began [s]."""
+        ...

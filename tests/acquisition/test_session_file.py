@@ -103,6 +103,19 @@ def test_a_session_comes_back_to_the_bit(tmp_path):
     assert_same(read_session(tmp_path / "s.h5"), whole)
 
 
+def test_each_recording_keeps_its_own_preload(tmp_path):
+    """And one that has none of its own says so, as in files of before."""
+    loose, tight, plain = (recording(name) for name in ("loose", "tight", "plain"))
+    loose = dataclasses.replace(loose, preload=2000.0)
+    tight = dataclasses.replace(tight, preload=8000.0)
+    whole = dataclasses.replace(session(), recordings=(loose, tight, plain))
+    write_session(whole, tmp_path / "s.h5")
+    with h5py.File(tmp_path / "s.h5") as file:
+        assert "preload" not in file["stream/plain"].attrs
+    read = read_session(tmp_path / "s.h5").recordings
+    assert [r.preload for r in read] == [2000.0, 8000.0, None]
+
+
 def test_an_empty_session_comes_back(tmp_path):
     """No setup is not the same as a setup of which nothing is known."""
     for joint in (None, JointSetup()):
@@ -165,6 +178,7 @@ def recordings(draw):
         start_time=draw(FINITE),
         hits=draw(HITS),
         provenance=draw(STEPS),
+        preload=draw(st.none() | POSITIVE),
     )
 
 
@@ -302,6 +316,8 @@ def damaged(path, change):
         lambda f: f["stream/z last"].__delitem__("samples"),
         lambda f: f["stream/z last"].attrs.__delitem__("sample_rate"),
         lambda f: f["stream/z last"].attrs.__setitem__("sample_rate", -1.0),
+        lambda f: f["stream/z last"].attrs.__setitem__("preload", -1.0),
+        lambda f: f["stream/z last"].attrs.__setitem__("preload", "much"),
         lambda f: f["stream/z last/samples"].__setitem__((0, 0), np.nan),
         lambda f: f["stream/z last/quantity"].__setitem__(0, 99),
         lambda f: f["surfaces/map"].__delitem__("valid"),
