@@ -112,7 +112,15 @@ GRIDS: Mapping[str, _Grid] = {
         (1, 200.0, 2.0),
         (0, 200.0, 2.0),
     ),
+    # Every condition twice, the preloads up and down again: what loosens shows.
+    "crossed": tuple(
+        (dof, level, ratio)
+        for ratio in (0.5, 1.0, 2.0, 2.0, 1.0, 0.5)
+        for dof in (1, 0)
+        for level in _LEVELS
+    ),
 }
+_DRAWN = ("full", "middle", "small")
 
 
 def draw_design(
@@ -126,7 +134,8 @@ def draw_design(
 
     Args:
         seed: of all draws.
-        grid: name of one of `GRIDS`; None draws one, most often the full one.
+        grid: name of one of `GRIDS`; None draws one of those that no design crosses,
+            most often the full one.
         noise: of each acceleration [m/s^2]; None draws it from 0.02 to 0.5.
         hit_scatter: relative standard deviation of force and joint stiffness from
             hit to hit [-].
@@ -146,7 +155,7 @@ def draw_design(
         name: value * float(np.exp(NOMINAL_SIGMA[name] * rng.standard_normal()))
         for name, value in nominal.items()
     }
-    drawn_grid = str(rng.choice(list(GRIDS), p=[0.6, 0.2, 0.2]))
+    drawn_grid = str(rng.choice(_DRAWN, p=[0.6, 0.2, 0.2]))
     drawn_noise = float(np.exp(rng.uniform(np.log(0.02), np.log(0.5))))
     reference = float(rng.choice([2000.0, 4000.0, 5000.0], p=[0.2, 0.6, 0.2]))
     chosen = drawn_grid if grid is None else grid

@@ -54,8 +54,8 @@ def campaign_truth(campaign: Campaign) -> dict[str, object]:
 
     Returns:
         Keys `truth` (names to find), `effects` (parameters by true name), `sites`,
-        `margins` (rho, correlation, rival, margin by name), `noise_rms`, `physical`,
-        `hit_scatter` and `seed`.
+        `margins` (rho, correlation, rival, margin by name, where known), `noise_rms`,
+        `physical`, `hit_scatter` and `seed`.
     """
     names = [effect.name for effect in campaign.effects]
     return {
@@ -64,7 +64,7 @@ def campaign_truth(campaign: Campaign) -> dict[str, object]:
         "sites": {e.name: e.site for e in campaign.effects},
         "margins": {
             name: asdict(margin)
-            for name, margin in zip(names, campaign.margins, strict=True)
+            for name, margin in zip(names, campaign.margins, strict=False)
         },
         "noise_rms": campaign.design.noise,
         "physical": dict(campaign.design.physical),
