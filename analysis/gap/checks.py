@@ -27,7 +27,9 @@ def campaign_limits(campaign: Campaign) -> str:
             f"all hits have one level ({level.min():.0f} to {level.max():.0f} N): "
             "nothing that depends on it can be told apart; hit over 30x in level"
         )
-    if not repeat_groups(campaign.hit, campaign.level, campaign.preload):
+    if campaign.repeatability is None and not repeat_groups(
+        campaign.hit, campaign.level, campaign.preload
+    ):
         return (
             "no condition was measured twice, so the repeatability is not known; "
             "repeat at least one point, level and preload"
