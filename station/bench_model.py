@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: MIT
 """The bench model file (TOML): bodies, links, the channel on each body, the contact.
 
-Units are written beside every number ("9.02 kg") and parsed once, here.
+One file serves `identify`, `report` and `gap`. Units are written beside every number
+("9.02 kg") and parsed once, here. Where a [record] is driven by something else than a
+force (a voltage, say), its units stand in for newton and metre: see `record_model`.
 """
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from jointbench.acquisition.errors import UnitError
 from jointbench.acquisition.units import parse_value
+from jointbench.station.record_model import RecordTable, with_mechanical_units
 
 GROUND = "ground"
 
@@ -34,6 +37,7 @@ Stiffness = Annotated[float, _quantity("stiffness"), Field(ge=0)]
 Damping = Annotated[float, _quantity("damping"), Field(ge=0)]
 Force = Annotated[float, _quantity("force"), Field(gt=0)]
 Pressure = Annotated[float, _quantity("pressure"), Field(gt=0)]
+Share = Annotated[float, _quantity("ratio"), Field(gt=0, lt=1)]
 
 
 class _Strict(BaseModel):
@@ -41,24 +45,31 @@ class _Strict(BaseModel):
 
 
 class BodyTable(_Strict):
-    """A rigid body: weighed mass [kg], its standard deviation, its channel."""
+    """A rigid body: weighed mass [kg], its standard deviation, its channel.
+
+    The points are those at which the hammer strikes this body; left out, they are
+    the point at which its channel sits, or the name of the body.
+    """
 
     mass: Mass
     mass_sd: Mass | None = None
     channel: str | None = None
+    points: tuple[str, ...] = ()
 
 
 class LinkTable(_Strict):
     """A spring and dashpot between two bodies, or a body and ``ground``.
 
     Stiffness [N/m] and damping [N s/m] are nominal values; the standard deviations,
-    where given, make them priors.
+    where given, make them priors. A joint is a link where effects of joints may sit.
     """
 
     between: tuple[str, str]
     stiffness: Stiffness | None = None
     stiffness_sd: Stiffness | None = None
     damping: Damping | None = None
+    damping_sd: Damping | None = None
+    joint: bool = False
 
 
 class ContactTable(_Strict):
@@ -72,12 +83,33 @@ class ContactTable(_Strict):
     model: str = "ke_3d_modified"
 
 
+class GapTable(_Strict):
+    """What `gap` needs beside bodies and links.
+
+    What all channels measure; the preload [N] that the nominal values belong to; the
+    scatter from hit to hit relative to the peak response [-], where no repeats tell;
+    the sessions to examine, beside this file, where it is given in their place.
+    """
+
+    output: Literal["displacement", "velocity", "acceleration"] = "acceleration"
+    preload_reference: Force | None = None
+    repeatability: Share | None = None
+    sessions: tuple[str, ...] = ()
+
+
 class BenchModel(_Strict):
-    """A lumped bench: bodies and links by name, and the contact of one link."""
+    """A lumped bench: bodies and links by name, the contact of one link, a record."""
 
     bodies: dict[str, BodyTable] = Field(min_length=1)
     links: dict[str, LinkTable] = Field(min_length=1)
     contact: ContactTable | None = None
+    gap: GapTable = GapTable()
+    record: RecordTable | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _stand_ins(cls, content: Any) -> Any:
+        return with_mechanical_units(content)
 
     @model_validator(mode="after")
     def _names_exist(self) -> "BenchModel":
@@ -94,6 +126,9 @@ class BenchModel(_Strict):
         channels = [b.channel for b in self.bodies.values() if b.channel is not None]
         if len(set(channels)) != len(channels):
             raise ValueError(f"two bodies share a channel: {channels}")
+        points = [point for body in self.bodies.values() for point in body.points]
+        if len(set(points)) != len(points):
+            raise ValueError(f"a hit point belongs to two bodies: {points}")
         if self.contact is not None and self.contact.link not in self.links:
             raise ValueError(
                 f"contact.link is {self.contact.link!r}; links are {list(self.links)}"

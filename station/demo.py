@@ -2,6 +2,7 @@
 """``jointbench demo``: the whole main job on the embedded simulated bench."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from jointbench.acquisition.records import Verdict
@@ -9,7 +10,15 @@ from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.analysis.identification import identification_json
 from jointbench.station.bench_model import BenchModel
 from jointbench.station.contact import contact_json
-from jointbench.station.demo_bench import DemoTruth, DemoVisit, visit_bench
+from jointbench.station.demo_bench import DemoVisit, visit_bench
+from jointbench.station.demo_gap import FILES as GAP_FILES
+from jointbench.station.demo_gap import (
+    DemoGap,
+    gap_json,
+    gap_sections,
+    show_gap,
+    visit_for_gap,
+)
 from jointbench.station.demo_truth import compare_with_truth
 from jointbench.station.identify import show_joint
 from jointbench.station.modal import modal_json, show_modal
@@ -29,6 +38,7 @@ FILES = (
     "bench.toml",
     "face-a.csv",
     "face-b.csv",
+    *GAP_FILES,
     "report.html",
     "session.h5",
     "session.results.h5",
@@ -66,6 +76,8 @@ poisson = 0.25
 def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     """Measure, identify and report a joint on the simulated bench.
 
+    A second visit, to a bench with a hidden effect, asks what the model misses.
+
     Args:
         out: folder for session, results, model, report and summary.
         seed: of the bench.
@@ -86,10 +98,16 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     # From here on everything comes from the files, as it would for any user's own.
     bench = read_toml(model_file, BenchModel)
     analysis = analyse_session(read_session(session_file), bench)
-    comparisons = compare_with_truth(visit.truth, analysis)
-    _show(analysis, bench, comparisons, json_target)
-    _write_files(out, session_file, analysis, bench, comparisons, visit.truth, seed)
-    write_json(json_target, _summary(analysis, bench, comparisons, seed))
+    with working("a second visit: looking for what the model misses"):
+        gap = visit_for_gap(out, seed=seed)
+    comparisons = (*compare_with_truth(visit.truth, analysis), *gap.comparisons)
+    _show(analysis, bench, json_target)
+    show_gap(gap, json_target)
+    content = truth_table(comparisons)
+    screen.print(table(content.caption, content.columns, content.rows))
+    summary = _summary(analysis, bench, comparisons, gap, seed)
+    _write_files(out, session_file, analysis, bench, comparisons, gap, summary)
+    write_json(json_target, summary)
     screen.print(f"\nreport: {out / 'report.html'}   summary: {out / 'summary.json'}")
     return 0 if all(c.passed for c in comparisons) else EXIT_QUALITY
 
@@ -107,10 +125,7 @@ def _write_model(path: Path, visit: DemoVisit) -> Path:
 
 
 def _show(
-    analysis: SessionAnalysis,
-    bench: BenchModel,
-    comparisons: tuple[Comparison, ...],
-    json_target: str | None,
+    analysis: SessionAnalysis, bench: BenchModel, json_target: str | None
 ) -> None:
     screen = console(json_target)
     if analysis.modal is not None:
@@ -123,8 +138,6 @@ def _show(
         screen.print(sentence, markup=False)
     for remark in analysis.remarks:
         screen.print(remark, markup=False)
-    content = truth_table(comparisons)
-    screen.print(table(content.caption, content.columns, content.rows))
 
 
 def truth_table(comparisons: tuple[Comparison, ...]) -> DataTable:
@@ -162,8 +175,8 @@ def _write_files(
     analysis: SessionAnalysis,
     bench: BenchModel,
     comparisons: tuple[Comparison, ...],
-    truth: DemoTruth,
-    seed: int,
+    gap: DemoGap,
+    summary: Mapping[str, object],
 ) -> None:
     if analysis.modal is not None:
         write_results(results_path(session_file), analysis.modal, [session_file])
@@ -171,8 +184,8 @@ def _write_files(
     page = compose(
         analysis, bench, title="Two bodies on a bolted joint", extra=(section,)
     )
+    page = replace(page, sections=(*page.sections, *gap_sections(gap)))
     write_report(page, out / "report.html")
-    summary = _summary(analysis, bench, comparisons, seed)
     write_json(str(out / "summary.json"), summary)
 
 
@@ -180,6 +193,7 @@ def _summary(
     analysis: SessionAnalysis,
     bench: BenchModel,
     comparisons: tuple[Comparison, ...],
+    gap: DemoGap,
     seed: int,
 ) -> Mapping[str, object]:
     summary: dict[str, object] = {
@@ -189,6 +203,7 @@ def _summary(
         "comparisons": as_json(comparisons),
         "remarks": list(analysis.remarks),
         "surfaces": [surface_json(chain) for chain in analysis.surfaces],
+        "gap": gap_json(gap),
     }
     if analysis.modal is not None:
         summary["modal"] = modal_json(analysis.modal)

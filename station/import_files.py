@@ -7,10 +7,10 @@ from pathlib import Path
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Channel, Recording
-from jointbench.acquisition.session import Session, new_session
+from jointbench.acquisition.session import JointSetup, Session, new_session
 from jointbench.acquisition.session_file import write_session
 from jointbench.acquisition.surfaces import Surface
-from jointbench.station.inputs import read_foreign
+from jointbench.station.inputs import parse_preload, read_foreign
 from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_outputs
 
@@ -21,10 +21,20 @@ def run_import(
     *,
     columns: str | None,
     point: str,
+    preload: str | None = None,
     overwrite: bool,
     json_target: str | None,
 ) -> Session:
     """Import `files` into the session file `out` and say what came in.
+
+    Args:
+        files: hits and surfaces.
+        out: session file.
+        columns: what the columns of plain tables hold.
+        point: where the hammer struck.
+        preload: on the joint while all of this was recorded, with unit.
+        overwrite: replace a session that is there.
+        json_target: where the JSON goes.
 
     Raises:
         BadData: a file cannot be read; nothing is written then.
@@ -33,6 +43,7 @@ def run_import(
     check_outputs(files, [] if out.exists() else [out])
     if out.resolve() in {path.resolve() for path in files}:
         raise UsageError(f"'{out}' is an input; write the session to another file")
+    joint = None if preload is None else JointSetup(preload=parse_preload(preload))
     recordings: list[Recording] = []
     surfaces: list[Surface] = []
     for path in files:
@@ -49,6 +60,7 @@ def run_import(
         simulated=False,
         recordings=recordings,
         surfaces=surfaces,
+        joint=joint,
     )
     write_session(session, out, overwrite=overwrite)
     _show(session, out, json_target)

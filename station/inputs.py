@@ -12,8 +12,22 @@ from jointbench.acquisition.records import Recording
 from jointbench.acquisition.session_file import read_session
 from jointbench.acquisition.surfaces import Surface
 from jointbench.acquisition.text_files import file_digest
+from jointbench.acquisition.units import parse_value
 
 SESSION_SUFFIXES = (".h5", ".hdf5")
+
+
+def parse_preload(text: str) -> float:
+    """Read a preload as typed, for example ``"4 kN"``; in newton.
+
+    Raises:
+        UnitError: it has no unit of force.
+        UsageError: it is not above zero.
+    """
+    value = parse_value(text, "force")
+    if value <= 0:
+        raise UsageError(f"--preload is {text!r}; it must be above zero, e.g. '4 kN'")
+    return value
 
 
 def is_session_name(path: Path) -> bool:

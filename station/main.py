@@ -26,11 +26,17 @@ COLUMNS_HELP = (
     "Roles and units of a plain table's columns, for example "
     "'time:s,force:N,acceleration:m/s^2' or 'x:um,z:um'."
 )
+GAP_HELP = "Sessions or campaign (.h5), record (.mat), model with data (.toml), URL."
 Files = Annotated[list[Path], typer.Argument(help="Files to read.", show_default=False)]
 Columns = Annotated[str | None, typer.Option("--columns", help=COLUMNS_HELP)]
 Json = Annotated[
     str | None,
     typer.Option("--json", metavar="PATH", help="Write results as JSON; '-' = stdout."),
+]
+Model = Annotated[Path | None, typer.Option(help="Bench model (TOML), with priors.")]
+Point = Annotated[str, typer.Option(help="Where the hammer struck.")]
+Preload = Annotated[
+    str | None, typer.Option(help="On the joint, '4 kN', where no session says.")
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite existing output.")]
@@ -113,12 +119,30 @@ def demo_command(
     return run_demo(out, seed=seed, json_target=json)
 
 
+@app.command(name="record")
+def record_command(
+    source: Annotated[str, typer.Argument(help="URL of the bench.", metavar="URL")],
+    out: Annotated[Path, typer.Option(help="Session file to write.")],
+    force: Force = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Record everything a bench delivers into a session file; hits are judged.
+
+    Example: jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out s.h5
+    """
+    from jointbench.station.record_command import run_record
+
+    run_record(source, out, overwrite=force, json_target=json)
+
+
 @app.command(name="import")
 def import_command(
     files: Files,
     out: Annotated[Path, typer.Option(help="Session file to write.")],
     columns: Columns = None,
-    point: Annotated[str, typer.Option(help="Where the hammer struck.")] = "1",
+    point: Point = "1",
+    preload: Preload = None,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
@@ -131,7 +155,13 @@ def import_command(
     from jointbench.station.import_files import run_import
 
     run_import(
-        files, out, columns=columns, point=point, overwrite=force, json_target=json
+        files,
+        out,
+        columns=columns,
+        point=point,
+        preload=preload,
+        overwrite=force,
+        json_target=json,
     )
 
 
@@ -139,7 +169,7 @@ def import_command(
 def modal_command(
     files: Files,
     columns: Columns = None,
-    point: Annotated[str, typer.Option(help="Where the hammer struck.")] = "1",
+    point: Point = "1",
     band: Annotated[
         str | None, typer.Option(help="Band to fit, for example '50:5000' [Hz].")
     ] = None,
@@ -250,7 +280,9 @@ def identify_command(
 
 @app.command(name="gap")
 def gap_command(
-    campaign: Annotated[Path, typer.Argument(help="Two-body campaign file, HDF5.")],
+    sources: Annotated[list[str], typer.Argument(help=GAP_HELP, metavar="SOURCE")],
+    model: Model = None,
+    preload: Preload = None,
     without: Annotated[
         str | None,
         typer.Option(metavar="NAME,...", help="Effects to leave out of the catalogue."),
@@ -265,12 +297,16 @@ def gap_command(
 ) -> None:
     """Find where model and measurement disagree, and name what is missing.
 
-    Example: jointbench gap campaign.h5 --without jenkins,iwan --report gap.html
+    Example: jointbench gap session.h5 --model bench.toml --report gap.html, or
+    jointbench gap 'sim:two-body-campaign?seed=3&hide=cubic_stiffness'
     """
     from jointbench.station.gap import run_gap
 
     run_gap(
-        campaign,
+        sources[0],
+        more=sources[1:],
+        model=model,
+        preload=preload,
         without=without,
         effects=effects or [],
         report=report,
@@ -284,9 +320,7 @@ def report_command(
     out: Annotated[
         Path | None, typer.Option(help="HTML file; beside the session by default.")
     ] = None,
-    model: Annotated[
-        Path | None, typer.Option(help="Bench model (TOML): adds contact and joint.")
-    ] = None,
+    model: Model = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:

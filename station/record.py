@@ -2,12 +2,16 @@
 """Record everything a source delivers; hits are judged later, none is thrown away."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from jointbench.acquisition.errors import InstrumentError
+from jointbench.acquisition.errors import InstrumentError, NoHitFound
 from jointbench.acquisition.records import Recording, step
+from jointbench.acquisition.session import JointSetup, Session, new_session
 from jointbench.acquisition.source import Source
+from jointbench.signal.hits import HitCriteria, find_hits
+from jointbench.station.sources import Visit
 
 
 def record(
@@ -44,4 +48,38 @@ def record(
         sample_rate=source.sample_rate,
         channels=source.channels,
         provenance=(step("record", source=source.name, samples=count),),
+    )
+
+
+def record_visit(visit: Visit, *, criteria: HitCriteria | None = None) -> Session:
+    """Record all runs of a visit into a session, each with its preload.
+
+    Args:
+        visit: an opened visit.
+        criteria: how hits are found and judged; None for the defaults.
+
+    Returns:
+        One recording a run, its hits judged; a run in which nobody hit has none.
+
+    Raises:
+        InstrumentError: a run delivered nothing.
+    """
+    recordings = []
+    for run in visit.runs:
+        recorded = replace(
+            record(run, name=run.name),
+            start_time=run.start_time,
+            preload=run.preload,
+        )
+        try:
+            recorded = find_hits(recorded, criteria)
+        except NoHitFound:
+            pass
+        recordings.append(recorded)
+    preloads = {recording.preload for recording in recordings}
+    return new_session(
+        source=visit.source,
+        simulated=visit.simulated,
+        recordings=recordings,
+        joint=JointSetup(preload=preloads.pop()) if len(preloads) == 1 else None,
     )

@@ -66,6 +66,22 @@ def test_every_hit_is_found_and_judged_as_it_was_struck(
     assert "ok" in verdicts
 
 
+def test_the_second_visit_names_what_was_hidden(
+    demo: Path, summary: dict[str, Any]
+) -> None:
+    """Name, site and parameter; session, model and truth lie beside the summary."""
+    found = summary["gap"]
+    assert found["verdict"] == "named"
+    (effect,) = found["effects"]
+    assert {effect["name"]: effect["site"]} == found["truth"]["sites"]
+    assert found["gap_after"] < 0.1 * found["gap_before"]
+    rows = {row["quantity"]: row for row in summary["comparisons"]}
+    assert abs(rows["gap.k3"]["estimate"] / rows["gap.k3"]["truth"] - 1) < 0.03
+    assert len(read_session(demo / "gap-session.h5").recordings) == 8
+    assert read_toml(demo / "gap-session.toml", BenchModel).gap.preload_reference
+    assert "What the model misses" in (demo / "report.html").read_text("utf-8")
+
+
 def test_the_session_holds_what_the_summary_speaks_of(demo: Path) -> None:
     """The file is the evidence: three channels, all hits, both faces, no truth."""
     session = read_session(demo / "session.h5")

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: MIT
+"""Whatever `gap` is given (campaign, sessions, a long record, a URL), examined."""
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from jointbench.acquisition.errors import BadData, NoHitFound, UsageError
+from jointbench.acquisition.guards import open_guarded
+from jointbench.acquisition.netcdf_read import read_attribute
+from jointbench.acquisition.records import Recording
+from jointbench.acquisition.session import Session
+from jointbench.acquisition.session_file import SESSION_SCHEMA, read_session
+from jointbench.analysis.gap.campaign import read_campaign
+from jointbench.analysis.gap.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnose import diagnose
+from jointbench.analysis.gap.physics import LumpedEffect
+from jointbench.analysis.gap.records import Diagnosis
+from jointbench.analysis.gap.session_campaign import session_campaign
+from jointbench.analysis.gap.single_record import StretchScore, diagnose_record
+from jointbench.signal.hit_verdicts import HitLimits
+from jointbench.signal.hits import HitCriteria, find_hits
+from jointbench.station.bench_model import BenchModel
+from jointbench.station.gap_model import gap_sheet
+from jointbench.station.gap_record import read_record
+from jointbench.station.inputs import is_session_name, refuse_twice
+from jointbench.station.record_command import write_visit
+from jointbench.station.sources import is_url
+from jointbench.station.toml_file import read_toml
+
+ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
+"""Levels span 30x on purpose: none is weak, and the trigger must reach the softest."""
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is asked of a source.
+
+    Attributes:
+        model: bench model file, or None.
+        without: names of effects to leave out of the catalogue.
+        preload: on the joint where the session does not say [N], or None.
+        entries: the catalogue of this run.
+    """
+
+    model: Path | None = None
+    without: frozenset[str] = frozenset()
+    preload: float | None = None
+    entries: tuple[LumpedEffect, ...] = CATALOGUE
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """What became of a source.
+
+    Attributes:
+        title: of the source, for the report.
+        found: verdict and evidence.
+        scores: on parts of a long record that no fit has seen.
+        unit: of the scores.
+        remarks: what was left out, and why, a line each.
+    """
+
+    title: str
+    found: Diagnosis
+    scores: tuple[StretchScore, ...] = ()
+    unit: str = ""
+    remarks: tuple[str, ...] = ()
+
+
+def examine(sources: Sequence[str], wanted: Wanted, *, progress: Progress) -> Examined:
+    """Read the sources, whatever they are, and diagnose them.
+
+    Args:
+        sources: a campaign file; sessions; a MAT file; a model file that names one of
+            these; or the URL of a bench.
+        wanted: model and options.
+        progress: told what is being done, one line at a time.
+
+    Raises:
+        UsageError: a model is missing, or is given where the source brings its own.
+        BadData: a file cannot be used as it is.
+    """
+    if len(sources) == 1 and is_url(sources[0]):
+        return _examine_url(sources[0], wanted, progress)
+    if any(is_url(source) for source in sources):
+        raise UsageError("a URL is a visit of its own; give it alone")
+    paths = [Path(source) for source in sources]
+    if paths[0].suffix.lower() == ".toml":
+        return _examine_named(paths, wanted, progress)
+    refuse_twice(paths)
+    if any(path.suffix.lower() == ".mat" for path in paths):
+        return _examine_record(paths, wanted, progress)
+    if not is_session_name(paths[0]):
+        raise UsageError(
+            f"'{paths[0]}' is no campaign, session (.h5) or record (.mat); bring hits "
+            "in with `jointbench import` first"
+        )
+    if _schema(paths[0]) != SESSION_SCHEMA:
+        return _examine_campaign(paths, wanted, progress)
+    return _examine_sessions(paths, wanted, progress)
+
+
+def _schema(path: Path) -> str:
+    with open_guarded(path) as file:
+        return str(read_attribute(file, "schema"))
+
+
+def _examine_url(url: str, wanted: Wanted, progress: Progress) -> Examined:
+    """Record a visit into a session file, and examine that as any other session."""
+    with tempfile.TemporaryDirectory() as folder:
+        session = Path(folder) / "session.h5"
+        progress("recording the visit")
+        written = write_visit(url, session)
+        model = wanted.model or written.model
+        done = _examine_sessions([session], replace(wanted, model=model), progress)
+    return replace(done, title=url)
+
+
+def _examine_named(paths: list[Path], wanted: Wanted, progress: Progress) -> Examined:
+    """Examine the files that a model file names."""
+    model = paths[0]
+    if len(paths) > 1 or wanted.model is not None:
+        raise UsageError(
+            f"'{model}' is a model file: give it alone, with the sessions it is about "
+            "in its [gap] table, or as --model beside them"
+        )
+    bench = read_toml(model, BenchModel)
+    names = bench.gap.sessions
+    if bench.record is not None and bench.record.file is not None:
+        names = (*names, bench.record.file)
+    if not names:
+        raise UsageError(
+            f"'{model}' names no data; add sessions = ['session.h5'] to its [gap] "
+            f"table, or type: jointbench gap session.h5 --model {model}"
+        )
+    files = [str(model.parent / name) for name in names]
+    return examine(files, replace(wanted, model=model), progress=progress)
+
+
+def _examine_campaign(
+    paths: list[Path], wanted: Wanted, progress: Progress
+) -> Examined:
+    if len(paths) > 1 or wanted.model is not None or wanted.preload is not None:
+        raise UsageError(
+            f"'{paths[0]}' is no session: a campaign file is given alone, it brings "
+            "its own model and preloads"
+        )
+    campaign = read_campaign(paths[0])
+    found = diagnose(
+        campaign, without=wanted.without, entries=wanted.entries, progress=progress
+    )
+    return Examined(paths[0].stem, found)
+
+
+def _examine_record(paths: list[Path], wanted: Wanted, progress: Progress) -> Examined:
+    if len(paths) > 1:
+        raise UsageError("a record is examined alone; give one MAT file")
+    bench = _model(paths[0], wanted)
+    if wanted.preload is not None:
+        raise UsageError("--preload belongs to sessions; a record has none")
+    record = read_record(paths[0], bench)
+    found, scores = diagnose_record(
+        record.record,
+        record.training,
+        record.scored,
+        record.sheet,
+        without=wanted.without,
+        entries=wanted.entries,
+        progress=progress,
+    )
+    return Examined(
+        paths[0].stem,
+        record.in_stand_ins(found),
+        record.in_unit(scores),
+        record.unit,
+        record.remarks,
+    )
+
+
+def _examine_sessions(
+    paths: list[Path], wanted: Wanted, progress: Progress
+) -> Examined:
+    sheet = gap_sheet(_model(paths[0], wanted))
+    sessions = [read_session(path) for path in paths]
+    sessions.sort(key=lambda session: session.created)
+    remarks: list[str] = []
+    recordings = [
+        recording
+        for session in sessions
+        for recording in _with_hits(session, wanted.preload, remarks)
+    ]
+    if not recordings:
+        names = ", ".join(path.name for path in paths)
+        raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
+    title = ", ".join(path.stem for path in paths)
+    campaign, left_out = session_campaign(title, recordings, sheet)
+    found = diagnose(
+        campaign, without=wanted.without, entries=wanted.entries, progress=progress
+    )
+    return Examined(title, found, remarks=(*remarks, *left_out))
+
+
+def _model(path: Path, wanted: Wanted) -> BenchModel:
+    if wanted.model is None:
+        raise UsageError(
+            f"'{path}' holds data but no model; give the bench's with --model "
+            "bench.toml"
+        )
+    return read_toml(wanted.model, BenchModel)
+
+
+def _with_hits(
+    session: Session, preload: float | None, remarks: list[str]
+) -> list[Recording]:
+    """Return the recordings in order of time, with judged hits and their preload."""
+    of_session = session.joint.preload if session.joint is not None else None
+    found = []
+    for recording in sorted(session.recordings, key=lambda r: r.start_time):
+        own = recording.preload if recording.preload is not None else of_session
+        if own is not None and preload is not None and own != preload:
+            raise UsageError(
+                f"--preload is {preload:g} N, but recording {recording.name!r} was "
+                f"made at {own:g} N; leave --preload out"
+            )
+        try:
+            judged = recording if recording.hits else find_hits(recording, ANY_LEVEL)
+        except NoHitFound as error:
+            remarks.append(str(error))
+            continue
+        # What was written of the session is not checked there: an impossible preload
+        # must reach the one check that names it, not the record's own.
+        found.append(_at_preload(judged, own if own is not None else preload))
+    return found
+
+
+def _at_preload(recording: Recording, preload: float | None) -> Recording:
+    if preload is not None and not preload > 0:
+        raise BadData(
+            f"recording {recording.name!r} was made at a preload of {preload:g} N; it "
+            "must be above zero: correct it where the session was made"
+        )
+    return replace(recording, preload=preload)
