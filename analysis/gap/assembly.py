@@ -62,7 +62,7 @@ def dynamic_stiffness(
     for action in actions:
         if action.entry.stiffness is None:
             continue
-        state = _state(model, theta, s, conditions, action)
+        state = state_of(model, theta, s, conditions, action)
         added = action.entry.stiffness(state, action.values)
         if action.kind == "body":
             elements.append(((action.index,), added))
@@ -80,13 +80,14 @@ def dynamic_stiffness(
     return z
 
 
-def _state(
+def state_of(
     model: LumpedModel,
     theta: FloatArray,
     s: ComplexArray,
     conditions: Conditions,
     action: Action,
 ) -> ElementState:
+    """Return what an effect's hook may look at, at Laplace variables `s`."""
     n, links = len(model.bodies), len(model.links)
     body = action.kind == "body"
     return ElementState(

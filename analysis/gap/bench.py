@@ -3,12 +3,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.effects import Candidate, Term
+
+if TYPE_CHECKING:
+    from jointbench.analysis.gap.fit import Fit
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +79,10 @@ class Bench(Protocol):
 
     def phases(self, candidate: Candidate) -> int:
         """Return how many free phases an effect fits by itself; 0 for most."""
+        ...
+
+    def hints(self, fit: "Fit", candidate: Candidate) -> list[FloatArray]:
+        """Return starts that a fit's own residual suggests, besides the grid's."""
         ...
 
     def refine(self, base: FloatArray, terms: Sequence[Term]) -> "Bench":

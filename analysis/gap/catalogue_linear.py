@@ -14,6 +14,10 @@ def _maxwell(state: ElementState, v: FloatArray) -> ComplexArray:
     return one_row(v[0] * state.s * v[1] / (1.0 + state.s * v[1]))
 
 
+def _maxwell_poles(v: FloatArray) -> ComplexArray:
+    return np.array([-1.0 / v[1]], dtype=np.complex128)
+
+
 def _extra_damping(state: ElementState, v: FloatArray) -> ComplexArray:
     return one_row(v[0] * state.s)
 
@@ -30,6 +34,11 @@ def _hidden_mode(state: ElementState, v: FloatArray) -> ComplexArray:
     if v[0] == 0.0:
         return one_row(np.zeros_like(state.s))
     return one_row(coupling * inertia / (v[0] * unit))
+
+
+def _hidden_mode_poles(v: FloatArray) -> ComplexArray:
+    upper = 2 * np.pi * v[1] * complex(-v[2], np.sqrt(1 - v[2] ** 2))
+    return np.array([upper, upper.conjugate()], dtype=np.complex128)
 
 
 def _hidden_mode_report(v: FloatArray) -> tuple[Reported, ...]:
@@ -98,6 +107,7 @@ MAXWELL = LumpedEffect(
     ),
     ("link",),
     stiffness=_maxwell,
+    poles=_maxwell_poles,
 )
 EXTRA_DAMPING = LumpedEffect(
     Effect(
@@ -156,6 +166,7 @@ HIDDEN_MODE = LumpedEffect(
     ),
     ("body",),
     stiffness=_hidden_mode,
+    poles=_hidden_mode_poles,
 )
 PRELOAD_STIFFNESS = LumpedEffect(
     Effect(

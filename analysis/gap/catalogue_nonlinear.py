@@ -7,9 +7,10 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap import march
 from jointbench.analysis.gap.effects import Effect, Parameter, Reported, Transform
 from jointbench.analysis.gap.physics import Law, LumpedEffect
+from jointbench.analysis.gap.slider_march import slider_tables
 
 LOG = Transform.LOG
-IWAN_SLIDERS = 12
+IWAN_SLIDERS = 14
 SHARPNESS = (14.0, 0.6)
 """Median and log-sd of the sharpness of real sliders: none is a perfect corner."""
 
@@ -49,7 +50,7 @@ def _sliders(
     unloading: float,
     sharpness: float,
 ) -> Law:
-    tables, tops = march.slider_tables(loading, unloading, sharpness)
+    tables, tops = slider_tables(loading, unloading, sharpness)
     total = np.array([float(stiffness.sum())])
     return Law(march.SLIDERS, total, slips, stiffness, tables, tops)
 
@@ -68,9 +69,9 @@ def _jenkins_report(v: FloatArray) -> tuple[Reported, ...]:
 
 def _iwan(v: FloatArray) -> Law:
     edges = np.linspace(0.0, 1.0, IWAN_SLIDERS + 1)
-    chi = float(v[2]) - 1.0
-    share = np.diff(edges ** (chi + 1.0))
-    centre = np.diff(edges ** (chi + 2.0)) / share * (chi + 1.0) / (chi + 2.0)
+    power = float(v[2])
+    share = np.diff(edges**power)
+    centre = np.diff(edges ** (power + 1.0)) / share * power / (power + 1.0)
     return _sliders(v[0] * share, v[1] * centre, 1.0, 0.0, float(v[3]))
 
 
@@ -78,7 +79,7 @@ def _iwan_report(v: FloatArray) -> tuple[Reported, ...]:
     return (
         Reported("kt", "N/m", float(v[0])),
         Reported("phimax", "m", float(v[1])),
-        Reported("chi", "-", float(v[2] - 1.0)),
+        Reported("chi", "-", float(v[2] - 2.0)),
         Reported("sharpness", "-", float(v[3])),
     )
 
@@ -117,9 +118,13 @@ def _hum(
     if v[0] == 0.0:
         return model
     phase = 2 * np.pi * v[1] / rate * np.arange(model.shape[-1])
-    turn = np.exp(-1j * phase)
-    angle = np.angle((measured - model) @ turn)
-    return np.asarray(model + v[0] * np.cos(phase + angle[..., None]))
+    line = np.stack([np.cos(phase), np.sin(phase)])
+    found = np.linalg.solve(
+        line @ line.T,
+        line @ np.moveaxis(measured - model, -1, 0).reshape(phase.size, -1),
+    )
+    size = np.maximum(np.hypot(*found), 1e-300)
+    return np.asarray(model + v[0] * ((found / size).T @ line).reshape(model.shape))
 
 
 CUBIC = LumpedEffect(
@@ -198,12 +203,12 @@ IWAN = LumpedEffect(
         (
             Parameter("kt", "N/m", "stiffness", 0.0, 0.95, off=0.0),
             Parameter("phimax", "m", "travel", 0.02, 10.0, (0.2, 0.6, 1.5), LOG),
-            Parameter("chi_plus_1", "-", "one", 0.05, 3.0, (0.5,), LOG, (0.7, 0.8)),
+            Parameter("chi_plus_2", "-", "one", 1.05, 2.2, (1.6,), LOG, (1.6, 0.3)),
             Parameter(
                 "sharpness", "-", "one", 2.0, 200.0, SHARPNESS[:1], LOG, SHARPNESS
             ),
         ),
-        "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14)",
+        "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)",
         {
             "jenkins": "four levels below gross slip: the slope of damping",
             "bouc_wen": "slow load cycles with reversals inside the loop",
@@ -281,7 +286,13 @@ HUM = LumpedEffect(
         (
             Parameter("amp", "unit of the channel", "noise", 0.0, 1e6, off=0.0),
             Parameter(
-                "freq", "Hz", "one", 5.0, 2000.0, (50.0, 60.0, 100.0, 120.0), LOG
+                "freq",
+                "Hz",
+                "one",
+                5.0,
+                2000.0,
+                (50.0, 60.0, 100.0, 120.0, 150.0, 180.0),
+                LOG,
             ),
         ),
         "Ott 2009, Electromagnetic Compatibility Engineering, ch. 3: mains pick-up",

@@ -192,7 +192,8 @@ def _effects(
 ) -> tuple[NamedEffect, ...]:
     found: dict[str, NamedEffect] = {}
     for fit in fits:
-        sure = confidence_of(evidence_of(outcome, bench, fit)) / len(fits)
+        evidence = evidence_of(outcome, bench, fit)
+        sure = confidence_of(evidence) / len(fits)
         for k, term in enumerate(fit.terms):
             label = term.candidate.label
             if label not in found:
@@ -201,6 +202,7 @@ def _effects(
                     str(term.candidate.site),
                     estimates_of(bench, fit, k),
                     sure,
+                    evidence,
                 )
     return tuple(found.values())
 

@@ -14,7 +14,22 @@ EXCESS_TOLERANCE = 1e-3
 """Stop below this share of the excess of chi2 over its degrees of freedom: a share
 of chi2 itself would hide an effect of a hundred units among 60,000."""
 ABSOLUTE_TOLERANCE = 0.03
-BASE_STEP = 1e-5
+BASE_STEP = 1e-7
+"""Difference step of a logarithm. A record holds some hundred radians, so that a step
+of 1e-5 would already bend its end away from the slope."""
+EFFECT_STEP = 1e-6
+PATIENCE = 12.0
+"""Steps of the last size that a descent may still need to come down to a rival."""
+LONGEST = 1.5
+"""Longest step of a coordinate; most are logarithms."""
+CORRECTIONS = 2
+"""Steps back into the valley, by the slopes at hand, before a step is shortened."""
+STIFF = 1e-3
+"""Damping under which only what the data fix well moves."""
+OLDEST = 2
+"""Steps in a row for which slopes are updated by the secant instead of differenced."""
+TRUSTED = 0.6
+"""Share of the foretold drop below which the slopes are differenced again."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,7 +146,7 @@ def steps_of(problem: Problem, x: FloatArray) -> FloatArray:
     """Return the difference steps of x, turned inwards at a bound."""
     step = np.full(x.size, BASE_STEP)
     tail = slice(problem.n_base, None)
-    step[tail] = 1e-4 * np.maximum(np.abs(x[tail]), 1e-2)
+    step[tail] = EFFECT_STEP * np.maximum(np.abs(x[tail]), 1e-2)
     return np.where(x + step > problem.upper, -step, step)
 
 
@@ -177,9 +192,10 @@ def minimise(
     stage: Stage = FULL,
     *,
     iterations: int = 20,
-    give_up: float | None = None,
+    rival: float | None = None,
     linear_base: bool = False,
     jacobian_stage: Stage | None = None,
+    exact_slopes: bool = True,
 ) -> Fit:
     """Descend from one start.
 
@@ -188,9 +204,12 @@ def minimise(
         start: coordinates, shape (n,).
         stage: window and step of the residual.
         iterations: at most.
-        give_up: stop when three steps have not come below this cost.
+        rival: cost of the best so far; a descent that at its pace would need very
+            many more steps to come there is given up.
         linear_base: see `jacobian_of`.
         jacobian_stage: a cheaper stage for the slopes, or None for the same.
+        exact_slopes: difference the slopes once more at the end, which an
+            intermediate stage does not need.
     """
 
     def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
@@ -200,25 +219,72 @@ def minimise(
         return jacobian_of(problem, x, coarse, jacobian_stage)
 
     x = np.clip(start, problem.lower, problem.upper)
-    r = problem.residual(x, stage)
-    cost = float(r @ r) + problem.penalty(x)
-    damping = 1e-3
-    j = slopes(x, r)
+    r, cost = _looked_at(problem, x, stage)
+    if not np.isfinite(cost):
+        return _hopeless(problem, x, r)
+    damping, age, j = 1e-6, 0, slopes(x, r)
     for k in range(iterations):
         moved, damping = _step(problem, x, r, j, cost, damping, stage)
         if moved is None:
-            break
+            if age == 0:
+                break
+            j, age, damping = slopes(x, r), 0, 1e-3
+            continue
         drop = cost - moved[2]
+        small = drop < EXCESS_TOLERANCE * _excess(problem, cost) + ABSOLUTE_TOLERANCE
+        guessed = _predicted_drop(problem, x, r, j, moved[0])
+        change, before = moved[0] - x, r
         x, r, cost = moved
+        if small and age == 0:
+            break
+        if rival is not None and k >= 1 and cost - rival > PATIENCE * drop:
+            break
+        if not small and age < OLDEST and drop > TRUSTED * guessed:
+            j, age = _secant(j, change, r - before), age + 1
+        else:
+            j, age = slopes(x, r), 0
+    if age > 0 and exact_slopes:
         j = slopes(x, r)
-        excess = max(cost - problem_dof(problem), 0.0)
-        if drop < EXCESS_TOLERANCE * excess + ABSOLUTE_TOLERANCE:
-            break
-        if give_up is not None and k >= 1 and cost > give_up and drop < 0.5 * cost:
-            break
     return Fit(
         x, problem.n_base, problem.candidates, r, j, cost, problem.prior, problem.centre
     )
+
+
+def _hopeless(problem: Problem, x: FloatArray, r: FloatArray) -> Fit:
+    """Return the fit of a start at which the model runs away."""
+    return Fit(
+        x,
+        problem.n_base,
+        problem.candidates,
+        np.full_like(r, np.inf),
+        np.zeros((r.size, x.size)),
+        np.inf,
+        problem.prior,
+        problem.centre,
+    )
+
+
+def _excess(problem: Problem, cost: float) -> float:
+    return max(cost - problem_dof(problem), 0.0)
+
+
+def _predicted_drop(
+    problem: Problem, x: FloatArray, r: FloatArray, j: FloatArray, moved: FloatArray
+) -> float:
+    """Return the drop of the cost that the linear model foretold."""
+    left = r + j @ (moved - x)
+    return float(r @ r - left @ left + problem.penalty(x) - problem.penalty(moved))
+
+
+def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatArray:
+    """Update slopes by what a step has shown, at the price of no evaluation.
+
+    Source:
+        Broyden 1965, Math. Comp. 19, 577, eq. (4.5), with parameters scaled by the
+        norm of their columns.
+    """
+    along = np.einsum("ij,ij->j", j, j) * change
+    return j + np.outer(difference - j @ change, along / (change @ along))
 
 
 def problem_dof(problem: Problem) -> int:
@@ -238,7 +304,12 @@ def _step(
     damping: float,
     stage: Stage,
 ) -> tuple[Moved | None, float]:
-    """Try ever shorter steps until one goes down."""
+    """Try ever shorter steps until one goes down.
+
+    Effects hand stiffness and damping to the base and back, so their valleys are long
+    and curved. A step that climbed a wall is first led back down by what the data fix
+    well, with the slopes at hand, and only then shortened.
+    """
     hessian = j.T @ j + np.diag(problem.prior)
     gradient = j.T @ r + problem.prior * (x - problem.centre)
     free = ~(
@@ -251,17 +322,42 @@ def _step(
     for _ in range(9):
         step = np.zeros(x.size)
         step[free] = -np.linalg.solve(h + damping * np.eye(h.shape[0]), g)
-        trial = np.clip(
-            x + np.clip(step / size, -1.5, 1.5), problem.lower, problem.upper
-        )
-        try_r = problem.residual(trial, stage)
-        try_cost = float(try_r @ try_r) + problem.penalty(trial)
+        trial = _moved(problem, x, step / size)
+        try_r, try_cost = _looked_at(problem, trial, stage)
+        for _ in range(CORRECTIONS):
+            if try_cost < cost or not np.isfinite(try_cost):
+                break
+            pull = j.T @ try_r + problem.prior * (trial - problem.centre)
+            step[free] = -np.linalg.solve(
+                h + STIFF * np.eye(h.shape[0]), (pull / size)[free]
+            )
+            trial = _moved(problem, trial, step / size)
+            try_r, try_cost = _looked_at(problem, trial, stage)
         if np.isfinite(try_cost) and try_cost < cost:
             return (trial, try_r, try_cost), max(damping / 10, 1e-9)
         damping = max(damping * 8, 1e-6)
         if damping > 1e7:
             break
     return None, damping
+
+
+def _moved(problem: Problem, x: FloatArray, step: FloatArray) -> FloatArray:
+    bounded = np.clip(step, -LONGEST, LONGEST)
+    return np.clip(x + bounded, problem.lower, problem.upper)
+
+
+def cost_at(problem: Problem, x: FloatArray, stage: Stage) -> float:
+    """Return the cost at x, infinite where the model runs away."""
+    return _looked_at(problem, x, stage)[1]
+
+
+def _looked_at(
+    problem: Problem, x: FloatArray, stage: Stage
+) -> tuple[FloatArray, float]:
+    with np.errstate(all="ignore"):
+        r = problem.residual(x, stage)
+        cost = float(r @ r) + problem.penalty(x)
+    return r, cost if np.isfinite(cost) else np.inf
 
 
 Stages = Sequence[tuple[Stage, int, bool]]
@@ -278,7 +374,7 @@ def fit_stages(
     start: FloatArray,
     stages: Stages = BASE_STAGES,
     *,
-    give_up: float | None = None,
+    rival: float | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> Fit:
     """Fit coarse to fine; the last stage decides."""
@@ -292,7 +388,8 @@ def fit_stages(
             stage,
             iterations=iterations,
             linear_base=linear_base,
-            give_up=give_up if last else None,
+            rival=rival if last else None,
+            exact_slopes=last,
         )
         x = fit.x
         if progress is not None:

@@ -63,6 +63,7 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         more = add_second(refined, fits, base, left, progress)
         if more:
             merged = sorted([*fits, *more], key=lambda f: score(refined, f))
+            merged = take_back(refined, merged, progress)
             again, merged, rejudged, _ = judge(refined, merged, base, progress)
             if _worthwhile(again, merged[0], fits[0]):
                 refined, fits, judged = again, merged, rejudged
@@ -100,6 +101,26 @@ def judge(
     best = refit[0]
     left = screen(refined, best, _others(refined, best))
     return refined, refit, gate(refined, best, base, left), left
+
+
+def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+    """Take effects of the best fit away that a later one has made needless."""
+    best, found = fits[0], list(fits)
+    for k in range(len(best.candidates)):
+        kept = tuple(c for i, c in enumerate(best.candidates) if i != k)
+        if not kept:
+            continue
+        coordinates = [t.coordinates for i, t in enumerate(best.terms) if i != k]
+        start = np.concatenate([best.base, *coordinates])
+        found.append(finish(bench, make_problem(bench, kept), start, progress))
+    return _best_of_each(sorted(found, key=lambda f: score(bench, f)))
+
+
+def _best_of_each(fits: Sequence[Fit]) -> list[Fit]:
+    best: dict[frozenset[str], Fit] = {}
+    for f in fits:
+        best.setdefault(frozenset(c.label for c in f.candidates), f)
+    return list(best.values())
 
 
 def _others(bench: Bench, fit: Fit) -> list[Candidate]:
@@ -145,6 +166,5 @@ def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
 
 
 def _worthwhile(bench: Bench, more: Fit, fewer: Fit) -> bool:
-    return len(more.candidates) > len(fewer.candidates) and (
-        score(bench, more) + MIN_GAIN < score(bench, fewer)
-    )
+    gain = MIN_GAIN if len(more.candidates) > len(fewer.candidates) else 0.0
+    return score(bench, more) + gain < score(bench, fewer)

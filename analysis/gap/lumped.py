@@ -26,9 +26,13 @@ from jointbench.analysis.gap.noise import (
 )
 from jointbench.analysis.gap.physics import Conditions, LumpedEffect
 from jointbench.analysis.gap.records import View
-from jointbench.analysis.gap.views import slice_views
+from jointbench.analysis.gap.views import residual_peaks, slice_views
 
+PEAKED = ("hum", "hidden_mode")
+"""Effects whose second parameter is a frequency at which the residual peaks."""
 SETTLING_SEEN = 1e-5
+LOST = 0.3
+"""Misfit over response above which a fit says nothing about the settling."""
 SETTLING_REACH = 3.0
 """Scatter sd beyond which a settling is no scatter but a missing effect."""
 SCATTER_STEP = 1e-4
@@ -130,7 +134,11 @@ class LumpedBench:
         r = self.response(base, terms, stage.oversampling)
         r -= self.campaign.response
         r -= self.settled
-        r /= self.noise.sigma[:, :, None]
+        return self.residual_of(r)
+
+    def residual_of(self, misfit: FloatArray) -> FloatArray:
+        """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
+        r = misfit / self.noise.sigma[:, :, None]
         self.mask(r)
         rows = r.reshape(r.shape[0], -1, 1)
         rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
@@ -207,7 +215,8 @@ class LumpedBench:
             scatter = none
         noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
         refined = _with_noise(self, noise, columns, ways)
-        if len(scatter) < 2 or scatter[1] < SETTLING_SEEN:
+        lost = np.linalg.norm(residual) > LOST * np.linalg.norm(model)
+        if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
             return _settle(refined, None, ways)
         known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
         reach = SETTLING_REACH * scatter[1]
@@ -224,6 +233,28 @@ class LumpedBench:
             [c.name for c in self.campaign.model.channels],
             self.campaign.sample_rate,
         )
+
+    def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
+        """Return starts at the peaks of a fit's residual: lines of a hum, modes."""
+        name = candidate.effect.name
+        if name not in PEAKED:
+            return []
+        records, channels, samples = self.campaign.response.shape
+        residual = fit.residual.reshape(records, channels, samples)
+        rows = [c.name for c in self.campaign.model.channels]
+        if candidate.site.kind == "channel" and candidate.site.name in rows:
+            at = rows.index(candidate.site.name)
+            residual = residual[:, at : at + 1]
+        peaks = residual_peaks(residual, self.campaign.sample_rate)
+        parameters = candidate.effect.parameters
+        scale = self.scale(parameters[1].scale)
+        rest = [p.encode(p.starts[0]) for p in parameters[2:]]
+        low, high = parameters[1].lower, parameters[1].upper
+        return [
+            np.array([0.0, parameters[1].encode(f / scale), *rest])
+            for f in peaks
+            if low < f / scale < high
+        ]
 
     def phases(self, candidate: Candidate) -> int:
         """Return how many phases an effect finds for itself (hum), else 0."""
@@ -244,31 +275,37 @@ def _force_columns(
 ) -> list[FloatArray]:
     """Responses to the force's own noise, over sigma, one array for each record."""
     first, last = bench.gate
-    width = last - first
-    if width >= bench.excitation.growth.size or bench.noise.force_sigma <= 0:
-        return [np.zeros((0, sigma.shape[1] * bench.excitation.growth.size))] * len(
-            sigma
-        )
-    grid = np.linspace(-1, 1, width)
-    shapes = np.stack(
-        [np.polynomial.legendre.Legendre.basis(k)(grid) for k in range(FORCE_SHAPES)]
-    )
-    shapes /= np.linalg.norm(shapes, axis=1, keepdims=True)
-    force = np.zeros((FORCE_SHAPES, bench.excitation.growth.size))
-    force[:, first:last] = shapes * bench.noise.force_sigma
+    n, records = bench.excitation.growth.size, sigma.shape[0]
+    if last - first >= n or bench.noise.force_sigma <= 0:
+        return [np.zeros((0, sigma.shape[1] * n))] * records
+    force = np.zeros((1, n))
+    force[0, first] = bench.noise.force_sigma
     cases = {}
     for hit in sorted(set(bench.campaign.hit.tolist())):
-        conditions = Conditions(np.ones(FORCE_SHAPES), np.zeros(FORCE_SHAPES))
-        shaken = prepare_excitation(
-            force, np.full(FORCE_SHAPES, hit), bench.campaign.sample_rate, conditions
-        )
-        y = respond(bench.campaign.model, bench.theta(base), shaken)
-        bench.mask(y)
-        cases[hit] = y
+        still = Conditions(np.ones(1), np.zeros(1))
+        rate = bench.campaign.sample_rate
+        shaken = prepare_excitation(force, np.array([hit]), rate, still)
+        y = respond(bench.campaign.model, bench.theta(base), shaken)[0]
+        cases[hit] = _shifted(y, last - first)
+        bench.mask(cases[hit])
     return [
-        (cases[int(h)] / s[None, :, None]).reshape(FORCE_SHAPES, -1)
+        _leading((cases[int(h)] / s[:, None]).reshape(last - first, -1))
         for h, s in zip(bench.campaign.hit, sigma, strict=True)
     ]
+
+
+def _shifted(response: FloatArray, count: int) -> FloatArray:
+    """Return a response delayed by 0 to count - 1 samples, (count, *its shape)."""
+    out = np.zeros((count, *response.shape))
+    for k in range(count):
+        out[k, :, k:] = response[:, : response.shape[1] - k]
+    return out
+
+
+def _leading(rows: FloatArray) -> FloatArray:
+    """Return the few directions that hold most of unit noise in every row."""
+    _, vectors = np.linalg.eigh(rows @ rows.T)
+    return np.asarray(vectors[:, -FORCE_SHAPES:].T @ rows)
 
 
 def _scatter_ways(
@@ -280,10 +317,10 @@ def _scatter_ways(
 ) -> FloatArray:
     """Return how hits may scatter, over sigma, (n_records, n_ways, n_rows).
 
-    The hand: the force that acts is not quite the one measured, a gain of the whole
-    record. The joint: it settles anew from hit to hit, a change of its stiffness.
+    The hand: the force that acts is not quite the one measured. The joint: it settles
+    anew from hit to hit, a change of its stiffness.
     """
-    ways = [model.copy()]
+    ways = [_harder(bench, base, terms, model)]
     n = len(bench.campaign.model.bodies)
     for i, link in enumerate(bench.campaign.model.links):
         if link.joint and not bench.campaign.continuous:
@@ -294,6 +331,17 @@ def _scatter_ways(
     bench.mask(stacked)
     stacked /= sigma[:, None, :, None]
     return stacked.reshape(len(sigma), len(ways), -1)
+
+
+def _harder(
+    bench: LumpedBench, base: FloatArray, terms: Sequence[Term], model: FloatArray
+) -> FloatArray:
+    """Return the change of the response per relative change of the force."""
+    if not any(a.entry.law is not None for a in bench.actions(terms)):
+        return model.copy()
+    spectrum = bench.excitation.spectrum * (1.0 + SCATTER_STEP)
+    pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))
+    return (pushed.response(base, terms) - model) / SCATTER_STEP
 
 
 def _settle(

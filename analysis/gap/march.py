@@ -10,12 +10,14 @@ order dt^2/m of a second difference and far below the noise.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.curve_march import curve_force
+from jointbench.analysis.gap.slider_march import bank_forces
 
 POLYNOMIAL = 0
 ONE_SIDED = 1
@@ -23,51 +25,26 @@ SLIDERS = 2
 COULOMB = 3
 QUADRATIC_DAMPING = 4
 CURVES = 5
-TABLE_SIZE = 4096
-IDENTITY = 1e-7
-"""Departure of a slider from elasticity that is passed over."""
 
 
-@njit(cache=True)
-def _lookup(table: FloatArray, top: float, x: float) -> float:
-    """Interpolate a table on [0, top]; constant above."""
-    last = table.size - 1
-    position = x / top * last
-    if position >= last:
-        return float(table[last])
-    index = int(position)
-    weight = position - index
-    return float(table[index] * (1.0 - weight) + table[index + 1] * weight)
+class MarchLaw(NamedTuple):
+    """A force law as the compiled march wants it.
 
-
-@njit(cache=True)
-def slide(state: float, step: float, tables: FloatArray, tops: FloatArray) -> float:
-    """Move a slider along its loading and unloading curves.
-
-    Args:
-        state: loading coordinate, signed by the side the slider is on [-].
-        step: change of displacement over the slip displacement [-].
-        tables: u of loading coordinate, its inverse, unloading coordinate of u, its
-            inverse; shape (4, n).
-        tops: upper ends of the four tables; the coordinate below which all four are
-            the identity; 1 where unloading is elastic, else 0; shape (6,).
-
-    Returns:
-        The new state.
+    Attributes:
+        kind: which law.
+        p: its parameters.
+        slips: slip displacements of its sliders [m], rising, shape (n_sliders,).
+        weights: stiffness of each slider [N/m], same shape.
+        tables: of its curves.
+        tops: what goes with the tables.
     """
-    side = 1.0 if state > 0.0 or (state == 0.0 and step >= 0.0) else -1.0
-    forward = side * step
-    size = abs(state)
-    if forward >= 0.0:
-        return side * float(min(size + forward, tops[0]))
-    if size < tops[4]:
-        return state + step
-    u = _lookup(tables[0], tops[0], size)
-    left = (u if tops[5] > 0.0 else _lookup(tables[2], tops[2], u)) + forward
-    if left < tops[4]:
-        return side * left
-    u = left if tops[5] > 0.0 else _lookup(tables[3], tops[3], left)
-    return side * _lookup(tables[1], tops[1], u)
+
+    kind: int
+    p: FloatArray
+    slips: FloatArray
+    weights: FloatArray
+    tables: FloatArray
+    tops: FloatArray
 
 
 @njit(cache=True)
@@ -94,50 +71,46 @@ def _rub(limit: float, width: float, v: float, slope: float, guess: float) -> fl
 
 @njit(cache=True, fastmath=True)
 def _forces(
-    law: int,
-    p: FloatArray,
+    law: MarchLaw,
     r: FloatArray,
     v: FloatArray,
     slope: FloatArray,
     guess: FloatArray,
     before: FloatArray,
     states: FloatArray,
-    slips: FloatArray,
-    weights: FloatArray,
-    tables: FloatArray,
-    tops: FloatArray,
+    active: IntArray,
     force: FloatArray,
 ) -> None:
     """Write the force of one law in every record; sliders move their states."""
-    n = r.size
-    if law == POLYNOMIAL:
+    n, p = r.size, law.p
+    if law.kind == POLYNOMIAL:
         for k in range(n):
             force[k] = r[k] * r[k] * (p[0] + p[1] * r[k])
-    elif law == ONE_SIDED:
+    elif law.kind == ONE_SIDED:
         for k in range(n):
             force[k] = p[0] * max(r[k] - p[1], 0.0)
-    elif law == QUADRATIC_DAMPING:
+    elif law.kind == QUADRATIC_DAMPING:
         for k in range(n):
             force[k] = p[0] * v[k] * abs(v[k])
-    elif law == COULOMB:
+    elif law.kind == COULOMB:
         for k in range(n):
             force[k] = _rub(p[0], p[1], v[k], slope[k], guess[k])
-    elif law == CURVES:
+    elif law.kind == CURVES:
         for k in range(n):
-            force[k] = curve_force(tables, p, r[k], v[k])
+            force[k] = curve_force(law.tables, p, r[k], v[k])
     else:
-        for k in range(n):
-            force[k] = -p[0] * r[k]
-        for i in range(slips.size):
-            inverse = 1.0 / slips[i]
-            limit = weights[i] * slips[i]
-            for k in range(n):
-                state = slide(states[i, k], (r[k] - before[k]) * inverse, tables, tops)
-                states[i, k] = state
-                u = abs(state)
-                if u > tops[4]:
-                    u = _lookup(tables[0], tops[0], u)
-                force[k] += limit * (u if state > 0.0 else -u)
+        force[:] = 0.0
+        bank_forces(
+            r,
+            before,
+            states,
+            active,
+            law.slips,
+            law.weights,
+            law.tables,
+            law.tops,
+            force,
+        )
 
 
 @njit(cache=True)
@@ -185,134 +158,71 @@ def march(
     poles: ComplexArray,
     residues: ComplexArray,
     dt: float,
-    law: int,
-    p: FloatArray,
-    slips: FloatArray,
-    weights: FloatArray,
-    tables: FloatArray,
-    tops: FloatArray,
-    extra: FloatArray,
+    laws: tuple[MarchLaw, ...],
+    needs_velocity: bool,
 ) -> FloatArray:
-    """Return the force of a law along the coupled motion.
+    """Return the force of all laws of a link along the coupled motion.
 
     Args:
         displacement: linear motion across the link [m], shape (n_steps, n_records).
-        velocity: its rate [m/s], same shape.
+        velocity: its rate [m/s], same shape; not looked at unless needed.
         poles: of the link's compliance [rad/s], shape (n_modes, n_records), one of
             each conjugate pair.
         residues: of it, doubled for a pair [m/N rad/s], same shape.
         dt: step [s].
-        law: which of the force laws.
-        p: its parameters.
-        slips: slip displacements of the sliders [m], shape (n_sliders,).
-        weights: stiffness of each slider [N/m], same shape.
-        tables: of `slide`.
-        tops: of `slide`.
-        extra: force of other laws, known beforehand [N], shape as `displacement`.
+        laws: that act together.
+        needs_velocity: True where one of them looks at it.
 
     Returns:
-        Force of this law [N], shape (n_steps, n_records).
+        Force of the laws together [N], shape (n_steps, n_records).
     """
     n_steps, n_records = displacement.shape
-    n_modes = poles.shape[0]
+    n_modes, n_laws = poles.shape[0], len(laws)
     out = np.zeros((n_steps, n_records))
-    states = np.zeros((slips.size, n_records))
+    widest = 0
+    for law in laws:
+        widest = max(widest, law.slips.size)
+    states = np.zeros((n_laws, n_records, widest, 2))
+    active = np.zeros((n_laws, n_records), dtype=np.int64)
     c = _hold(poles, residues, dt)
     slope = np.sum(c[4] * poles.real - c[5] * poles.imag, axis=0)
     er, ei = np.zeros((n_modes, n_records)), np.zeros((n_modes, n_records))
-    old, older = np.zeros(n_records), np.zeros(n_records)
-    guess, before = np.zeros(n_records), np.zeros(n_records)
-    r, v, force = np.zeros(n_records), np.zeros(n_records), np.zeros(n_records)
-    moving = law == COULOMB or law == QUADRATIC_DAMPING or law == CURVES
+    own, earlier = np.zeros((n_laws, n_records)), np.zeros((n_laws, n_records))
+    hope = np.zeros((n_laws, n_records))
+    old, guess, before = (
+        np.zeros(n_records),
+        np.zeros(n_records),
+        np.zeros(n_records),
+    )
+    r, v = np.zeros(n_records), np.zeros(n_records)
     for i in range(n_steps):
+        guess[:] = 0.0
+        for a in range(n_laws):
+            for k in range(n_records):
+                hope[a, k] = 2.0 * own[a, k] - earlier[a, k]
+                guess[k] += hope[a, k]
+                earlier[a, k] = own[a, k]
         for k in range(n_records):
-            guess[k] = 2.0 * old[k] - older[k]
             before[k] = r[k]
             r[k] = displacement[i, k]
         _predict(er, ei, c, old, guess, r)
-        if moving:
+        if needs_velocity:
             v[:] = velocity[i]
             for m in range(n_modes):
                 for k in range(n_records):
                     v[k] += poles[m, k].real * er[m, k] - poles[m, k].imag * ei[m, k]
-        _forces(
-            law,
-            p,
-            r,
-            v,
-            slope,
-            guess,
-            before,
-            states,
-            slips,
-            weights,
-            tables,
-            tops,
-            force,
-        )
-        for k in range(n_records):
-            out[i, k] = force[k]
-            older[k] = old[k]
-            old[k] = force[k] + extra[i, k]
+        a = 0
+        for law in laws:
+            _forces(law, r, v, slope, hope[a], before, states[a], active[a], own[a])
+            a += 1
+        old[:] = 0.0
+        for a in range(n_laws):
+            for k in range(n_records):
+                old[k] += own[a, k]
+        out[i] = old
         for m in range(n_modes):
             for k in range(n_records):
                 change = old[k] - guess[k]
                 er[m, k] -= c[4, m, k] * change
                 ei[m, k] -= c[5, m, k] * change
     return out
-
-
-def slider_tables(
-    loading: float, unloading: float, sharpness: float
-) -> tuple[FloatArray, FloatArray]:
-    """Tabulate the curves of a smooth slider.
-
-    With u the displacement of the slider over its slip displacement, the loading
-    rate is du/dr = 1 - loading u^n and the unloading rate 1 + unloading u^n.
-
-    Args:
-        loading: beta + gamma of Bouc and Wen [-]; 1 for a slider that saturates at 1.
-        unloading: beta - gamma [-]; 0 for elastic unloading.
-        sharpness: n [-].
-
-    Returns:
-        Tables, shape (4, TABLE_SIZE), and what `slide` wants with them, shape (6,).
-
-    Source:
-        Wen 1976, J. Eng. Mech. Div. 102, eq. (2), with |u| <= 1 normalised.
-    """
-    limit = 30.0
-    if loading > 0:
-        limit = min(limit, loading ** (-1.0 / sharpness))
-    stretch = 1.0 - np.exp(-np.linspace(0.0, 14.0, 3000))
-    u = limit * stretch / stretch[-1] * (1.0 - 1e-6)
-    load = _cumulative(u, 1.0 / (1.0 - loading * u**sharpness))
-    unload = _cumulative(u, 1.0 / np.maximum(1.0 + unloading * u**sharpness, 1e-3))
-    bend = max(abs(loading), abs(unloading), 1e-12)
-    free = (IDENTITY * (sharpness + 1.0) / bend) ** (1.0 / sharpness)
-    elastic = float(unloading == 0.0)
-    tops = np.array([load[-1], u[-1], u[-1], unload[-1], min(free, 0.9), elastic])
-    grid = np.linspace(0.0, 1.0, TABLE_SIZE)
-    tables = np.stack(
-        [
-            np.interp(grid * tops[0], load, u),
-            np.interp(grid * tops[1], u, load),
-            np.interp(grid * tops[2], u, unload),
-            np.interp(grid * tops[3], unload, u),
-        ]
-    )
-    return tables, tops
-
-
-def _cumulative(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Integrate y over x from the first point, by trapezia."""
-    steps = 0.5 * (y[1:] + y[:-1]) * np.diff(x)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-NO_SLIDERS: tuple[FloatArray, FloatArray, FloatArray, FloatArray] = (
-    np.zeros(0),
-    np.zeros(0),
-    np.zeros((4, 2)),
-    np.ones(6),
-)

@@ -15,10 +15,12 @@ RIVAL_WITHIN = 15.0
 """Score within which a rival is not told apart."""
 AMPLITUDE_SD = 4.0
 PULL_LIMIT = 4.0
-GLOBAL_SD = 4.0
+GLOBAL_SD = 4.5
+NOISE_SHARE = 0.2
+"""Share of the spectrum from which the noise is estimated."""
 WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
-FRICTION_ERROR = 3e-5
+FRICTION_ERROR = 1e-4
 """The same for sliders, whose distribution is never that of the model."""
 MODEL_ERROR = 3e-6
 """Share of the base's excess chi2 that a right model may leave: kinks between steps,
@@ -53,16 +55,14 @@ def gate(bench: Bench, fit: Fit, base: Fit, left: Screening | None) -> Gate:
         base: fit without effects, of the bench as it was.
         left: directed tests of the fit; None to pass them over.
     """
-    friction = any(c.effect.family == "friction" for c in fit.candidates)
-    share = FRICTION_ERROR if friction else MODEL_ERROR
+    share = _model_error(fit)
     dof = bench.blocks.dof
     excess = fit.chi2 / dof - 1.0
     base_excess = max(base.chi2 / dof - 1.0, 0.0)
     allowed = GLOBAL_SD * noise_sd(bench) + share * base_excess
-    remaining = left.largest if left is not None else 0.0
-    limit = np.inf
+    remaining, limit = 0.0, np.inf
     if left is not None and bench.blocks.white:
-        limit = WIDENED * left.threshold + share * base_excess * dof
+        remaining, limit = _worst(fit, left, base_excess * dof)
     reason = ""
     if excess > allowed:
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
@@ -75,9 +75,36 @@ def gate(bench: Bench, fit: Fit, base: Fit, left: Screening | None) -> Gate:
     return Gate(not reason, reason, excess, allowed, remaining)
 
 
+def _model_error(fit: Fit) -> float:
+    friction = any(c.effect.family == "friction" for c in fit.candidates)
+    return FRICTION_ERROR if friction else MODEL_ERROR
+
+
+def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]:
+    """Return the directed drop that exceeds its limit most, and that limit.
+
+    What a law of friction leaves looks like other laws of the same link: its sliders
+    are not those of the joint. Anywhere else nothing of it should be seen.
+    """
+    rubbed = {c.site for c in fit.candidates if c.effect.family == "friction"}
+    worst, at = (0.0, WIDENED * left.threshold), -np.inf
+    for d in left.directions:
+        if d.suggested:
+            continue
+        share = FRICTION_ERROR if d.candidate.site in rubbed else MODEL_ERROR
+        limit = WIDENED * left.threshold + share * base_excess
+        if d.drop - limit > at:
+            worst, at = (d.drop, limit), d.drop - limit
+    return worst
+
+
 def noise_sd(bench: Bench) -> float:
-    """Return the sd of chi2/dof under noise, that of the noise estimate included."""
-    return float(np.sqrt(2.0 / bench.blocks.dof + 2.0 / (0.2 * bench.blocks.dof)))
+    """Return the sd of chi2/dof under noise, that of the noise estimate included.
+
+    The noise is estimated from a share of the same samples, so that what both hold
+    cancels.
+    """
+    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / NOISE_SHARE - 1.0)))
 
 
 def weakest_amplitude(fit: Fit) -> float:

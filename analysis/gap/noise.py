@@ -6,15 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
+import scipy.stats
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
 
 HIGH_BAND = (0.30, 0.497)
 """Band of pure noise, over the sample rate: above any response to a hammer."""
 SCATTER_MAX = 0.004
-CHI2_975_ONE_SIDED = 3.84
+UNLIKELY = 0.0025
+"""Chance of repeats as close as those seen, below which a scatter is ruled out."""
 SMALLEST_SHARE = 0.03
-FORCE_SHAPES = 6
+FORCE_SHAPES = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,7 +103,7 @@ def gain_scatter(
     Repeats of a condition differ by scatter and noise alone, but there are few of
     them; all records together say more, but a missing effect speaks through them
     too. So the estimate from all records is taken, held between the likeliest value
-    and the upper 97.5 % limit that the repeats allow.
+    and the upper limit that the repeats allow: steps^2/(v + s^2) is a chi2 pivot.
 
     Args:
         gains: regression of each residual on its response [-], shape (n_records,).
@@ -120,10 +122,11 @@ def gain_scatter(
     first, second = (np.array(x) for x in zip(*pairs, strict=True))
     steps = (gains[first] - gains[second]) / np.sqrt(2.0)
     spread = (variances[first] + variances[second]) / 2
-    own = _deviance(steps, spread, grid)
-    low = float(grid[int(np.argmin(own))])
-    allowed = grid[own < own.min() + CHI2_975_ONE_SIDED]
-    return float(np.sqrt(np.clip(wide, low, allowed.max())))
+    low = float(grid[int(np.argmin(_deviance(steps, spread, grid)))])
+    pivot = np.sum(steps**2 / (spread + grid[:, None]), axis=1)
+    allowed = grid[pivot > scipy.stats.chi2.ppf(UNLIKELY, steps.size)]
+    high = max(float(allowed.max(initial=0.0)), low)
+    return float(np.sqrt(np.clip(wide, low, high)))
 
 
 def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.effects import Effect
-from jointbench.analysis.gap.march import NO_SLIDERS
+from jointbench.analysis.gap.slider_march import NO_SLIDERS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +89,9 @@ class LumpedEffect:
         effect: name, parameters, source, rivals.
         sites: kinds of site it applies to, for example ``("link",)``.
         stiffness: dynamic stiffness [N/m] added to a link (between its ends) or to
-            a body (to the ground), shape (1 or n_records, n_lines).
+            a body (to the ground), shape (1 or n_records, n_lines): a polynomial of
+            degree 2 in s plus simple fractions of the effect's own poles.
+        poles: own poles of that stiffness [rad/s], from values; None for none.
         law: nonlinear force across a link, from values.
         transfer: factor on a channel, shape (n_lines,).
         mixing: factor of the other channels added to this one.
@@ -101,6 +103,7 @@ class LumpedEffect:
     effect: Effect
     sites: tuple[str, ...]
     stiffness: Stiffness | None = None
+    poles: Callable[[FloatArray], ComplexArray] | None = None
     law: Bend | None = None
     transfer: Transfer | None = None
     mixing: Callable[[FloatArray], float] | None = None

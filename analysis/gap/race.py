@@ -7,12 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import FINE, FULL, Bench, Stage
+from jointbench.analysis.gap.bench import FULL, Bench, Stage
 from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.fit import (
     BASE_STAGES,
     Fit,
     Problem,
+    cost_at,
     make_problem,
     minimise,
 )
@@ -28,15 +29,24 @@ COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
     (Stage(0.016, 2), 6),
 )
 MIDDLE = Stage(oversampling=2)
-SURVIVORS = (12, 8)
+SURVIVORS = (14, 8)
 FINALISTS = 5
 HOPELESS = 6.0
 """Cost over the best's above which a finalist is not fitted to the end."""
 HUGE = 100.0
 """Chi2 over dof of the base above which a flipped sign is worth a start."""
+ROUNDS = ((3, 12), (5, 8))
+"""Steps of every start still in the race, and how many go on."""
+LEAST = 0.04
+"""Share of the largest directed drop below which an effect is no candidate."""
+MOST_STEPS = 16
+STARTS = 3
+"""Starts of a candidate that has a shape of its own."""
 SWAP_PROBE = 1e-4
-EVERYDAY = 1.3
-"""Chi2 over dof of the base above which the effect is no small perturbation."""
+SHARES = (1.0, 0.3, 0.1)
+"""Shares of a foretold step that are tried as starts."""
+EVERYDAY = 30.0
+"""Chi2 over dof of the base above which directed tests may point the wrong way."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,28 +92,21 @@ def race(
     Returns:
         One fit for each candidate that came far enough, best score first.
     """
-    everyday = fit.chi2 > EVERYDAY * bench.blocks.dof
-    runners = _starters(bench, fit, screening, candidates, progress, everyday=everyday)
-    if everyday:
-        for (stage, iterations), keep in zip(COARSE_ROUNDS, SURVIVORS, strict=True):
-            runners = [_run(r, stage, iterations, progress) for r in runners]
-            runners = _keep(runners, keep)
-        runners = _best_of_each(runners)
-    limit, done = np.inf, []
-    for r in runners:
+    runners = _near(bench, fit, screening, candidates)
+    if fit.chi2 > EVERYDAY * bench.blocks.dof:
+        runners += _far(bench, fit, screening, candidates, progress)
+    for iterations, keep in ROUNDS:
+        runners = _keep(_heat(runners, iterations, progress), keep)
+    best, done = None, []
+    for r in _best_of_each(runners):
         progress(r.label)
-        middle = minimise(r.problem, r.x, MIDDLE, iterations=8, give_up=limit)
+        middle = minimise(r.problem, r.x, MIDDLE, iterations=MOST_STEPS, rival=best)
         done.append(Runner(r.problem, middle.x, middle.cost, middle))
-        limit = min(limit, HOPELESS * middle.cost)
-    runners = _keep(_best_of_each(done), FINALISTS)
-    limit = np.inf
-    fits = []
-    for r in runners:
-        if r.fit is None or r.cost > limit:
-            fits += [] if r.fit is None else [r.fit]
-            continue
-        fits.append(finish(bench, r.problem, r.x, progress))
-        limit = min(limit, HOPELESS * fits[-1].cost)
+        best = min(best or np.inf, middle.cost)
+    runners = _keep(done, FINALISTS)
+    hopeful = [r for r in runners if r.cost < HOPELESS * runners[0].cost]
+    fits = [finish(bench, r.problem, r.x, progress) for r in hopeful]
+    fits += [r.fit for r in runners if r not in hopeful and r.fit is not None]
     return sorted(fits, key=lambda f: score(bench, f))
 
 
@@ -111,37 +114,82 @@ def finish(bench: Bench, problem: Problem, x: FloatArray, progress: Progress) ->
     """Fit to the end at the finest step."""
     progress(" + ".join(c.label for c in problem.candidates) + " (fine)")
     families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}
-    if "friction" in families:
-        return minimise(problem, x, FULL, iterations=6, jacobian_stage=MIDDLE)
-    if families & {"stiffness", "contact", "damping"}:
-        return minimise(problem, x, FINE, iterations=6, jacobian_stage=FULL)
+    if families & {"friction", "stiffness", "contact", "damping"}:
+        return minimise(problem, x, FULL, iterations=8, jacobian_stage=MIDDLE)
     return minimise(problem, x, FULL, iterations=8)
 
 
-def _starters(
+def _heat(
+    runners: Sequence[Runner], iterations: int, progress: Progress
+) -> list[Runner]:
+    """Let all take some steps, best first, so that the slow see whom to catch."""
+    best, done = None, []
+    for r in _keep(runners, len(runners)):
+        done.append(_run(r, MIDDLE, iterations, progress, rival=best))
+        best = min(best or np.inf, done[-1].cost)
+    return done
+
+
+def _near(
+    bench: Bench, fit: Fit, screening: Screening, candidates: Sequence[Candidate]
+) -> list[Runner]:
+    """Start where the directed tests point to, on the whole record."""
+    runners: list[Runner] = []
+    least = LEAST * max(screening.largest, 1e-9)
+    for candidate in candidates:
+        problem = make_problem(bench, (*fit.candidates, candidate))
+        shaped = len(candidate.effect.parameters) > 2
+        for d in screening.best(candidate, STARTS if shaped else 1):
+            if d.drop >= least:
+                runners.append(_along(problem, fit, d, MIDDLE))
+        if candidate.effect.by_prior:
+            x = np.clip(swapped(bench, fit, candidate), problem.lower, problem.upper)
+            runners.append(Runner(problem, x, cost_at(problem, x, MIDDLE)))
+    return [r for r in runners if np.isfinite(r.cost)]
+
+
+def _far(
     bench: Bench,
     fit: Fit,
     screening: Screening,
     candidates: Sequence[Candidate],
     progress: Progress,
-    *,
-    everyday: bool,
 ) -> list[Runner]:
+    """Start far off, under short windows that forgive a misplaced resonance."""
     runners: list[Runner] = []
-    best = max(screening.largest, 1e-9)
     for candidate in candidates:
-        directions = screening.best(candidate, 2 if everyday else 1)
         problem = make_problem(bench, (*fit.candidates, candidate))
-        for d in directions:
-            if not everyday and d.drop < 0.15 * best and not candidate.effect.by_prior:
-                continue
-            runners.append(_runner(problem, np.concatenate([fit.x, d.coordinates])))
-        if candidate.effect.by_prior:
-            runners.append(_runner(problem, swapped(bench, fit, candidate)))
-        elif candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
+        directions = screening.best(candidate, 2)
+        runners += [_along(problem, fit, d, COARSE_ROUNDS[0][0]) for d in directions]
+        if candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
             progress(f"{candidate.label} from the sheet")
             runners.append(_from_nominal(problem, fit, directions))
+    for (stage, iterations), keep in zip(COARSE_ROUNDS, SURVIVORS, strict=True):
+        runners = [_run(r, stage, iterations, progress) for r in runners]
+        runners = _keep(runners, keep)
     return runners
+
+
+def _along(problem: Problem, fit: Fit, direction: Direction, stage: Stage) -> Runner:
+    """Return the best start on the way that a directed test foretells.
+
+    The effect comes in and the base gives way together; what is far from small is
+    not foretold well, so shorter ways are looked at too.
+    """
+    full = np.concatenate([fit.x + direction.shift, direction.coordinates])
+    trials = [np.concatenate([fit.x, direction.coordinates])]
+    for share in SHARES:
+        trial = full.copy()
+        trial[: fit.x.size] = fit.x + share * direction.shift
+        if not direction.candidate.effect.parameters[0].starts:
+            trial[fit.x.size] *= share
+        trials.append(trial)
+    trials = [np.clip(x, problem.lower, problem.upper) for x in trials]
+    costs = []
+    for x in trials:
+        costs.append(cost_at(problem, x, stage))
+    best = int(np.argmin(costs))
+    return Runner(problem, trials[best], costs[best])
 
 
 def _runner(problem: Problem, x: FloatArray) -> Runner:
@@ -177,13 +225,26 @@ def _from_nominal(
     tail = directions[0].coordinates if directions else np.zeros(1)
     x = np.concatenate([start, tail])
     for stage, iterations, _ in BASE_STAGES[:-1]:
-        x = minimise(problem, x, stage, iterations=iterations).x
+        x = minimise(problem, x, stage, iterations=iterations, exact_slopes=False).x
     return _runner(problem, x)
 
 
-def _run(runner: Runner, stage: Stage, iterations: int, progress: Progress) -> Runner:
+def _run(
+    runner: Runner,
+    stage: Stage,
+    iterations: int,
+    progress: Progress,
+    rival: float | None = None,
+) -> Runner:
     progress(runner.label)
-    fit = minimise(runner.problem, runner.x, stage, iterations=iterations)
+    fit = minimise(
+        runner.problem,
+        runner.x,
+        stage,
+        iterations=iterations,
+        rival=rival,
+        exact_slopes=False,
+    )
     return Runner(runner.problem, fit.x, fit.cost, fit)
 
 
@@ -195,7 +256,9 @@ def _best_of_each(runners: Sequence[Runner]) -> list[Runner]:
 
 
 def _keep(runners: Sequence[Runner], count: int) -> list[Runner]:
-    return sorted(runners, key=lambda r: r.cost)[:count]
+    return sorted((r for r in runners if np.isfinite(r.cost)), key=lambda r: r.cost)[
+        :count
+    ]
 
 
 __all__ = ["finish", "race", "score"]

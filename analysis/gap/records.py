@@ -2,10 +2,11 @@
 """What the engine hands back: verdict and evidence, and its JSON."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
 
+from jointbench.analysis.gap.confidence import Evidence
 from jointbench.analysis.gap.exhibit_records import Exhibit, exhibit_json
 
 
@@ -37,12 +38,14 @@ class NamedEffect:
         site: word of the site.
         parameters: with intervals.
         confidence: probability that name and site are right [-].
+        evidence: what the confidence rests on.
     """
 
     name: str
     site: str
     parameters: tuple[Estimate, ...]
     confidence: float
+    evidence: Evidence
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +150,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
                 "site": e.site,
                 "parameters": _estimates(e.parameters),
                 "confidence": e.confidence,
+                "evidence": asdict(e.evidence),
             }
             for e in d.effects
         ],

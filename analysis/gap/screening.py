@@ -21,7 +21,9 @@ from jointbench.analysis.gap.bench import Bench, Stage
 from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.fit import Fit
 
-PROBE = 1e-3
+PROBE = 1e-6
+SEEN = 1e-10
+"""Share of a direction's squared length that the fit must leave for it to count."""
 SCREEN = Stage(oversampling=2)
 DRAWS = 4000
 QUANTILE = 0.995
@@ -34,14 +36,19 @@ class Direction:
     Attributes:
         candidate: the effect and site.
         coordinates: start for a fit, shape (n_parameters,).
+        shift: of what is already fitted, as the effect takes its part, (n_x,).
         drop: chi2 that it is predicted to take.
         one_sided: True where only one sign is allowed.
+        suggested: True where the residual itself suggested the shape, so that the
+            drop is no fair test.
     """
 
     candidate: Candidate
     coordinates: FloatArray
+    shift: FloatArray
     drop: float
     one_sided: bool
+    suggested: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,14 +87,62 @@ def screen(
         seed: of the null draws.
     """
     starts = [(c, u) for c in candidates for u in start_grid(c)]
+    fixed = len(starts)
+    starts += [(c, u) for c in candidates for u in bench.hints(fit, c)]
+    tangent = _tangent(fit)
     base = bench.residual(fit.base, fit.terms, SCREEN)
-    rows = np.empty((len(starts), base.size), dtype=np.float32)
-    units = np.empty(len(starts))
+    left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
+    taken = np.empty((len(starts), fit.x.size))
+    norm = np.empty(len(starts))
     for k, (candidate, u) in enumerate(starts):
-        probe, units[k] = _probe(candidate, u)
+        probe, unit = _probe(candidate, u)
         terms = (*fit.terms, Term(candidate, probe))
-        rows[k] = (bench.residual(fit.base, terms, SCREEN) - base) / units[k]
-    return _judge(bench, fit, starts, rows, seed)
+        row = np.zeros(tangent.q.shape[0])
+        row[: base.size] = (bench.residual(fit.base, terms, SCREEN) - base) / unit
+        taken[k] = tangent.q.T @ row
+        norm[k] = row @ row
+        left[k] = row - tangent.q @ taken[k]
+    return _judge(bench, starts, tangent, _Tested(left, taken, norm, fixed), seed)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tangent:
+    """What the parameters that are fitted can follow: slopes and priors, orthonormal.
+
+    Attributes:
+        q: orthonormal columns of slopes over priors, shape (n_rows + n_x, n_x).
+        r: upper triangle that belongs to them, shape (n_x, n_x).
+        residual: of the data over that of the priors, shape (n_rows + n_x,).
+    """
+
+    q: FloatArray
+    r: FloatArray
+    residual: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tested:
+    """Directions of the effects, split by what the fit can follow.
+
+    Attributes:
+        left: what it cannot follow, shape (n_starts, n_rows + n_x).
+        taken: coordinates of what it can, shape (n_starts, n_x).
+        norm: squared length of the whole, shape (n_starts,).
+        fixed: how many belong to the grid; the others were suggested by the very
+            residual that is tested, so they are starts and no statistic.
+    """
+
+    left: NDArray[np.float32]
+    taken: FloatArray
+    norm: FloatArray
+    fixed: int
+
+
+def _tangent(fit: Fit) -> _Tangent:
+    root = np.sqrt(fit.prior)
+    q, r = np.linalg.qr(np.concatenate([fit.jacobian, np.diag(root)]))
+    residual = np.concatenate([fit.residual, root * (fit.x - fit.centre)])
+    return _Tangent(np.asarray(q), np.asarray(r), residual)
 
 
 def _probe(candidate: Candidate, u: FloatArray) -> tuple[FloatArray, float]:
@@ -110,24 +165,17 @@ def start_grid(candidate: Candidate) -> list[FloatArray]:
 
 def _judge(
     bench: Bench,
-    fit: Fit,
     starts: Sequence[tuple[Candidate, FloatArray]],
-    rows: NDArray[np.float32],
+    tangent: _Tangent,
+    tested: _Tested,
     seed: int,
 ) -> Screening:
-    j = fit.jacobian
-    hessian = j.T @ j + np.diag(fit.prior)
-    inverse = np.linalg.pinv(hessian, hermitian=True)
-    gradient = j.T @ fit.residual + fit.prior * (fit.x - fit.centre)
-    cross = rows.astype(np.float64) @ j if rows.size < 2e7 else rows @ j
-    gram = (rows @ rows.T).astype(np.float64)
-    norm = np.diag(gram).copy()
-    gram -= cross @ inverse @ cross.T
-    score = rows.astype(np.float64) @ fit.residual - cross @ inverse @ gradient
+    gram = (tested.left @ tested.left.T).astype(np.float64)
+    score = tested.left @ tangent.residual
     left = np.diag(gram).copy()
-    seen = left > 1e-7 * np.maximum(norm, 1e-300)
-    left = np.where(seen & (left > 0), left, np.inf)
+    left = np.where(left > SEEN * np.maximum(tested.norm, 1e-300), left, np.inf)
     amplitude = -score / left
+    minimum = tangent.q.T @ tangent.residual
     directions = []
     one_sided = np.zeros(len(starts), dtype=bool)
     for k, (candidate, u) in enumerate(starts):
@@ -144,13 +192,25 @@ def _judge(
         phases = bench.phases(candidate)
         if phases:
             drop = _phase_drop(drop, phases)
-        directions.append(Direction(candidate, start, drop, bool(one_sided[k])))
-    fixed = np.array([bench.phases(c) == 0 for c, _ in starts])
-    left = np.where(fixed, left, np.inf)
+        moved = start[0] if not first.starts else 1.0
+        shift = -_solve(tangent.r, minimum + tested.taken[k] * moved)
+        directions.append(
+            Direction(
+                candidate, start, shift, drop, bool(one_sided[k]), k >= tested.fixed
+            )
+        )
+    counted = np.array([bench.phases(c) == 0 for c, _ in starts])
+    counted[tested.fixed :] = False
+    left = np.where(counted, left, np.inf)
     threshold = null_threshold(gram, one_sided & np.isfinite(left), left, seed)
+    largest = max((d.drop for d in directions[: tested.fixed]), default=0.0)
     directions.sort(key=lambda d: -d.drop)
-    largest = directions[0].drop if directions else 0.0
     return Screening(tuple(directions), threshold, largest)
+
+
+def _solve(r: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve with a triangle that may be singular where a parameter does nothing."""
+    return np.asarray(np.linalg.lstsq(r, right, rcond=1e-13)[0])
 
 
 def _phase_drop(drop: float, phases: int) -> float:

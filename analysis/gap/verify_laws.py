@@ -18,7 +18,7 @@ from jointbench.analysis.gap.curve_march import GRADE
 from jointbench.analysis.gap.march import CURVES
 from jointbench.analysis.gap.physics import Law
 
-SLIDERS_OF_IWAN = 12
+SLIDERS_OF_IWAN = 14
 """The catalogue's bank: equal steps of slip displacement, a slider in the mean of
 each."""
 
@@ -112,7 +112,7 @@ def _bouc_wen(p: Values) -> ContinuousLaw:
 
 
 def _iwan(p: Values) -> ContinuousLaw:
-    stiffness, slip = iwan_bank(p["kt"], p["phimax"], p["chi_plus_1"] - 1.0)
+    stiffness, slip = iwan_bank(p["kt"], p["phimax"], p["chi_plus_2"] - 1.0)
     return _bouc_wen_law(stiffness, slip, 0.5, 0.5, p["sharpness"])
 
 

@@ -82,3 +82,22 @@ def _view(name: str, slices: dict[str, FloatArray]) -> View:
         {x: float(np.mean(p)) for x, p in slices.items()},
         {x: e / total for x, e in excess.items()},
     )
+
+
+def residual_peaks(
+    residual: FloatArray, sample_rate: float, count: int = 3
+) -> list[float]:
+    """Return the frequencies [Hz] at which a whitened residual has its largest peaks.
+
+    Args:
+        residual: shape (n_records, n_channels, n_samples).
+        sample_rate: [Hz].
+        count: of peaks.
+    """
+    n = residual.shape[-1]
+    spectrum = scipy.fft.rfft(residual * np.hanning(n), 4 * n, axis=-1)
+    power = np.sum(np.abs(spectrum) ** 2, axis=(0, 1))
+    inside = power[1:-1]
+    tops = 1 + np.flatnonzero((inside > power[:-2]) & (inside >= power[2:]))
+    best = tops[np.argsort(-power[tops])[:count]]
+    return [float(k * sample_rate / (4 * n)) for k in best]

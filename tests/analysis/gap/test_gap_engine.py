@@ -11,7 +11,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import Blocks, Stage
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.effects import Candidate, Effect, Parameter, Site, Term
-from jointbench.analysis.gap.fit import make_problem, minimise
+from jointbench.analysis.gap.fit import Fit, make_problem, minimise
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.screening import null_threshold
@@ -53,6 +53,10 @@ class Curve:
     def phases(self, candidate: Candidate) -> int:
         """No effect has a phase."""
         return 0
+
+    def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
+        """A curve suggests nothing."""
+        return []
 
     def refine(self, base: FloatArray, terms: Sequence[Term]) -> "Curve":
         """The noise is known."""

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""Smooth sliders: their curves as tables, and a compiled step along them.
+
+A slider remembers how far it has been pushed. Its loading curve rises from elastic to
+slip; unloading it is elastic, or follows a second curve (Bouc and Wen). Both curves are
+tabulated once for a set of shape parameters, so that a step is one or two lookups.
+"""
+
+import numpy as np
+from numba import njit
+
+from jointbench.acquisition.arrays import FloatArray, IntArray
+
+TABLE_SIZE = 4096
+IDENTITY = 1e-7
+"""Departure of a slider from elasticity that is passed over."""
+STALE = 1e30
+"""Loading coordinate of a slider that has unloaded since it was last known."""
+
+
+@njit(cache=True, fastmath=True)
+def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
+    """Interpolate a row of evenly spaced points; constant above its end.
+
+    Rows are not sliced out: making a view costs more than the lookup.
+    """
+    position = x * per_unit
+    index = int(position)
+    last = tables.shape[1] - 1
+    if index >= last:
+        return float(tables[row, last])
+    low = tables[row, index]
+    return float(low + (position - index) * (tables[row, index + 1] - low))
+
+
+@njit(cache=True, fastmath=True)
+def slide(
+    u: float, loading: float, step: float, tables: FloatArray, tops: FloatArray
+) -> tuple[float, float]:
+    """Move a slider along its loading and unloading curves.
+
+    Args:
+        u: displacement of the slider over its slip displacement [-].
+        loading: its signed coordinate on the loading curve [-]; `STALE` after
+            unloading, when it is looked up at need.
+        step: change of displacement over the slip displacement [-].
+        tables: u of loading coordinate, its inverse, unloading coordinate of u, its
+            inverse; shape (4, n).
+        tops: points per unit of the four tables; the state below which all four are
+            the identity; 1 where unloading is elastic; end of loading; shape (7,).
+
+    Returns:
+        The new u and loading coordinate.
+    """
+    moved = u + step
+    if abs(u) < tops[4] and abs(moved) < tops[4]:
+        return moved, moved
+    side = 1.0 if u > 0.0 or (u == 0.0 and step >= 0.0) else -1.0
+    size, forward = side * u, side * step
+    if forward >= 0.0:
+        x = side * loading
+        if loading == STALE:
+            x = _lookup(tables, 1, tops[1], size)
+        x = min(x + forward, tops[6])
+        return side * _lookup(tables, 0, tops[0], x), side * x
+    elastic = tops[5] > 0.0
+    left = (size if elastic else _lookup(tables, 2, tops[2], size)) + forward
+    if left < 0.0:
+        return -side * _lookup(tables, 0, tops[0], -left), side * left
+    return side * (left if elastic else _lookup(tables, 3, tops[3], left)), STALE
+
+
+@njit(cache=True, fastmath=True)
+def bank_forces(
+    r: FloatArray,
+    before: FloatArray,
+    states: FloatArray,
+    active: IntArray,
+    slips: FloatArray,
+    weights: FloatArray,
+    tables: FloatArray,
+    tops: FloatArray,
+    force: FloatArray,
+) -> None:
+    """Add the force of a bank of sliders, less that of the same bank held fast.
+
+    Sliders come in order of rising slip displacement. Those of a record that have
+    never left their elastic range follow the joint, and are passed over.
+    """
+    rates = 1.0 / slips
+    for k in range(r.size):
+        total, count = 0.0, active[k]
+        while count < slips.size and abs(r[k]) > tops[4] * slips[count]:
+            states[k, count, 0] = before[k] / slips[count]
+            states[k, count, 1] = states[k, count, 0]
+            count += 1
+        active[k] = count
+        step = r[k] - before[k]
+        for i in range(count):
+            u, loading = states[k, i, 0], states[k, i, 1]
+            u, loading = slide(u, loading, step * rates[i], tables, tops)
+            states[k, i, 0], states[k, i, 1] = u, loading
+            total += weights[i] * (slips[i] * u - r[k])
+        force[k] += total
+
+
+def slider_tables(
+    loading: float, unloading: float, sharpness: float
+) -> tuple[FloatArray, FloatArray]:
+    """Tabulate the curves of a smooth slider.
+
+    With u the displacement of the slider over its slip displacement, the loading
+    rate is du/dr = 1 - loading u^n and the unloading rate 1 + unloading u^n.
+
+    Args:
+        loading: beta + gamma of Bouc and Wen [-]; 1 for a slider that saturates at 1.
+        unloading: beta - gamma [-]; 0 for elastic unloading.
+        sharpness: n [-].
+
+    Returns:
+        Tables, shape (4, TABLE_SIZE), and what `slide` wants with them, shape (7,).
+
+    Source:
+        Wen 1976, J. Eng. Mech. Div. 102, eq. (2), with |u| <= 1 normalised.
+    """
+    limit = 30.0
+    if loading > 0:
+        limit = min(limit, loading ** (-1.0 / sharpness))
+    stretch = 1.0 - np.exp(-np.linspace(0.0, 14.0, 3000))
+    u = limit * stretch / stretch[-1] * (1.0 - 1e-6)
+    load = _cumulative(u, 1.0 / (1.0 - loading * u**sharpness))
+    unload = _cumulative(u, 1.0 / np.maximum(1.0 + unloading * u**sharpness, 1e-3))
+    bend = max(abs(loading), abs(unloading), 1e-12)
+    free = (IDENTITY * (sharpness + 1.0) / bend) ** (1.0 / sharpness)
+    elastic = float(unloading == 0.0)
+    ends = np.array([load[-1], u[-1], u[-1], unload[-1]])
+    tops = np.array([*((TABLE_SIZE - 1) / ends), min(free, 0.9), elastic, load[-1]])
+    grid = np.linspace(0.0, 1.0, TABLE_SIZE)
+    tables = np.stack(
+        [
+            np.interp(grid * ends[0], load, u),
+            np.interp(grid * ends[1], u, load),
+            np.interp(grid * ends[2], u, unload),
+            np.interp(grid * ends[3], unload, u),
+        ]
+    )
+    return tables, tops
+
+
+def _cumulative(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Integrate y over x from the first point, by trapezia."""
+    steps = 0.5 * (y[1:] + y[:-1]) * np.diff(x)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+NO_SLIDERS: tuple[FloatArray, FloatArray, FloatArray, FloatArray] = (
+    np.zeros(0),
+    np.zeros(0),
+    np.zeros((4, 2)),
+    np.ones(7),
+)

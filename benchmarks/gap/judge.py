@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""Diagnose a folder of campaigns and put each answer beside its truth.
+
+Usage: python benchmarks/gap/judge.py FOLDER RUNS.jsonl --jobs 2 [--kind single]
+
+One JSON line a campaign: truth, the whole diagnosis, CPU seconds. Campaigns that the
+file already holds are passed over, so that an interrupted run goes on where it was.
+"""
+
+import argparse
+import json
+import multiprocessing
+import os
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+
+def judge_one(truth_path: Path) -> dict[str, Any]:
+    """Return the truth and the diagnosis of one campaign."""
+    from jointbench.analysis.gap.campaign import read_campaign
+    from jointbench.analysis.gap.diagnose import diagnose
+    from jointbench.analysis.gap.records import diagnosis_json
+
+    truth: dict[str, Any] = json.loads(truth_path.read_text(encoding="utf-8"))
+    without = frozenset(truth["truth"]) if truth["kind"] == "hidden" else frozenset()
+    campaign = read_campaign(truth_path.with_suffix(".h5"))
+    start = time.process_time()
+    try:
+        found: dict[str, Any] = diagnosis_json(diagnose(campaign, without=without))
+    except Exception as error:  # noqa: BLE001 - a crash is an outcome to be counted
+        found = {"verdict": "crash", "reason": f"{type(error).__name__}: {error}"}
+    return truth | {"found": found, "seconds": time.process_time() - start}
+
+
+def key_of(run: dict[str, Any]) -> str:
+    """Return what tells one campaign from all others."""
+    return f"{run['kind']}-{run['seed']}"
+
+
+def main() -> None:
+    """Diagnose what is not yet in the file."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("runs", type=Path)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--kind", default="")
+    arguments = parser.parse_args()
+    done = set()
+    if arguments.runs.exists():
+        lines = arguments.runs.read_text(encoding="utf-8").splitlines()
+        done = {key_of(json.loads(line)) for line in lines}
+    paths = sorted(
+        path
+        for path in arguments.folder.glob(f"{arguments.kind}*.json")
+        if path.stem not in done and "truth" not in path.name
+    )
+    with (
+        multiprocessing.Pool(arguments.jobs, maxtasksperchild=50) as pool,
+        arguments.runs.open("a", encoding="utf-8") as out,
+    ):
+        for k, run in enumerate(pool.imap_unordered(judge_one, paths)):
+            out.write(json.dumps(run) + "\n")
+            out.flush()
+            sys.stderr.write(f"\r{k + 1}/{len(paths)} {key_of(run)}   ")
+    sys.stderr.write("\n")
+
+
+if __name__ == "__main__":
+    main()
