@@ -85,7 +85,8 @@ def _iwan_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _bouc_wen(v: FloatArray) -> Law:
-    return _sliders(v[:1], v[1:2], float(v[3] + v[4]), float(v[3] - v[4]), float(v[2]))
+    """Bouc and Wen with b + g = 1: a factor of both is another yield displacement."""
+    return _sliders(v[:1], v[1:2], 1.0, float(v[3]), float(v[2]))
 
 
 def _bouc_wen_report(v: FloatArray) -> tuple[Reported, ...]:
@@ -93,8 +94,8 @@ def _bouc_wen_report(v: FloatArray) -> tuple[Reported, ...]:
         Reported("k", "N/m", float(v[0])),
         Reported("zy", "m", float(v[1])),
         Reported("n", "-", float(v[2])),
-        Reported("b", "-", float(v[3])),
-        Reported("g", "-", float(v[4])),
+        Reported("b", "-", float(1 + v[3]) / 2),
+        Reported("g", "-", float(1 - v[3]) / 2),
     )
 
 
@@ -227,8 +228,7 @@ BOUC_WEN = LumpedEffect(
             Parameter("k", "N/m", "stiffness", 0.0, 0.95, off=0.0),
             Parameter("zy", "m", "travel", 0.005, 10.0, (0.07, 0.3, 1.0), LOG),
             Parameter("n", "-", "one", 0.5, 6.0, (1.0, 2.0), LOG, (1.4, 0.5)),
-            Parameter("b", "-", "one", 0.0, 2.0, (0.5,)),
-            Parameter("g", "-", "one", -1.0, 1.0, (0.0,)),
+            Parameter("unloading", "-", "one", -0.9, 4.0, (1.0,)),
         ),
         "Wen 1976, J. Eng. Mech. Div. 102, 249, eq. (2)",
         {

@@ -242,10 +242,12 @@ def _base_estimates(bench: LumpedBench, fit: Fit) -> tuple[Estimate, ...]:
     widened = max(fit.chi2 / bench.blocks.dof, 1.0)
     sd = np.sqrt(np.diag(fit.covariance)[: fit.n_base] * widened)
     values = bench.theta(fit.base)
-    units = {"k": "N/m", "c": "N s/m"}
+    links = len(bench.campaign.model.links)
+    units = ["kg"] * len(bench.campaign.model.bodies) + ["N/m"] * links
+    units += ["N s/m"] * links
     return tuple(
-        Estimate(name, float(v), float(v * s), units.get(name.split("_")[0], "kg"))
-        for name, v, s in zip(bench.base_names, values, sd, strict=True)
+        Estimate(name, float(v), float(v * s), unit)
+        for name, v, s, unit in zip(bench.base_names, values, sd, units, strict=True)
     )
 
 

@@ -9,11 +9,13 @@ import numpy as np
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.effects import Candidate
 from jointbench.analysis.gap.fit import Fit, fit_stages, make_problem, minimise
-from jointbench.analysis.gap.naming import Gate, gate, rivals
+from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import Progress, finish, race, score
 from jointbench.analysis.gap.screening import Screening, screen
 
 REFINEMENTS = 3
+REJUDGED = 2
+MOST_EFFECTS = 3
 FIRSTS = 3
 HOPEFUL = 4.0
 """Cost over the best first's above which a first is not given a second."""
@@ -58,15 +60,21 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     if first.passed:
         return Outcome(bench, base, first, screening, base, first, (), (base,))
     fits = race(bench, base, screening, bench.candidates, progress)
-    refined, fits, judged, left = judge(bench, fits, base, progress)
-    if not judged.passed and fits:
-        more = add_second(refined, fits, base, left, progress)
-        if more:
-            merged = sorted([*fits, *more], key=lambda f: score(refined, f))
-            merged = take_back(refined, merged, progress)
-            again, merged, rejudged, _ = judge(refined, merged, base, progress)
-            if _worthwhile(again, merged[0], fits[0]):
-                refined, fits, judged = again, merged, rejudged
+    refined, fits, judged = judge(bench, fits, base, progress)
+    for count in range(1, MOST_EFFECTS):
+        if judged.passed or not fits or len(fits[0].candidates) < count:
+            break
+        firsts = fits[: FIRSTS if count == 1 else 1]
+        more = add_another(refined, firsts, progress)
+        if not more:
+            break
+        merged = sorted([*fits, *more], key=lambda f: score(refined, f))
+        merged = take_back(refined, merged, progress)
+        again, merged, rejudged = judge(refined, merged, base, progress)
+        if not _worthwhile(again, merged[0], fits[0]):
+            break
+        refined, fits, judged = again, merged, rejudged
+    fits = without_twins(refined, fits)
     best = fits[0] if fits else base
     level = tuple(rivals(refined, fits))
     return Outcome(refined, base, first, screening, best, judged, tuple(fits), level)
@@ -84,10 +92,25 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
 
 def judge(
     bench: Bench, fits: Sequence[Fit], base: Fit, progress: Progress
-) -> tuple[Bench, list[Fit], Gate, Screening | None]:
-    """Estimate the noise at the winner, refit the leaders there and judge."""
+) -> tuple[Bench, list[Fit], Gate]:
+    """Estimate the noise at the winner, refit the leaders there and judge.
+
+    Noise, scatter and settling of the hits are known no better than the fit at which
+    they were estimated; where the winner fails, they are estimated again at its refit.
+    """
     if not fits:
-        return bench, [], gate(bench, base, base, None), None
+        return bench, [], gate(bench, base, base, None)
+    judged = _judge_once(bench, fits, base, progress)
+    for _ in range(REJUDGED):
+        if judged[2].passed:
+            break
+        judged = _judge_once(judged[0], judged[1], base, progress)
+    return judged
+
+
+def _judge_once(
+    bench: Bench, fits: Sequence[Fit], base: Fit, progress: Progress
+) -> tuple[Bench, list[Fit], Gate]:
     best = fits[0]
     refined = bench.refine(best.base, best.terms)
     close = score(bench, best) + CLOSE
@@ -100,7 +123,7 @@ def judge(
     refit.sort(key=lambda f: score(refined, f))
     best = refit[0]
     left = screen(refined, best, _others(refined, best))
-    return refined, refit, gate(refined, best, base, left), left
+    return refined, refit, gate(refined, best, base, left, refit)
 
 
 def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
@@ -127,17 +150,11 @@ def _others(bench: Bench, fit: Fit) -> list[Candidate]:
     return [c for c in bench.candidates if c not in fit.candidates]
 
 
-def add_second(
-    bench: Bench,
-    fits: Sequence[Fit],
-    base: Fit,
-    left: Screening | None,
-    progress: Progress,
-) -> list[Fit]:
-    """Try the best seconds on the best firsts."""
+def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+    """Try the best further effects on the best fits."""
     found: list[Fit] = []
     tried: set[frozenset[str]] = set()
-    hopeful = [f for f in fits[:FIRSTS] if f.cost < HOPEFUL * fits[0].cost]
+    hopeful = [f for f in fits if f.cost < HOPEFUL * fits[0].cost]
     for first in hopeful:
         screening = screen(bench, first, _others(bench, first))
         chosen = [

@@ -13,6 +13,9 @@ from jointbench.analysis.gap.screening import Screening
 
 RIVAL_WITHIN = 15.0
 """Score within which a rival is not told apart."""
+TWIN_WITHIN = 0.5
+"""Score within which the same fault at one channel and at all is one statement."""
+EVERYWHERE = "all"
 AMPLITUDE_SD = 4.0
 PULL_LIMIT = 4.0
 GLOBAL_SD = 4.5
@@ -22,7 +25,7 @@ WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
 FRICTION_ERROR = 1e-4
 """The same for sliders, whose distribution is never that of the model."""
-MODEL_ERROR = 3e-6
+MODEL_ERROR = 2e-5
 """Share of the base's excess chi2 that a right model may leave: kinks between steps,
 the anti-alias filter, sliders of another make."""
 
@@ -46,7 +49,13 @@ class Gate:
     remaining: float
 
 
-def gate(bench: Bench, fit: Fit, base: Fit, left: Screening | None) -> Gate:
+def gate(
+    bench: Bench,
+    fit: Fit,
+    base: Fit,
+    left: Screening | None,
+    others: Sequence[Fit] = (),
+) -> Gate:
     """Judge a fit.
 
     Args:
@@ -54,6 +63,7 @@ def gate(bench: Bench, fit: Fit, base: Fit, left: Screening | None) -> Gate:
         fit: of that bench.
         base: fit without effects, of the bench as it was.
         left: directed tests of the fit; None to pass them over.
+        others: what else was fitted, for what the fit would be without an effect.
     """
     share = _model_error(fit)
     dof = bench.blocks.dof
@@ -70,8 +80,9 @@ def gate(bench: Bench, fit: Fit, base: Fit, left: Screening | None) -> Gate:
         reason = f"a further effect would take {remaining:.0f} units of chi2"
     elif np.abs(fit.pulls).max() > PULL_LIMIT:
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
-    elif fit.candidates and weakest_amplitude(fit) < AMPLITUDE_SD:
-        reason = f"an amplitude is only {weakest_amplitude(fit):.1f} sigma from off"
+    elif fit.candidates and weakest(fit, (base, *others)) < AMPLITUDE_SD:
+        sure = weakest(fit, (base, *others))
+        reason = f"an effect is only {sure:.1f} sigma from off"
     return Gate(not reason, reason, excess, allowed, remaining)
 
 
@@ -107,6 +118,22 @@ def noise_sd(bench: Bench) -> float:
     return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / NOISE_SHARE - 1.0)))
 
 
+def weakest(fit: Fit, others: Sequence[Fit]) -> float:
+    """Return how many sd the weakest effect of a fit is from being off.
+
+    By the rise of the cost where a fit without it is at hand, else by its amplitude:
+    the amplitude of a weak law of friction is loose although the law is needed.
+    """
+    own, sure = _labels(fit), []
+    for candidate in fit.candidates:
+        rest = own - {candidate.label}
+        without = [f.cost for f in others if _labels(f) == rest]
+        if not without:
+            return weakest_amplitude(fit)
+        sure.append(np.sqrt(max(min(without) - fit.cost, 0.0)))
+    return float(min(sure, default=np.inf))
+
+
 def weakest_amplitude(fit: Fit) -> float:
     """Return the smallest distance of an amplitude from OFF, in sd."""
     sd = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
@@ -120,8 +147,44 @@ def weakest_amplitude(fit: Fit) -> float:
 
 
 def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
-    """Return the fits that the best one is not told apart from, it included."""
+    """Return the fits that the best one is not told apart from, it included.
+
+    An explanation that holds the best one and more is no rival of it: what it adds
+    did not earn its charge.
+    """
     if not fits:
         return []
-    best = score(bench, fits[0])
-    return [f for f in fits if score(bench, f) < best + RIVAL_WITHIN]
+    best, own = score(bench, fits[0]), _labels(fits[0])
+    return [
+        f
+        for f in fits
+        if score(bench, f) < best + RIVAL_WITHIN
+        and (f is fits[0] or not own < _labels(f))
+    ]
+
+
+def _labels(fit: Fit) -> set[str]:
+    return {c.label for c in fit.candidates}
+
+
+def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+    """Drop fits that say the same as a fault of all channels alike.
+
+    A range of the converter that only one channel reaches is the range of all.
+    """
+    common = [
+        f
+        for f in fits
+        if len(f.candidates) == 1 and f.candidates[0].site.name == EVERYWHERE
+    ]
+    return [
+        f
+        for f in fits
+        if not any(
+            f is not c
+            and len(f.candidates) == 1
+            and f.candidates[0].effect.name == c.candidates[0].effect.name
+            and abs(score(bench, f) - score(bench, c)) < TWIN_WITHIN
+            for c in common
+        )
+    ]

@@ -108,7 +108,8 @@ def _jenkins(p: Values) -> ContinuousLaw:
 
 
 def _bouc_wen(p: Values) -> ContinuousLaw:
-    return _bouc_wen_law(_one(p["k"]), _one(p["zy"]), p["b"], p["g"], p["n"])
+    b, g = (1.0 + p["unloading"]) / 2.0, (1.0 - p["unloading"]) / 2.0
+    return _bouc_wen_law(_one(p["k"]), _one(p["zy"]), b, g, p["n"])
 
 
 def _iwan(p: Values) -> ContinuousLaw:

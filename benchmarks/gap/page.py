@@ -5,6 +5,7 @@ Usage: python benchmarks/gap/page.py RUNS.jsonl > docs/gap-confusion.md
 """
 
 import argparse
+import itertools
 import json
 import sys
 from collections import Counter
@@ -76,11 +77,13 @@ def sets_of(runs: Sequence[Run]) -> dict[str, list[Run]]:
     margins = [min(run["margins"], default=np.inf) for run in runs]
     kinds: dict[str, Callable[[Run, float], bool]] = {
         "nothing missing": lambda r, m: r["kind"] == "null",
-        "one effect, margin >= 50": lambda r, m: r["kind"] == "single"
-        and m >= NAMEABLE,
+        "one effect, margin >= 50": lambda r, m: (
+            r["kind"] == "single" and m >= NAMEABLE
+        ),
         "one effect, margin < 50": lambda r, m: r["kind"] == "single" and m < NAMEABLE,
-        "two effects, margins >= 50": lambda r, m: r["kind"] == "pair"
-        and m >= NAMEABLE,
+        "two effects, margins >= 50": lambda r, m: (
+            r["kind"] == "pair" and m >= NAMEABLE
+        ),
         "two effects, a margin < 50": lambda r, m: r["kind"] == "pair" and m < NAMEABLE,
         "taken out, margin >= 50": lambda r, m: r["kind"] == "hidden" and m >= NAMEABLE,
         "taken out, margin < 50": lambda r, m: r["kind"] == "hidden" and m < NAMEABLE,
@@ -214,7 +217,7 @@ def reliability(runs: Sequence[Run]) -> list[str]:
     right = [word_of(r) == "right" for r in named]
     lines = ["| confidence | n | mean told | right |", "|---|---|---|---|"]
     edges = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.001)
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in itertools.pairwise(edges):
         mine = [k for k, c in enumerate(told) if low <= c < high]
         if mine:
             mean = np.mean([told[k] for k in mine])
@@ -229,8 +232,8 @@ def reliability(runs: Sequence[Run]) -> list[str]:
 def trivial(sets: dict[str, list[Run]]) -> list[str]:
     """Score answerers that do not think, in the same words."""
     lines = [
-        "| set | ours right | ours wrong | always unknown | always cubic: right, wrong |"
-        " biggest shrink: right, wrong |",
+        "| set | ours right | ours wrong | always unknown | always cubic: right, "
+        "wrong | biggest shrink: right, wrong |",
         "|---|---|---|---|---|---|",
     ]
     for name, mine in sets.items():
@@ -276,8 +279,9 @@ def failures(runs: Sequence[Run]) -> list[str]:
         )
         falsely = run["kind"] == "null" and word != "none"
         if word in {"wrong name", "crash", "ambiguous, wrong"} or lost or falsely:
+            truth = " + ".join(run["truth"]) or "none"
             lines.append(
-                f"| {run['kind']} {run['seed']} | {' + '.join(run['truth']) or 'none'} | "
+                f"| {run['kind']} {run['seed']} | {truth} | "
                 f"{', '.join(f'{m:.3g}' for m in run['margins'])} | {word}: "
                 f"{', '.join('@'.join(t) for t in told_by(run))} | "
                 f"{run['found']['reason']} |"

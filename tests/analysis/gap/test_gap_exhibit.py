@@ -52,12 +52,12 @@ def test_a_linear_cause_recurs_whole_at_every_level() -> None:
 
 
 def test_a_cubic_spring_does_not_recur_in_softer_hits() -> None:
-    """The misfit of 1000 N is a tenth or less of itself at 300 N, or turned round."""
+    """The misfit of 1000 N is less than half of itself in softer hits, or turned."""
     outcome, bench, exhibit = case("cubic")
     misfit = bench.campaign.response - bench.response(outcome.base.base, ())
     found = recurrences(bench, misfit)
     assert not is_linear(found)
-    assert all(f.share < 0.3 for f in found)
+    assert all(f.share < 0.5 for f in found)
     assert "grows with level" in exhibit.where
     assert exhibit.view == "level"
 

@@ -13,7 +13,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.march import slide, slider_tables
+from jointbench.analysis.gap.slider_march import slide, slider_tables
 from jointbench.analysis.gap.noise import (
     channel_sigma,
     gain_scatter,
@@ -100,23 +100,31 @@ def test_a_delay_moves_the_response_by_whole_samples() -> None:
 def test_a_slider_loads_along_its_curve_and_unloads_elastically() -> None:
     """Loading saturates at 1; stepping back by d lowers u by d."""
     tables, tops = slider_tables(1.0, 0.0, 12.0)
-    state = slide(0.0, 5.0, tables, tops)
-    grid = np.linspace(0, tops[0], tables.shape[1])
-    top = float(np.interp(abs(state), grid, tables[0]))
+    top, loading = slide(0.0, 0.0, 5.0, tables, tops)
     assert top == pytest.approx(1.0, abs=1e-4)
-    back = slide(state, -0.5, tables, tops)
-    assert float(np.interp(abs(back), grid, tables[0])) == pytest.approx(
-        top - 0.5, abs=1e-3
-    )
+    back, _ = slide(top, loading, -0.5, tables, tops)
+    assert back == pytest.approx(top - 0.5, abs=1e-9)
+
+
+def test_a_slider_loads_again_along_its_loading_curve() -> None:
+    """After unloading it goes on from the point of the curve at which it stands."""
+    tables, tops = slider_tables(1.0, 0.0, 12.0)
+    u, loading = slide(0.0, 0.0, 0.9, tables, tops)
+    low, _ = state = slide(u, loading, -0.2, tables, tops)
+    grid = np.linspace(0, 1, tables.shape[1]) * (tables.shape[1] - 1)
+    curve = np.interp(low, grid / tops[1], tables[1]) + 0.2
+    again, _ = slide(*state, 0.2, tables, tops)
+    assert again == pytest.approx(np.interp(curve, grid / tops[0], tables[0]), rel=1e-9)
 
 
 def test_many_small_steps_move_a_slider_as_far_as_one() -> None:
     """The state does not depend on the number of steps of a monotone path."""
     tables, tops = slider_tables(0.3, 0.9, 1.0)
-    once, often = slide(0.0, 1.7, tables, tops), 0.0
+    once, _ = slide(0.0, 0.0, 1.7, tables, tops)
+    state = (0.0, 0.0)
     for _ in range(100):
-        often = slide(often, 0.017, tables, tops)
-    assert often == pytest.approx(once, rel=1e-9)
+        state = slide(*state, 0.017, tables, tops)
+    assert state[0] == pytest.approx(once, rel=1e-9)
 
 
 def test_white_noise_is_estimated_from_the_top_of_the_spectrum() -> None:
