@@ -65,6 +65,8 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         if judged.passed or not fits or len(fits[0].candidates) < count:
             break
         firsts = fits[: FIRSTS if count == 1 else 1]
+        if count > 1 and not _apart(firsts[0]):
+            break
         more = add_another(refined, firsts, progress)
         if not more:
             break
@@ -78,6 +80,12 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     best = fits[0] if fits else base
     level = tuple(rivals(refined, fits))
     return Outcome(refined, base, first, screening, best, judged, tuple(fits), level)
+
+
+def _apart(fit: Fit) -> bool:
+    """Tell whether no link bears two effects: three at one link explain anything."""
+    links = [c.site for c in fit.candidates if c.site.kind == "link"]
+    return len(set(links)) == len(links)
 
 
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:

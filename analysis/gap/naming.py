@@ -13,12 +13,15 @@ from jointbench.analysis.gap.screening import Screening
 
 RIVAL_WITHIN = 15.0
 """Score within which a rival is not told apart."""
+CROWDED_WITHIN = 60.0
+"""The same where one site bears two effects: two laws together bend as many do."""
 TWIN_WITHIN = 0.5
 """Score within which the same fault at one channel and at all is one statement."""
 EVERYWHERE = "all"
 AMPLITUDE_SD = 4.0
 PULL_LIMIT = 4.0
 GLOBAL_SD = 4.5
+RECORDS_SD = 4.5
 NOISE_SHARE = 0.2
 """Share of the spectrum from which the noise is estimated."""
 WIDENED = 1.3
@@ -78,6 +81,8 @@ def gate(
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
     elif remaining > limit:
         reason = f"a further effect would take {remaining:.0f} units of chi2"
+    elif (odd := _unlike_records(bench, fit)) > RECORDS_SD + share * base_excess * dof:
+        reason = f"records want parameters of their own ({odd:.1f} sd beyond noise)"
     elif np.abs(fit.pulls).max() > PULL_LIMIT:
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
     elif fit.candidates and weakest(fit, (base, *others)) < AMPLITUDE_SD:
@@ -107,6 +112,26 @@ def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]
         if d.drop - limit > at:
             worst, at = (d.drop, limit), d.drop - limit
     return worst
+
+
+def _unlike_records(bench: Bench, fit: Fit) -> float:
+    """Return how much better every record could be fitted by itself, in sd of noise.
+
+    A law that imitates the true one leaves misfits that no effect of the catalogue
+    takes, but that differ from level to level: parameters that fit all records are
+    not the best of any.
+    """
+    if not bench.blocks.white or not fit.candidates:
+        return 0.0
+    size = np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
+    taken, free = 0.0, -fit.x.size
+    for group in np.unique(bench.blocks.group):
+        rows = bench.blocks.group == group
+        u, s, _ = np.linalg.svd(fit.jacobian[rows] / size, full_matrices=False)
+        u = u[:, s > 1e-6 * s[0]]
+        taken += float(np.sum((u.T @ fit.residual[rows]) ** 2))
+        free += u.shape[1]
+    return (taken - free) / float(np.sqrt(2.0 * max(free, 1)))
 
 
 def noise_sd(bench: Bench) -> float:
@@ -155,11 +180,12 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     if not fits:
         return []
     best, own = score(bench, fits[0]), _labels(fits[0])
+    sites = [c.site for c in fits[0].candidates]
+    near = RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
     return [
         f
         for f in fits
-        if score(bench, f) < best + RIVAL_WITHIN
-        and (f is fits[0] or not own < _labels(f))
+        if score(bench, f) < best + near and (f is fits[0] or not own < _labels(f))
     ]
 
 
