@@ -321,16 +321,15 @@ def _step(
     g = (gradient / size)[free]
     for _ in range(9):
         step = np.zeros(x.size)
-        step[free] = -np.linalg.solve(h + damping * np.eye(h.shape[0]), g)
+        step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
         trial = _moved(problem, x, step / size)
         try_r, try_cost = _looked_at(problem, trial, stage)
         for _ in range(CORRECTIONS):
             if try_cost < cost or not np.isfinite(try_cost):
                 break
             pull = j.T @ try_r + problem.prior * (trial - problem.centre)
-            step[free] = -np.linalg.solve(
-                h + STIFF * np.eye(h.shape[0]), (pull / size)[free]
-            )
+            stiff = h + STIFF * np.eye(h.shape[0])
+            step[free] = -_solve(stiff, (pull / size)[free])
             trial = _moved(problem, trial, step / size)
             try_r, try_cost = _looked_at(problem, trial, stage)
         if np.isfinite(try_cost) and try_cost < cost:
@@ -339,6 +338,11 @@ def _step(
         if damping > 1e7:
             break
     return None, damping
+
+
+def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve, or return the least of all solutions where two parameters are one."""
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-14)[0])
 
 
 def _moved(problem: Problem, x: FloatArray, step: FloatArray) -> FloatArray:
@@ -355,7 +359,10 @@ def _looked_at(
     problem: Problem, x: FloatArray, stage: Stage
 ) -> tuple[FloatArray, float]:
     with np.errstate(all="ignore"):
-        r = problem.residual(x, stage)
+        try:
+            r = problem.residual(x, stage)
+        except np.linalg.LinAlgError:  # a model whose modes cannot be told apart
+            return np.full(problem.bench.blocks.group.size, np.inf), np.inf
         cost = float(r @ r) + problem.penalty(x)
     return r, cost if np.isfinite(cost) else np.inf
 

@@ -13,8 +13,10 @@ from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import Progress, finish, race, score
 from jointbench.analysis.gap.screening import Screening, screen
 
-REFINEMENTS = 3
-REJUDGED = 2
+REFINEMENTS = 8
+SETTLED = 3.0
+"""Change of the cost below which noise, scatter and fit agree with each other."""
+REJUDGED = 3
 MOST_EFFECTS = 3
 FIRSTS = 3
 HOPEFUL = 4.0
@@ -93,8 +95,11 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     problem = make_problem(bench, ())
     fit = fit_stages(problem, np.zeros(problem.n_base))
     for _ in range(REFINEMENTS):
+        before = fit.cost
         bench = bench.refine(fit.base, ())
         fit = minimise(make_problem(bench, ()), fit.x)
+        if abs(fit.cost - before) < SETTLED:
+            break
     return bench, fit
 
 
