@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Effects hidden by the simulators' own physics, found by the engine: fixed seeds.
 
-The statistics over hundreds of campaigns are in benchmarks/gap and docs/gap-confusion.md.
+The statistics over many campaigns: benchmarks/gap and docs/gap-confusion.md.
 """
 
 from pathlib import Path
