@@ -235,6 +235,21 @@ def softening(name: str, p: dict[str, float], r: np.ndarray) -> np.ndarray:
     return np.asarray(np.sum(weights * (r[:, None] - force), axis=1))
 
 
+def null_test(runs: Sequence[Run]) -> str:
+    """Return how often the directed tests of a null exceed their limit."""
+    tests = [
+        r["found"]["null_test"]
+        for r in runs
+        if r["kind"] == "null" and "null_test" in r["found"]
+    ]
+    above = sum(t["largest"] > t["limit"] for t in tests)
+    far = sum(t["largest"] > 1.3 * t["limit"] for t in tests)
+    return (
+        f"over the 99.5 % limit {share_text(above, len(tests))}, over 1.3 times the "
+        f"limit, where the engine looks further, {share_text(far, len(tests))}"
+    )
+
+
 def shrinkage(runs: Sequence[Run]) -> str:
     """Return how much held-out gaps of 3 and more shrink under right names."""
     shrinks = [
@@ -361,6 +376,7 @@ def page(runs: list[Run]) -> str:
             "",
         ],
         [*confusion(sets), ""],
+        [f"Null test where nothing is missing: {null_test(runs)}.", ""],
         [f"Site of right names: {site_share(runs)}.", ""],
         [f"Gap on held-out records, right names: {shrinkage(runs)}.", ""],
         [f"Pull where only the priors see the effect: {pulls(runs)}.", ""],
