@@ -26,11 +26,16 @@ NOISE_SHARE = 0.2
 """Share of the spectrum from which the noise is estimated."""
 WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
+MODEL_ERROR = 2e-5
+"""Share of the base's excess chi2 that a right nonlinear law may leave: kinks between
+steps, the anti-alias filter."""
+BENT = {"stiffness", "contact"}
+"""Families of nonlinear laws without memory."""
 FRICTION_ERROR = 1e-4
 """The same for sliders, whose distribution is never that of the model."""
-MODEL_ERROR = 2e-5
-"""Share of the base's excess chi2 that a right model may leave: kinks between steps,
-the anti-alias filter, sliders of another make."""
+EXACT_ERROR = 1e-6
+"""The same for effects that are linear or act on a channel: they are exact, and would
+otherwise hide a second effect behind a great first one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,8 +97,10 @@ def gate(
 
 
 def _model_error(fit: Fit) -> float:
-    friction = any(c.effect.family == "friction" for c in fit.candidates)
-    return FRICTION_ERROR if friction else MODEL_ERROR
+    families = {c.effect.family for c in fit.candidates}
+    if "friction" in families:
+        return FRICTION_ERROR
+    return MODEL_ERROR if families & BENT else EXACT_ERROR
 
 
 def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]:
@@ -103,11 +110,12 @@ def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]
     are not those of the joint. Anywhere else nothing of it should be seen.
     """
     rubbed = {c.site for c in fit.candidates if c.effect.family == "friction"}
+    elsewhere = min(_model_error(fit), MODEL_ERROR)
     worst, at = (0.0, WIDENED * left.threshold), -np.inf
     for d in left.directions:
         if d.suggested:
             continue
-        share = FRICTION_ERROR if d.candidate.site in rubbed else MODEL_ERROR
+        share = FRICTION_ERROR if d.candidate.site in rubbed else elsewhere
         limit = WIDENED * left.threshold + share * base_excess
         if d.drop - limit > at:
             worst, at = (d.drop, limit), d.drop - limit
