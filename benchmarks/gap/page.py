@@ -365,14 +365,16 @@ def failures(runs: Sequence[Run]) -> list[str]:
     return lines
 
 
-def page(runs: list[Run]) -> str:
+def page(runs: list[Run], engine: str) -> str:
     """Return the whole page."""
     sets = sets_of(runs)
     parts = [
         ["# Gap engine on fresh simulated campaigns", ""],
         [
             "Made by `benchmarks/gap/campaigns.py`, `judge.py` and `page.py`. Counts, "
-            "with 95 % Wilson intervals in %; time is CPU time of one core.",
+            "with 95 % Wilson intervals in %; time is CPU time of one core, on a "
+            "machine that was busy with other work as well.",
+            f"Engine: {engine}." if engine else "",
             "",
         ],
         [*confusion(sets), ""],
@@ -394,8 +396,10 @@ def main() -> None:
     """Print the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("runs", type=Path)
-    lines = parser.parse_args().runs.read_text(encoding="utf-8").splitlines()
-    sys.stdout.write(page([json.loads(line) for line in lines]))
+    parser.add_argument("--engine", default="", help="which state was judged")
+    arguments = parser.parse_args()
+    lines = arguments.runs.read_text(encoding="utf-8").splitlines()
+    sys.stdout.write(page([json.loads(line) for line in lines], arguments.engine))
 
 
 if __name__ == "__main__":
