@@ -172,7 +172,7 @@ PRELOAD_STIFFNESS = LumpedEffect(
     Effect(
         "preload_stiffness",
         "preload",
-        (Parameter("n", "-", "one", -1.5, 1.5, off=0.0),),
+        (Parameter("n", "-", "one", -1.5, 1.5, off=0.0, far=(0.1, 0.25, 0.5)),),
         "Greenwood and Williamson 1966: k grows with a power of the load",
         {"loosening": "repeat the preload sequence backwards"},
     ),
@@ -194,7 +194,7 @@ LOOSENING = LumpedEffect(
     Effect(
         "loosening",
         "preload",
-        (Parameter("frac", "-", "one", -0.9, 0.9, off=0.0),),
+        (Parameter("frac", "-", "one", -0.9, 0.9, off=0.0, far=(0.05, 0.2)),),
         "Junker 1969, SAE 690055: stiffness lost from hit to hit",
         {"preload_stiffness": "repeat the preload sequence backwards"},
     ),

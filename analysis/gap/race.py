@@ -161,6 +161,9 @@ def _far(
         problem = make_problem(bench, (*fit.candidates, candidate))
         directions = screening.best(candidate, 2)
         runners += [_along(problem, fit, d, COARSE_ROUNDS[0][0]) for d in directions]
+        for amplitude in candidate.effect.parameters[0].far:
+            x = np.concatenate([fit.x, [amplitude]])
+            runners.append(_started(problem, x))
         if candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
             progress(f"{candidate.label} from the sheet")
             runners.append(_from_nominal(problem, fit, directions))
@@ -194,6 +197,12 @@ def _along(problem: Problem, fit: Fit, direction: Direction, stage: Stage) -> Ru
 
 def _runner(problem: Problem, x: FloatArray) -> Runner:
     return Runner(problem, np.clip(x, problem.lower, problem.upper), np.inf)
+
+
+def _started(problem: Problem, x: FloatArray) -> Runner:
+    stage = COARSE_ROUNDS[0][0]
+    fit = minimise(problem, x, stage, iterations=4, exact_slopes=False)
+    return Runner(problem, fit.x, fit.cost)
 
 
 def swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
