@@ -155,8 +155,6 @@ def jacobian_of(
     x: FloatArray,
     residual: FloatArray,
     stage: Stage,
-    *,
-    linear_base: bool = False,
 ) -> FloatArray:
     """Difference the residual.
 
@@ -165,23 +163,14 @@ def jacobian_of(
         x: where, shape (n,).
         residual: at x, shape (n_rows,).
         stage: how thoroughly.
-        linear_base: take the base's columns with the effects off: cheap, and close
-            enough to descend by while the step of the effects is being found.
     """
     columns = np.empty((x.size, residual.size))
     steps = steps_of(problem, x)
-    plain = residual
-    if linear_base:
-        plain = problem.bench.residual(x[: problem.n_base], (), stage)
     for i, h in enumerate(steps):
         moved = x.copy()
         moved[i] += h
-        if linear_base and i < problem.n_base:
-            columns[i] = problem.bench.residual(moved[: problem.n_base], (), stage)
-            columns[i] -= plain
-        else:
-            columns[i] = problem.residual(moved, stage)
-            columns[i] -= residual
+        columns[i] = problem.residual(moved, stage)
+        columns[i] -= residual
         columns[i] /= h
     return columns.T
 
@@ -193,7 +182,6 @@ def minimise(
     *,
     iterations: int = 20,
     rival: float | None = None,
-    linear_base: bool = False,
     jacobian_stage: Stage | None = None,
     exact_slopes: bool = True,
 ) -> Fit:
@@ -206,7 +194,6 @@ def minimise(
         iterations: at most.
         rival: cost of the best so far; a descent that at its pace would need very
             many more steps to come there is given up.
-        linear_base: see `jacobian_of`.
         jacobian_stage: a cheaper stage for the slopes, or None for the same.
         exact_slopes: difference the slopes once more at the end, which an
             intermediate stage does not need.
@@ -214,7 +201,7 @@ def minimise(
 
     def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
         if jacobian_stage is None:
-            return jacobian_of(problem, x, r, stage, linear_base=linear_base)
+            return jacobian_of(problem, x, r, stage)
         coarse = problem.residual(x, jacobian_stage)
         return jacobian_of(problem, x, coarse, jacobian_stage)
 
@@ -367,12 +354,12 @@ def _looked_at(
     return r, cost if np.isfinite(cost) else np.inf
 
 
-Stages = Sequence[tuple[Stage, int, bool]]
+Stages = Sequence[tuple[Stage, int]]
 BASE_STAGES: Stages = (
-    (Stage(0.002), 6, False),
-    (Stage(0.006), 6, False),
-    (Stage(0.020), 6, False),
-    (FULL, 20, False),
+    (Stage(0.002), 6),
+    (Stage(0.006), 6),
+    (Stage(0.020), 6),
+    (FULL, 20),
 )
 
 
@@ -387,14 +374,13 @@ def fit_stages(
     """Fit coarse to fine; the last stage decides."""
     x = start
     fit: Fit | None = None
-    for stage, iterations, linear_base in stages:
+    for stage, iterations in stages:
         last = stage.window is None
         fit = minimise(
             problem,
             x,
             stage,
             iterations=iterations,
-            linear_base=linear_base,
             rival=rival if last else None,
             exact_slopes=last,
         )

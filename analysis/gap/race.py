@@ -233,7 +233,7 @@ def _from_nominal(
     start[fit.n_base :] = fit.x[fit.n_base :]
     tail = directions[0].coordinates if directions else np.zeros(1)
     x = np.concatenate([start, tail])
-    for stage, iterations, _ in BASE_STAGES[:-1]:
+    for stage, iterations in BASE_STAGES[:-1]:
         x = minimise(problem, x, stage, iterations=iterations, exact_slopes=False).x
     return _runner(problem, x)
 
