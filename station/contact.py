@@ -8,11 +8,11 @@ from pathlib import Path
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.units import parse_value
-from jointbench.analysis.contact import ContactState, predict_contact
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_models import ContactModel, contact_model
-from jointbench.analysis.contact_spread import StiffnessInterval, predict_interval
-from jointbench.analysis.surface_spread import ContactSurface, contact_surface
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import ContactModel, contact_model
+from jointbench.analysis.contact.predict import ContactState, predict_contact
+from jointbench.analysis.contact.spread import StiffnessInterval, predict_interval
+from jointbench.analysis.contact.surface import ContactSurface, contact_surface
 from jointbench.signal.fractal import fit_fractal
 from jointbench.signal.structure_function import StructureFunction, combine
 from jointbench.station.inputs import read_surfaces

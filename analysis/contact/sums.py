@@ -13,14 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.asperity import (
+from jointbench.analysis.contact.asperity import (
     FractalSurface,
     asperity_load,
     excess,
     log_critical_area,
 )
-from jointbench.analysis.contact_material import ContactMaterial, yield_ratio
-from jointbench.analysis.contact_models import (
+from jointbench.analysis.contact.material import ContactMaterial, yield_ratio
+from jointbench.analysis.contact.models import (
     REGIME_BOUNDS,
     AsperityLaw,
     ContactModel,

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
-from jointbench.analysis.asperity import FractalSurface
-from jointbench.analysis.contact_material import PRESSURE_RANGE, ContactMaterial
-from jointbench.analysis.contact_models import (
+from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.material import PRESSURE_RANGE, ContactMaterial
+from jointbench.analysis.contact.models import (
     REGIMES,
     ContactModel,
     PowerLaw,
@@ -21,7 +21,7 @@ from jointbench.analysis.contact_models import (
     contact_model,
     regime_laws,
 )
-from jointbench.analysis.contact_sums import JointSums, joint_sums, solve_largest_area
+from jointbench.analysis.contact.sums import JointSums, joint_sums, solve_largest_area
 
 DAMPING_REASON = (
     "no damping law is given: the published loss of first plastic loading is not what "
@@ -112,7 +112,7 @@ def predict_contact(
         BadData: a number outside the model's range.
 
     Source:
-        `contact_sums.joint_sums`; tangential: Mindlin 1949.
+        `sums.joint_sums`; tangential: Mindlin 1949.
     """
     model = contact_model(model) if isinstance(model, str) else model
     sums = contact_curve(

@@ -2,7 +2,7 @@
 """One asperity of a fractal surface: geometry, load and stiffness by regime.
 
 The joint is the sum of these laws over the contact-area distribution; the closed form
-of that sum is in `contact_sums`.
+of that sum is in `sums`.
 """
 
 import math
@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.contact_material import ContactMaterial, yield_ratio
-from jointbench.analysis.contact_models import (
+from jointbench.analysis.contact.material import ContactMaterial, yield_ratio
+from jointbench.analysis.contact.models import (
     REGIME_BOUNDS,
     AsperityLaw,
     ContactModel,

@@ -17,7 +17,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.contact_material import YieldCriterion
+from jointbench.analysis.contact.material import YieldCriterion
 
 
 class Regime(StrEnum):
