@@ -7,9 +7,9 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, contact_model
-from jointbench.analysis.contact.predict import contact_curve
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,13 +18,15 @@ from jointbench.analysis.contact.asperity import (
     asperity_load,
     excess,
     log_critical_area,
+    surface_yield_ratio,
 )
-from jointbench.analysis.contact.material import ContactMaterial, yield_ratio
+from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import (
     REGIME_BOUNDS,
     AsperityLaw,
     ContactModel,
     PowerLaw,
+    bears_nothing,
     regime_laws,
 )
 
@@ -154,7 +156,8 @@ def solve_largest_area(
     """
     e = excess(model, surface)
     # Where all is plastic the load is pressure times real area: a start within decades.
-    hard = model.plastic.pressure_factor * surface.hardness * model.population
+    pressure = model.plastic.pressure_factor or 1.0
+    hard = pressure * surface.hardness * model.population
     start = np.log(load * (1 - e) / ((1 + e) * hard))
     low, high = _bracket(model, surface, material, load, start)
     here = 0.5 * (low + high)
@@ -204,7 +207,7 @@ def _prepare(
     """Collect the factors that all regimes share."""
     e = excess(model, surface)
     log_x = np.asarray(log_largest - log_critical)
-    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    kappa = surface_yield_ratio(model, surface, material)
     stiff = math.log(4 / 3 * material.effective_modulus)
     log_shape = math.log(model.topography.shape)
     return _Sum(
@@ -220,6 +223,8 @@ def _prepare(
 def _load(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArray:
     """Return the load of one regime [N]."""
     e = total.excess
+    if bears_nothing(law):
+        return np.zeros(np.broadcast(total.log_population, total.log_load).shape)
     if isinstance(law, PowerLaw):
         exponent = (1 + e) / 2 - law.exponent * e
         factor = total.log_population + total.log_load + math.log(law.coefficient)
@@ -234,9 +239,9 @@ def _load(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArr
 
 def _stiffness(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArray:
     """Return the stiffness of one regime [N/m]."""
-    if not isinstance(law, PowerLaw):
+    if not isinstance(law, PowerLaw) or bears_nothing(law):
         return np.zeros(np.broadcast(total.log_population, total.log_load).shape)
     factor = total.log_population + total.log_slope
-    factor = factor + math.log(law.coefficient * law.exponent)
+    factor = factor + math.log(law.slope)
     exponent = (1 - law.exponent) * total.excess
     return power_integral(exponent, *total.limits(upper, lower), factor)
