@@ -8,6 +8,7 @@ the unloading law change with the interference.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -184,8 +185,8 @@ def _stages(
     """Return the regimes in the order of `REGIMES`, with the work done before each."""
     before = np.zeros_like(surface.hardness)
     result: list[_Stage] = []
-    bounds = zip(REGIME_BOUNDS[:-1], REGIME_BOUNDS[1:], strict=True)
-    for law, (upper, lower) in reversed(list(zip(regime_laws(model), bounds))):
+    laws = zip(regime_laws(model), pairwise(REGIME_BOUNDS), strict=True)
+    for law, (upper, lower) in reversed(list(laws)):
         if isinstance(law, PowerLaw):
             factor, exponent = np.asarray(law.coefficient), law.exponent
         else:

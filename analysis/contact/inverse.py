@@ -40,7 +40,8 @@ def largest_area_of_real_area(
         its n(a), f = 1/2, is not normalised; f is `model.population` here.
     """
     e = excess(model, surface)
-    return np.asarray(real_area * (1 - e) / (model.population * (1 + e)))
+    area = np.asarray(real_area, dtype=float)
+    return np.asarray(area * (1 - e) / (model.population * (1 + e)))
 
 
 def log_largest_of_stiffness(

@@ -300,7 +300,8 @@ def interaction_share(model: ContactModel) -> float:
 
     Returns:
         1 without interaction, 3 pi/16 as printed; else the root of
-        (16/(9 g)) x^3 = (1 - x)^2, which makes Hertz's law and the sinking F/(E sqrt a) bear the same load.
+        (16/(9 g)) x^3 = (1 - x)^2, which makes Hertz's law and the sinking
+        F/(E sqrt a) bear the same load.
 
     Source:
         Appl. Sci. 2023, 13, 11680, eqs. (17)-(18), solved. Note: the papers put

@@ -279,9 +279,9 @@ def printed_warnings(
 
 
 def _size(value: float, usual: float) -> str:
-    return (
-        f"{value / usual:.4g} times" if usual > 0 else f"{value:.4g} N/m instead of 0"
-    )
+    if usual > 0:
+        return f"{value / usual:.4g} times"
+    return f"{value:.4g} N/m instead of 0"
 
 
 def _evaluate(formula: _Formula, inputs: eq.PrintedInputs) -> float:

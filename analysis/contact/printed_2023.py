@@ -67,7 +67,7 @@ def printed_inputs(
 
 def critical_area_2d(p: PrintedInputs) -> float:
     """Eq. (23) [m^2]."""
-    return p.G**2 / (p.k * p.phi / 2) ** (2 / (p.D - 1))
+    return float(p.G**2 / (p.k * p.phi / 2) ** (2 / (p.D - 1)))
 
 
 def elastic_load_2d(p: PrintedInputs) -> float:
@@ -75,7 +75,7 @@ def elastic_load_2d(p: PrintedInputs) -> float:
     D = p.D
     R = p.a_l ** (D / 2) / (math.pi**2 * p.G ** (D - 1))
     span = p.a_l**1.5 - p.a_c ** ((3 - D) / 2) * p.a_l ** (D / 2)
-    return (16 - 3 * math.pi) * p.E * D * span / (16 * R * math.pi * (3 - D))
+    return float((16 - 3 * math.pi) * p.E * D * span / (16 * R * math.pi * (3 - D)))
 
 
 def first_stage_load_2d(p: PrintedInputs) -> float:
@@ -84,7 +84,7 @@ def first_stage_load_2d(p: PrintedInputs) -> float:
     scale = 24.7543 * D * p.E**0.85 * p.G ** (0.85 * (D - 1)) * p.H**0.15 * p.k**0.15
     limits = 6 ** ((0.925 * D - 1.425) / (D - 1)) - 1
     scale *= p.a_l ** (0.5 * D) * p.a_c ** (1.425 - 0.925 * D)
-    return scale * limits / ((37 * D - 57) * math.pi)
+    return float(scale * limits / ((37 * D - 57) * math.pi))
 
 
 def second_stage_load_2d(
@@ -96,21 +96,21 @@ def second_stage_load_2d(
     scale *= p.H**0.528 * p.k**0.528 * p.a_l ** (0.5 * D)
     scale *= p.a_c ** (1.236 - 0.736 * D)
     power = (0.736 * D - 1.236) / (D - 1)
-    return scale * (6**power - 110**power) / ((309 - 184 * D) * math.pi)
+    return float(scale * (6**power - 110**power) / ((309 - 184 * D) * math.pi))
 
 
 def plastic_load_2d(p: PrintedInputs) -> float:
     """Eq. (28) [N], as grouped in print: negative."""
     D = p.D
     root = (110 * p.a_c) ** ((D - 2) / (2 * (D - 1)))
-    return root * D * p.H * p.a_l ** (D / 2) / (D - 2)
+    return float(root * D * p.H * p.a_l ** (D / 2) / (D - 2))
 
 
 def elastic_stiffness(p: PrintedInputs) -> float:
     """Eq. (31) [N/m]; chapter 4 takes it over with the D of the surface."""
     D, power = p.D, (1 - p.D) / 2
     span = p.a_l**power - p.a_c**power
-    return math.sqrt(3) * p.E * D * p.a_l ** (D / 2) / (2 * (1 - D)) * span
+    return float(math.sqrt(3) * p.E * D * p.a_l ** (D / 2) / (2 * (1 - D)) * span)
 
 
 def first_stage_stiffness_2d(p: PrintedInputs) -> float:
@@ -119,7 +119,7 @@ def first_stage_stiffness_2d(p: PrintedInputs) -> float:
     scale = 17.6375 * 2**0.85 * 3**0.075 * D * p.E * p.G ** (0.15 * (1 - D))
     scale *= p.H**0.15 * p.a_l ** (0.5 * D) * p.a_c ** (0.5 - 0.425 * D)
     limits = 6 ** ((0.425 * D - 0.5) / (D - 1)) - 1
-    return scale * limits / ((17 * D - 20) * math.pi)
+    return float(scale * limits / ((17 * D - 20) * math.pi))
 
 
 def second_stage_stiffness_2d(
@@ -130,7 +130,7 @@ def second_stage_stiffness_2d(
     scale = coefficient * 2**0.472 * 3**0.264 * D * p.E * p.G ** (0.528 * (1 - D))
     scale *= p.H**0.528 * p.a_l ** (0.5 * D) * p.a_c ** (0.5 - 0.236 * D)
     power = (0.236 * D - 0.5) / (D - 1)
-    return scale * (6**power - 110**power) / ((125 - 59 * D) * math.pi)
+    return float(scale * (6**power - 110**power) / ((125 - 59 * D) * math.pi))
 
 
 def critical_area_3d(p: PrintedInputs) -> float:
@@ -139,7 +139,7 @@ def critical_area_3d(p: PrintedInputs) -> float:
     kappa = 33 * math.pi * p.k_mu * p.phi / 40
     area = 2 ** ((3 * D - 11) / (2 - D)) * kappa**power
     area *= math.pi ** ((4 - D) / (2 - D)) * math.log(p.gamma) ** (1 / (D - 2))
-    return area * p.G**2
+    return float(area * p.G**2)
 
 
 def first_stage_load_3d(p: PrintedInputs) -> float:
@@ -149,7 +149,7 @@ def first_stage_load_3d(p: PrintedInputs) -> float:
     scale *= p.a_l ** (0.5 * D) * (p.phi * p.k_mu) ** 0.15
     scale *= math.pi ** (0.425 * D - 1.7) * math.log(p.gamma) ** 0.425
     scale *= p.a_c ** (1.85 - 0.925 * D)
-    return scale * (6 ** ((0.925 * D - 1.85) / (D - 1)) - 1) / (D - 2)
+    return float(scale * (6 ** ((0.925 * D - 1.85) / (D - 1)) - 1) / (D - 2))
 
 
 def second_stage_load_3d(p: PrintedInputs) -> float:
@@ -160,7 +160,7 @@ def second_stage_load_3d(p: PrintedInputs) -> float:
     scale *= math.pi ** (0.236 * D - 0.944) * math.log(p.gamma) ** 0.236
     scale *= p.a_c ** (1.472 - 0.736 * D)
     power = (0.736 * D - 1.472) / (D - 1)
-    return scale * (110**power - 6**power) / (D - 2)
+    return float(scale * (110**power - 6**power) / (D - 2))
 
 
 def first_stage_stiffness_3d(
@@ -173,7 +173,7 @@ def first_stage_stiffness_3d(
     scale *= p.a_c ** (0.35 - exponent_of_area * D)
     limits = 6 ** ((exponent_of_area * D - 0.35) / (D - 1)) - 1
     below = (17 * D - 14) * math.pi ** (0.075 * D + 0.2)
-    return scale * limits / (below * math.log(p.gamma) ** 0.075)
+    return float(scale * limits / (below * math.log(p.gamma) ** 0.075))
 
 
 def second_stage_stiffness_3d(p: PrintedInputs) -> float:
@@ -183,4 +183,4 @@ def second_stage_stiffness_3d(p: PrintedInputs) -> float:
     scale *= p.a_l ** (0.5 * D) * (p.phi * p.k_mu) ** 0.528
     scale *= math.pi ** (0.556 - 0.264 * D) * p.a_c ** (-0.236 * D - 0.028)
     power = (0.236 * D + 0.028) / (D - 1)
-    return scale * (110**power - 6**power) / (D - 2)
+    return float(scale * (110**power - 6**power) / (D - 2))

@@ -81,7 +81,7 @@ def tangential_stiffness(
     # Normal: slope / 1.5 * 2 E sqrt(a/g); tangential: 8 G' sqrt(a/pi).
     per_area = math.sqrt(model.topography.shape / math.pi) * 1.5 / elastic.slope
     part = sums.stiffness[REGIMES.index(Regime.ELASTIC)]
-    share = 1.0
+    share: FloatArray | float = 1.0
     if tangential_load:
         share = sticking_share(tangential_load, sums.load.sum(axis=0), friction)
     return np.asarray(hertz * per_area * part * share)

@@ -14,7 +14,9 @@ from jointbench.analysis.contact.models import (
     PLASTIC_SURFACE,
     PROFILE,
     SURFACE,
+    AsperityLaw,
     ContactModel,
+    FullyPlastic,
     Interaction,
     PowerLaw,
     bears_nothing,
@@ -88,10 +90,15 @@ def with_term(model: ContactModel, term: Term, *, present: bool) -> ContactModel
 def _with_third_dimension(model: ContactModel, *, present: bool) -> ContactModel:
     """Return `model` on the other kind of topography, with its full plasticity."""
     flow = PLASTIC_SURFACE if present else PLASTIC_PROFILE
-    swap = {
-        field: flow
-        for field in ("first", "second", "plastic")
-        if not isinstance(law := getattr(model, field), PowerLaw)
-        and not bears_nothing(law)
-    }
-    return replace(model, topography=SURFACE if present else PROFILE, **swap)
+
+    def moved(law: AsperityLaw) -> AsperityLaw:
+        flows = isinstance(law, FullyPlastic) and not bears_nothing(law)
+        return flow if flows else law
+
+    return replace(
+        model,
+        topography=SURFACE if present else PROFILE,
+        first=moved(model.first),
+        second=moved(model.second),
+        plastic=ABSENT if bears_nothing(model.plastic) else flow,
+    )
