@@ -260,7 +260,7 @@ def printed_warnings(
 
     usual = stiffness(right)
     lines = [
-        f"as printed: {_CHOICES[f.name]}; this alone makes K "
+        f"{name} as printed: {_CHOICES[f.name]}; this alone makes K "
         f"{_size(stiffness(replace(right, **{f.name: getattr(wrong, f.name)})), usual)}"
         for f in fields(right)
         if f.name in _CHOICES and getattr(right, f.name) != getattr(wrong, f.name)
@@ -270,7 +270,7 @@ def printed_warnings(
         name, material=material, largest_area=float(sums.largest_area), **state
     )
     lines += [
-        f"as printed: eq. ({t.equation}), {t.quantity}: {t.fault}; "
+        f"{name} as printed: eq. ({t.equation}), {t.quantity}: {t.fault}; "
         f"{t.factor:.4g} times the same laws summed right"
         for t in terms
         if t.fault
