@@ -9,11 +9,8 @@ from jointbench.acquisition.errors import BadData
 from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.material import PRESSURE_RANGE, ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, contact_model
-from jointbench.analysis.contact.sums import (
-    JointSums,
-    joint_sums,
-    solve_largest_area,
-)
+from jointbench.analysis.contact.solve import solve_largest_area
+from jointbench.analysis.contact.sums import JointSums, joint_sums
 
 # From a single atom's grip to a mountain's weight [N].
 _LOAD_RANGE = (1e-9, 1e12)

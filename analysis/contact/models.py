@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cache
 from types import MappingProxyType
 
 import numpy as np
@@ -311,7 +312,13 @@ def interaction_share(model: ContactModel) -> float:
         return 1.0
     if model.interaction is Interaction.AS_PRINTED:
         return PRINTED_SHARE
-    cubic = 16 / (9 * model.topography.shape)
+    return _balanced_share(model.topography.shape)
+
+
+@cache
+def _balanced_share(shape: float) -> float:
+    """Return the root of (16/(9 g)) x^3 = (1 - x)^2 between 0 and 1."""
+    cubic = 16 / (9 * shape)
     share = 1.0
     for _ in range(50):  # Newton on a rising, convex-at-the-root function
         value = cubic * share**3 - (1 - share) ** 2

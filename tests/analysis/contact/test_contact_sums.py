@@ -17,11 +17,8 @@ from jointbench.analysis.contact.asperity import (
 )
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import CONTACT_MODELS, contact_model
-from jointbench.analysis.contact.sums import (
-    joint_sums,
-    power_integral,
-    solve_largest_area,
-)
+from jointbench.analysis.contact.solve import solve_largest_area
+from jointbench.analysis.contact.sums import joint_sums, power_integral
 
 STEEL = ContactMaterial(115e9, 2.3e9, 0.29, friction_factor=0.93)
 
