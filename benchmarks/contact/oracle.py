@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Elastic rough contact by boundary elements: the table that judges the sum of contacts.
+"""Elastic rough contact by boundary elements: a table to judge the sum of contacts.
 
 Needs the extra `oracle` (tamaas). Periodic self-affine maps, rigid against an elastic
 half-space; beside each load the same summits as independent Hertz contacts, which is

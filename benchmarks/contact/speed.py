@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A million joints by closed form, beside plain quadrature of the same laws, one core.
 
-    OMP_NUM_THREADS=1 python benchmarks/contact/speed.py
+OMP_NUM_THREADS=1 python benchmarks/contact/speed.py
 """
 
 import math
@@ -90,7 +90,9 @@ def main() -> None:
     found = [plain(dimension[i], roughness[i], preload[i]) for i in range(FEW)]
     by_quadrature = (time.perf_counter() - begin) / FEW
     apart = np.array(found) / np.stack([area[:FEW], stiffness[:FEW]], axis=1) - 1
-    print(f"closed form: {closed * MANY:.2f} s for {MANY} joints, {closed * 1e6:.2f} us")
+    print(
+        f"closed form: {closed * MANY:.2f} s for {MANY} joints, {closed * 1e6:.2f} us"
+    )
     print(f"quadrature:  {by_quadrature * 1e3:.2f} ms a joint, {FEW} joints")
     print(f"ratio: {by_quadrature / closed:.0f}")
     print(f"largest difference of a_l and K: {np.abs(apart).max():.1e}")
