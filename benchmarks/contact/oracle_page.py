@@ -204,7 +204,7 @@ TAIL = """
   contact changes the closed form's K by up to 4^(q - 1/2), 1.15 at D = 2.2 and 1.41 at
   D = 2.5.
 - **Interaction at equal load.** By dp/d(gap) the oracle is stiffer than the same
-  summits alone, {whole} times, because its contacts are more and larger in area, {area} times:
+  summits alone, {whole} times, because its contacts cover more, {area} times:
   the sign of "K rises at equal load" is right for this K. Summed contact by contact it
   is {local} times: about nothing at light load, softer at higher. The closed form's
   elastic sum gives {ours}: **it softens, and that disagrees with the oracle's
