@@ -158,7 +158,7 @@ def explanations() -> list[Explanation]:
         Explanation(
             "the preload is shared by spots as long as a profile, 2 mm",
             tuple(spots * k for k in alone),
-            f"{spots:.0f} spots of {PRELOAD / spots:.2g} N: K ~ P^{power:.3f}, no change",
+            f"{spots:.0f} spots of {PRELOAD / spots:.2g} N: K ~ P^{power:.3f}",
         ),
         Explanation(
             "one such spot bears the joint alone",
