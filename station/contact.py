@@ -6,9 +6,14 @@ from dataclasses import dataclass, replace
 from functools import reduce
 from pathlib import Path
 
+import numpy as np
+
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.units import parse_value
+from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.curve import require_surface
 from jointbench.analysis.contact.damping import DampingChoice
+from jointbench.analysis.contact.inverse import preload_of
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, Mode
 from jointbench.analysis.contact.predict import (
@@ -72,8 +77,28 @@ def predict_request(
             nominal_area=request.nominal_area,
         )
         for model in request.models
-        for preload in request.preloads
+        for preload in request.preloads or (_reaching(request, model, surface),)
     )
+
+
+def _reaching(
+    request: ContactRequest, model: ContactModel, surface: ContactSurface
+) -> Preload:
+    """Return the preload that gives a model the stiffness or real area asked for."""
+    fractal = FractalSurface(
+        np.array(surface.dimension_for(model)),
+        np.array(surface.roughness),
+        np.array(request.material.hardness),
+    )
+    require_surface(model, fractal)
+    value = preload_of(
+        model,
+        fractal,
+        request.material,
+        real_area=request.real_area,
+        stiffness=request.stiffness,
+    )
+    return Preload(float(value), 0.0)
 
 
 def predict_point(
@@ -167,7 +192,8 @@ def swept(
     bare = replace(request, hardness_sd=0.0, friction_factor_sd=0.0)
     if name == "load":
         return replace(bare, preloads=(Preload(value, 0.0),)), plain
-    bare = replace(bare, preloads=(Preload(bare.preloads[0].value, 0.0),))
+    if bare.preloads:
+        bare = replace(bare, preloads=(Preload(bare.preloads[0].value, 0.0),))
     if name == "dimension":
         return bare, replace(plain, dimension=value)
     return bare, replace(plain, roughness=value)

@@ -5,6 +5,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from jointbench.acquisition.errors import UnitError, UsageError
 from jointbench.acquisition.units import STANDARD_GRAVITY, parse_value
@@ -18,6 +19,7 @@ from jointbench.analysis.contact.models import ContactModel, Mode, contact_model
 from jointbench.analysis.contact.preload import Preload, preload_from_torque
 from jointbench.analysis.contact.terms import Term, with_term
 
+DEFAULT_MODEL = "ke_3d_modified"
 _HARDNESS_NUMBER = re.compile(r"\s*(\d+\.?\d*)\s*(HB|HBW|HV)\s*", re.IGNORECASE)
 _SWEEPS = {"load": "force", "dimension": "", "roughness": "length"}
 _MOST_POINTS = 400
@@ -51,6 +53,8 @@ class ContactRequest:
         tangential_load: [N].
         friction: coefficient of friction [-].
         nominal_area: [m^2], or None.
+        stiffness: normal stiffness to reach [N/m], in place of preloads, or None.
+        real_area: real area to reach [m^2], in place of preloads, or None.
     """
 
     models: tuple[ContactModel, ...]
@@ -62,6 +66,98 @@ class ContactRequest:
     tangential_load: float = 0.0
     friction: float = 0.3
     nominal_area: float | None = None
+    stiffness: float | None = None
+    real_area: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ContactOptions:
+    """The options of the command line, by name, as they were typed."""
+
+    modulus: str
+    hardness: str
+    load: list[str] | None
+    torque: list[str] | None
+    stiffness: str | None
+    real_area: float | None
+    bolt_diameter: str | None
+    bolts: int
+    nut_factor: float
+    nut_factor_sd: float
+    dimension: float | None
+    dimension_sd: float
+    roughness: str | None
+    roughness_sd: str
+    surface: list[Path] | None
+    columns: str | None
+    poisson: float
+    yield_strength: str | None
+    hardness_sd: str
+    friction_factor: float
+    friction_factor_sd: float
+    friction: float
+    tangential_load: str
+    nominal_area: float | None
+    model: list[str] | None
+    mode: str
+    without: str | None
+    mass: str | None
+    frequency: str | None
+    loss_form: str
+    loss_convention: str
+    sweep: str | None
+    plot: Path | None
+    json: str | None
+    debug: bool
+
+
+def parse_request(given: ContactOptions) -> ContactRequest:
+    """Turn options into SI quantities, and refuse what makes no sense.
+
+    Args:
+        given: as typed.
+
+    Raises:
+        UsageError: options that exclude each other or name nothing known.
+        BadData: a number no joint can have, or without its unit.
+    """
+    hard = parse_hardness(given.hardness)
+    return ContactRequest(
+        models=parse_models(given.model or [DEFAULT_MODEL], given.mode, given.without),
+        material=_material(given, hard),
+        preloads=parse_preloads(
+            given.load or [],
+            given.torque or [],
+            diameter=given.bolt_diameter,
+            bolts=given.bolts,
+            nut_factor=given.nut_factor,
+            nut_factor_sd=given.nut_factor_sd,
+            targets=(given.stiffness is not None) + (given.real_area is not None),
+        ),
+        hardness_sd=hard * parse_value(given.hardness_sd, "ratio"),
+        friction_factor_sd=given.friction_factor_sd,
+        damping=parse_damping(
+            given.mass, given.frequency, given.loss_form, given.loss_convention
+        ),
+        tangential_load=parse_value(given.tangential_load, "force"),
+        friction=given.friction,
+        nominal_area=given.nominal_area,
+        stiffness=None
+        if given.stiffness is None
+        else parse_value(given.stiffness, "stiffness"),
+        real_area=given.real_area,
+    )
+
+
+def _material(given: ContactOptions, hardness: float) -> ContactMaterial:
+    strength = given.yield_strength
+    return ContactMaterial(
+        effective_modulus=parse_value(given.modulus, "pressure"),
+        hardness=hardness,
+        poisson=given.poisson,
+        yield_strength=None if strength is None else parse_value(strength, "pressure"),
+        friction_factor=given.friction_factor,
+    )
 
 
 def parse_hardness(text: str) -> float:
@@ -122,8 +218,9 @@ def parse_preloads(
     bolts: int,
     nut_factor: float,
     nut_factor_sd: float,
+    targets: int = 0,
 ) -> tuple[Preload, ...]:
-    """Return preloads from loads or from torques on bolts [N].
+    """Return preloads from loads or from torques on bolts [N]; none for targets.
 
     Args:
         loads: with unit; or
@@ -132,12 +229,18 @@ def parse_preloads(
         bolts: how many carry the joint.
         nut_factor: K in F = T/(K d) [-].
         nut_factor_sd: how well it is known [-].
+        targets: how many of stiffness and real area are given in their place.
 
     Raises:
-        UsageError: neither is given, or both, or torques without a diameter.
+        UsageError: not one way is given, or torques without a diameter.
     """
-    if bool(loads) == bool(torques):
-        raise UsageError("give --load or --torque, one of them; either may be repeated")
+    if bool(loads) + bool(torques) + targets != 1:
+        raise UsageError(
+            "give one of --load and --torque, which may be repeated, --stiffness and "
+            "--real-area"
+        )
+    if targets:
+        return ()
     if loads:
         return tuple(Preload(parse_value(text, "force"), 0.0) for text in loads)
     if diameter is None:

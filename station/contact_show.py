@@ -3,7 +3,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from jointbench.acquisition.errors import BadData
 from jointbench.acquisition.session import software_version
@@ -16,7 +15,12 @@ from jointbench.station.contact import (
     surface_of,
     swept,
 )
-from jointbench.station.contact_request import ContactRequest, Sweep
+from jointbench.station.contact_request import (
+    ContactOptions,
+    ContactRequest,
+    Sweep,
+    parse_sweep,
+)
 from jointbench.station.figures import PALETTE, axis, figure, line
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
@@ -57,39 +61,31 @@ class SweepRow:
 
 
 def run_contact(
-    request: ContactRequest,
-    *,
-    dimension: float | None,
-    roughness: str | None,
-    dimension_sd: float,
-    roughness_sd: str,
-    surfaces: Sequence[Path],
-    columns: str | None,
-    sweep: Sweep | None,
-    page: Path | None,
-    json_target: str | None,
+    request: ContactRequest, given: ContactOptions
 ) -> tuple[ContactPoint, ...]:
     """Predict every model at every preload, along a sweep too, and show them."""
-    check_outputs(surfaces, [json_target, page])
+    faces = given.surface or []
+    check_outputs(faces, [given.json, given.plot])
+    sweep = None if given.sweep is None else parse_sweep(given.sweep)
     surface = surface_of(
-        dimension,
-        roughness,
-        surfaces,
-        columns,
-        dimension_sd=dimension_sd,
-        roughness_sd=roughness_sd,
+        given.dimension,
+        given.roughness,
+        faces,
+        given.columns,
+        dimension_sd=given.dimension_sd,
+        roughness_sd=given.roughness_sd,
     )
     points = predict_request(request, surface)
     rows = () if sweep is None else run_sweep(request, surface, sweep)
-    _show(points, surface, request, json_target)
+    _show(points, surface, request, given.json)
     if sweep is not None:
-        _show_sweep(sweep, rows, json_target)
-    if page is not None:
-        write_report(contact_page(points, surface, sweep, rows), page)
+        _show_sweep(sweep, rows, given.json)
+    if given.plot is not None:
+        write_report(contact_page(points, surface, sweep, rows), given.plot)
     content = contact_json(points, surface)
     if sweep is not None:
         content["sweep"] = sweep_json(sweep, rows)
-    write_json(json_target, content)
+    write_json(given.json, content)
     return points
 
 

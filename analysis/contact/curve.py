@@ -61,7 +61,7 @@ def contact_curve(
         gamma,
         None if friction is None else np.asarray(friction, dtype=float),
     )
-    _require_range(model, surface)
+    require_surface(model, surface)
     _require_within("preload", force, _LOAD_RANGE, "N", "4000")
     with np.errstate(all="ignore"):  # what overflows is refused just below
         log_largest = solve_largest_area(model, surface, material, force)
@@ -70,8 +70,16 @@ def contact_curve(
     return sums
 
 
-def _require_range(model: ContactModel, surface: FractalSurface) -> None:
-    """Raise unless the surface is one that the model's topography can describe."""
+def require_surface(model: ContactModel, surface: FractalSurface) -> None:
+    """Raise unless the surface is one that the model's topography can describe.
+
+    Args:
+        model: its topography sets the range of dimensions.
+        surface: of one or many joints.
+
+    Raises:
+        BadData: dimension, roughness, hardness or gamma is none of a real surface.
+    """
     low = model.topography.lowest_dimension
     value = surface.dimension
     bad = ~((value > low) & (value < low + 1))

@@ -204,21 +204,21 @@ TAIL = """
 - **Exponent.** The oracle's K rises a little slower than p. The closed form comes near
   it at D = 2.5 and falls behind at smaller D: there its load is borne by the largest
   contacts, its stiffness by the smallest, and the law K ~ P^(q/p_el) says so.
-- **Level.** The closed form gives {level} of the oracle's K. The main reason is what is
-  summed: K of the papers is the sum of single-contact stiffnesses at their present
+- **Level.** The closed form gives {level} of the oracle's K. The main reason is what
+  is summed: K of the papers is the sum of single-contact stiffnesses at their present
   sizes, the oracle's is the derivative of the load by the mean gap, new contacts
   included. The oracle's own contacts, summed as the papers do (2 E* sqrt(a/pi) each),
-  give {own} of its own K. The rest is the lower cut-off: four times as large a smallest
-  contact changes the closed form's K by up to 4^(q - 1/2), 1.15 at D = 2.2 and 1.41 at
+  give {own} of its own K. The rest is the lower cut-off: a smallest contact four times
+  as large changes the closed form's K by up to 4^(q - 1/2), 1.15 at D = 2.2 and 1.41 at
   D = 2.5.
 - **Interaction at equal load.** By dp/d(gap) the oracle is stiffer than the same
-  summits alone, {whole} times, because its contacts cover more, {area} times:
-  the sign of "K rises at equal load" is right for this K. Summed contact by contact it
-  is {local} times: about nothing at light load, softer at higher. The closed form's
+  summits alone, {whole} times, for its contacts cover more, {area} times:
+  the sign of "K rises at equal load" is right for this K. Summed contact by contact
+  it is {local} times: about nothing at light load, softer at higher. The closed form's
   elastic sum gives {ours}: **it softens, and that disagrees with the oracle's
   dp/d(gap).** Its law takes from each contact (x^(3/2) of the stiffness) but gives back
-  only a larger a_l, no new contacts. What `ke_3d_modified` gains over `ke_3d` in a joint
-  that yields ({gains} times at D = 2.4, 2.54, 2.7; E* = 29.3 GPa, H = 1.5 GPa,
+  only a larger a_l, no new contacts. What `ke_3d_modified` gains over `ke_3d` where
+  contacts yield ({gains} times at D = 2.4, 2.54, 2.7; E* = 29.3 GPa, H = 1.5 GPa,
   G = 0.1 nm, 1 kN) comes from the elastic-plastic contacts, whose law has no
   interaction and whose number grows with a_l: the oracle's sign, for another reason.
 - A substrate in series, as the papers describe it, would soften at equal load; the

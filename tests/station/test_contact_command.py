@@ -81,6 +81,17 @@ def test_a_sweep_is_tabulated_and_drawn(monkeypatch, tmp_path):
     assert "stiffness-sweep" in page.read_text(encoding="utf-8")
 
 
+def test_the_preload_for_a_stiffness_or_a_real_area_is_found(monkeypatch, tmp_path):
+    """The way back, by each model."""
+    there = result(monkeypatch, tmp_path, "--load=1 kN")["models"][0]
+    for option in (
+        f"--stiffness={there['normal_stiffness']!r} N/m",
+        f"--real-area={there['real_area']!r}",
+    ):
+        back = result(monkeypatch, tmp_path, option)["models"][0]
+        assert math.isclose(back["preload"], 1e3, rel_tol=1e-9)
+
+
 def test_a_term_can_be_left_out(monkeypatch, tmp_path):
     """Interaction stiffens at equal load, so without it there is less."""
     options = ("--load=1 kN", "--model=ke_3d_modified")
@@ -107,7 +118,10 @@ def test_brinell_numbers_need_their_name(monkeypatch, tmp_path, capsys):
         (["--load=1 kN", "--roughness=-1 nm"], 3, "roughness"),
         (["--load=0 N"], 3, "preload is 0"),
         (["--load=1"], 3, "no unit"),
-        ([], 2, "--load or --torque"),
+        ([], 2, "--load and --torque"),
+        (["--stiffness=1 N/m", "--real-area=1"], 2, "one of"),
+        (["--stiffness=0 N/m"], 3, "stiffness"),
+        (["--stiffness=1e9 N/m", "--dimension=2.5", "--roughness=2 m"], 3, "roughness"),
         (["--torque=20 N m"], 2, "--bolt-diameter"),
         (["--load=1 kN", "--mode=printed"], 2, "as-printed"),
         (["--load=1 kN", "--without=love"], 2, "interaction"),
