@@ -88,8 +88,8 @@ class PowerLaw:
     Attributes:
         coefficient: of the load [-].
         exponent: of the interference ratio [-].
-        printed_slope: coefficient of the stiffness in P_c / delta_c [-], where a paper
-            prints one that is not the derivative of its load; None: the derivative.
+        printed_slope: of the stiffness in P_c / delta_c [-], where a paper prints one
+            that is not the derivative of its load.
     """
 
     coefficient: float
@@ -106,10 +106,7 @@ class PowerLaw:
 
 @dataclass(frozen=True, slots=True)
 class FullyPlastic:
-    """Load of an asperity as P = pressure_factor * hardness * a; no stiffness.
-
-    A pressure factor of 0 stands for contacts that bear nothing.
-    """
+    """Load of an asperity as P = pressure_factor * hardness * a; 0 bears nothing."""
 
     pressure_factor: float
 
@@ -250,8 +247,7 @@ def contact_model(name: str, mode: str = Mode.CORRECTED) -> ContactModel:
             with the laws and factors that the papers chose.
 
     Returns:
-        The model. What the papers' joint sums make of the same laws, misprints
-        included, is in `printed_2023`.
+        The model; the papers' own joint sums are in `printed_2023`.
 
     Raises:
         UsageError: there is no such model, or no such mode.
@@ -333,8 +329,8 @@ def regime_laws(model: ContactModel) -> tuple[AsperityLaw, ...]:
         model: its four laws and its interaction term.
 
     Returns:
-        From small contacts to large; interaction, which makes an elastic contact bear
-        x^(3/2) of what its geometric interference would, is part of the last one.
+        From small contacts to large; with interaction an elastic contact bears
+        x^(3/2) of what its geometric interference would.
     """
     elastic = model.elastic
     if isinstance(elastic, PowerLaw) and model.interaction is Interaction.AS_PRINTED:

@@ -150,13 +150,32 @@ def predict_contact(
     verdict, reasons = _judge(sums, nominal_area)
     if tangential_load and float(tangential) == 0 < float(sums.stiffness[-1]):
         reasons.append("the tangential load exceeds friction times preload: it slides")
-    state = ContactState(
+    state = _state(
+        model, fractal, material, sums, tangential=float(tangential), preload=preload
+    )
+    state = replace(state, verdict=verdict, reasons=tuple(reasons))
+    if model.mode is Mode.AS_PRINTED:
+        state = _to_the_letter(state, material, **surface)
+    return _with_damping(state, model, fractal, material, damping)
+
+
+def _state(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    sums: JointSums,
+    *,
+    tangential: float,
+    preload: float,
+) -> ContactState:
+    """Return the sums of one joint as a state, not judged, without damping."""
+    return ContactState(
         model=model.name,
         mode=model.mode,
         preload=float(preload),
         normal_stiffness=float(sums.stiffness.sum()),
-        approach_stiffness=float(approach_stiffness(model, fractal, material, sums)),
-        tangential_stiffness=float(tangential),
+        approach_stiffness=float(approach_stiffness(model, surface, material, sums)),
+        tangential_stiffness=tangential,
         loss_factor=None,
         damping=None,
         largest_area=float(sums.largest_area),
@@ -164,12 +183,9 @@ def predict_contact(
         real_area=float(sums.real_area),
         load_parts=dict(zip(REGIMES, map(float, sums.load), strict=True)),
         stiffness_parts=dict(zip(REGIMES, map(float, sums.stiffness), strict=True)),
-        verdict=verdict,
-        reasons=tuple(reasons),
+        verdict=ContactVerdict.USABLE,
+        reasons=(),
     )
-    if model.mode is Mode.AS_PRINTED:
-        state = _to_the_letter(state, material, **surface)
-    return _with_damping(state, model, fractal, material, damping)
 
 
 def _to_the_letter(

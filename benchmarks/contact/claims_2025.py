@@ -178,8 +178,7 @@ def fits() -> list[Claim]:
 
 def figure_9() -> list[Claim]:
     """Return the errors of three models against the test, and what they ask for."""
-    errors = np.array([0.62966, 0.2521, 0.1597])
-    shares = 1 - errors
+    shares = 1 - np.array([0.62966, 0.2521, 0.1597])
     rows = []
     for hard in rig.HARDNESS:
         values = [

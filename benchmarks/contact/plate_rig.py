@@ -94,12 +94,45 @@ def mean_roughness(*, lag: float = 1.0, height: float = 1.0, ln: bool = False) -
 
 def explanations() -> list[Explanation]:
     """Return every explanation that changes K(P), the nearest first; none is tuned."""
+    found = [*in_series(), *of_the_surface(), *of_the_load()]
+    return sorted(found, key=lambda one: one.distance)
+
+
+def in_series() -> list[Explanation]:
+    """Return what may yield beside the contact."""
     contact = predicted(ROUGHNESS)
-    spots = LENGTH * WIDTH / SPOT**2
-    alone = predicted(ROUGHNESS, preload=PRELOAD / spots)
-    power = math.log(contact[1] / alone[1]) / math.log(spots)
     bending = 48 * YOUNG * WIDTH * HEIGHT**3 / 12 / LENGTH**3
-    found = [
+    return [
+        Explanation(
+            "the plate bends, in series",
+            tuple(1 / (1 / k + 1 / bending) for k in contact),
+            f"48 E I/L^3 = {bending:.2g} N/m, supported at its ends; where the bolts "
+            "sit is not printed",
+        ),
+        Explanation(
+            "natural logarithms, and the plate bends in series",
+            tuple(
+                1 / (1 / k + 1 / bending) for k in predicted(mean_roughness(ln=True))
+            ),
+            "both of the above",
+        ),
+        Explanation(
+            "four M16 bolts, in series",
+            tuple(1 / (1 / k + 1 / BOLTS) for k in contact),
+            f"E A/l = {BOLTS:.2g} N/m, 0.1 m long; while the joint stays closed they "
+            "act beside it, not in series",
+        ),
+        Explanation(
+            "the plate is compressed, in series",
+            tuple(1 / (1 / k + HEIGHT / (YOUNG * LENGTH * WIDTH)) for k in contact),
+            "E A/h; nothing beside bending",
+        ),
+    ]
+
+
+def of_the_surface() -> list[Explanation]:
+    """Return other readings of the five fits and of G."""
+    return [
         Explanation(
             "the five fits are natural logarithms",
             predicted(mean_roughness(ln=True)),
@@ -127,34 +160,20 @@ def explanations() -> list[Explanation]:
             "makes G smaller, K larger: the wrong way",
         ),
         Explanation(
-            "the plate bends, in series",
-            tuple(1 / (1 / k + 1 / bending) for k in contact),
-            f"48 E I/L^3 = {bending:.2g} N/m, supported at its ends; where the bolts "
-            "sit is not printed",
-        ),
-        Explanation(
-            "natural logarithms, and the plate bends in series",
-            tuple(
-                1 / (1 / k + 1 / bending) for k in predicted(mean_roughness(ln=True))
-            ),
-            "both of the above",
-        ),
-        Explanation(
-            "four M16 bolts, in series",
-            tuple(1 / (1 / k + 1 / BOLTS) for k in contact),
-            f"E A/l = {BOLTS:.2g} N/m, 0.1 m long; while the joint stays closed they "
-            "act beside it, not in series",
-        ),
-        Explanation(
-            "the plate is compressed, in series",
-            tuple(1 / (1 / k + HEIGHT / (YOUNG * LENGTH * WIDTH)) for k in contact),
-            "E A/h; nothing beside bending",
-        ),
-        Explanation(
             "G is printed in mm",
             predicted(1e-3 * ROUGHNESS),
             "the wrong way, as any unit below a metre is",
         ),
+    ]
+
+
+def of_the_load() -> list[Explanation]:
+    """Return other readings of what bears the preload."""
+    contact = predicted(ROUGHNESS)
+    spots = LENGTH * WIDTH / SPOT**2
+    alone = predicted(ROUGHNESS, preload=PRELOAD / spots)
+    power = math.log(contact[1] / alone[1]) / math.log(spots)
+    return [
         Explanation(
             "the preload is shared by spots as long as a profile, 2 mm",
             tuple(spots * k for k in alone),
@@ -166,7 +185,6 @@ def explanations() -> list[Explanation]:
             "no joint, but what one profile's K would be",
         ),
     ]
-    return sorted(found, key=lambda one: one.distance)
 
 
 def needed_preload() -> tuple[float, ...]:
