@@ -21,17 +21,20 @@ _MISFIT_LINES = 41
 _BEST = 1e-7
 
 
-def line_noise(response: ComplexArray, scatter: FloatArray | None) -> FloatArray:
+def line_noise(
+    rough: ComplexArray, scatter: FloatArray | None, response: ComplexArray
+) -> FloatArray:
     """Return the noise variance of every line.
 
     Args:
-        response: FRF, shape (n_frf, n_lines).
+        rough: FRF, or better what a fit left over of it, shape (n_frf, n_lines).
         scatter: variance from the scatter between hits, same shape, or None.
+        response: FRF, same shape: no line is known better than a tiny share of it.
 
     Returns:
         E|error|^2, same shape, positive everywhere.
     """
-    noise = roughness(response) if scatter is None else scatter
+    noise = roughness(rough) if scatter is None else scatter
     floor = (_BEST**2) * local_level(response)
     smallest = float(floor.max()) * 1e-12 or 1.0
     return np.asarray(np.maximum(noise, np.maximum(floor, smallest)))

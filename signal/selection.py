@@ -74,13 +74,18 @@ def fit_modes(
     Returns:
         The modes, possibly none.
     """
-    noise, level = line_noise(lines.response, scatter), local_level(lines.response)
+    noise = line_noise(lines.response, scatter, lines.response)
+    level = local_level(lines.response)
     variance = noise + _FIRST_MODEL_ERROR**2 * level
     chosen = _needed(lines, candidates, noise, variance)
     steps = _STEPS if refine else 0
     poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
     fit = fit_residues(lines, poles.pole, variance)
-    error = model_error(lines.response - fit.synthesis, noise, lines.response)
+    residual = lines.response - fit.synthesis
+    if scatter is None:
+        # The response itself is rough where it resonates; what a fit leaves is not.
+        noise = line_noise(residual, None, lines.response)
+    error = model_error(residual, noise, lines.response)
     variance = noise + error**2 * level
     kept = _needed(lines, poles.pole, noise, variance)
     while True:
