@@ -91,7 +91,9 @@ def correlate_responses(
     scaled = responses / scale[:, None]
     references = _references(scaled)
     blocks = [
-        _correlate(scaled[:, i * length : (i + 1) * length + n_lags], references, n_lags)
+        _correlate(
+            scaled[:, i * length : (i + 1) * length + n_lags], references, n_lags
+        )
         for i in range(n_blocks)
     ]
     return Correlations(rate, np.array(blocks), scale, references)
@@ -123,8 +125,8 @@ def _require_long(
         needed = (n_blocks * _LEAST_SPANS + 1) * n_lags / rate
         has = recording.samples.shape[1] / recording.sample_rate
         raise BadData(
-            f"recording {recording.name!r} lasts {has:.3g} s, {needed:.3g} s are needed "
-            "to tell modes and their scatter from responses alone; record longer"
+            f"recording {recording.name!r} lasts {has:.3g} s, {needed:.3g} s are "
+            "needed to tell modes and their scatter from responses alone; record longer"
         )
 
 

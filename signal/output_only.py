@@ -11,11 +11,9 @@ correlations, however it is correlated over lags, channels and modes. A pole tha
 wanders from order to order or from block to block is no mode.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.arrays import (
     BoolArray,
@@ -29,26 +27,17 @@ from jointbench.acquisition.errors import NoModeFound, UsageError
 from jointbench.acquisition.records import Provenance, Recording, response_rows, step
 from jointbench.signal.correlations import Correlations, correlate_responses
 from jointbench.signal.harmonics import sine_like
-from jointbench.signal.lscf import OrderPoles
+from jointbench.signal.pole_jackknife import correlation_poles, judge_poles
 from jointbench.signal.stabilisation import (
-    Candidate,
     Stabilisation,
     StabilityLimits,
     candidates,
     stabilise,
 )
-from jointbench.signal.subspace import most_states, subspace_poles
+from jointbench.signal.subspace import most_states
 
 # The band reaches up to this share of the sample rate unless told.
 _HIGHEST = 1.0 / 2.56
-# A pole is looked for at this many of the orders it was stable at.
-_ORDERS_AVERAGED = 5
-# A mode's damping is known to better than this share of itself, and its frequency to
-# better than this share of its half-power half-width.
-_VAGUE = 0.4
-_ADRIFT = 0.4
-# Beyond this many half-power half-widths another pole has been met.
-_LEASH = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +54,8 @@ class OutputOnlySettings:
     """
 
     band: tuple[float, float] | None = None
-    highest_order: int = 60
-    rows: int = 80
+    highest_order: int = 40
+    rows: int = 50
     blocks: int = 24
     stability: StabilityLimits = field(
         default_factory=lambda: StabilityLimits(
@@ -162,16 +151,18 @@ def identify_output_only(
     )
     highest = min(settings.highest_order, most_states(data.mean))
     orders = tuple(range(2, highest + 1, 2))
-    table = stabilise(_poles(data, data.mean, orders, band), settings.stability)
+    table = stabilise(
+        correlation_poles(data, data.mean, orders, band), settings.stability
+    )
     found = candidates(table, settings.stability)
-    modes, poles, sd = _judged(data, found, table, band)
+    modes = judge_poles(data, found, table, band)
     if not modes:
         raise NoModeFound(
             f"none of {len(found)} stable poles between {band[0]:g} and {band[1]:g} Hz "
             f"keeps still over {settings.blocks} blocks of the record; record longer, "
             "or give the --band in which the structure answers"
         )
-    pole = np.array([p.pole for p in poles])
+    pole, sd = np.array([m.pole for m in modes]), np.array([m.sd for m in modes])
     done = step(
         "identify_output_only",
         band=f"{band[0]:g} to {band[1]:g} Hz",
@@ -186,8 +177,8 @@ def identify_output_only(
         frequency_sd=sd[:, 0],
         damping_ratio=-pole.real / np.abs(pole),
         damping_ratio_sd=sd[:, 1],
-        shapes=np.array([p.shape for p in poles]),
-        stable_orders=np.array([c.stable_orders for c in modes], np.int64),
+        shapes=np.array([m.shape for m in modes]),
+        stable_orders=np.array([m.candidate.stable_orders for m in modes], np.int64),
         sine_like=sine_like(recording, pole),
         outputs=_labels(recording),
         band=band,
@@ -197,122 +188,7 @@ def identify_output_only(
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Mean:
-    """A pole and its shape, averaged over a few orders."""
-
-    pole: complex
-    shape: ComplexArray
-
-
-def _judged(
-    data: Correlations,
-    found: Sequence[Candidate],
-    table: Stabilisation,
-    band: tuple[float, float],
-) -> tuple[list[Candidate], list[_Mean], FloatArray]:
-    """Jackknife all candidates and keep those that stand still.
-
-    Returns:
-        The modes, their poles, and sd of frequency [Hz] and damping, shape (n, 2).
-    """
-    if not found:
-        return [], [], np.zeros((0, 2))
-    chosen = [_late_orders(c, table) for c in found]
-    orders = tuple(sorted({order for some in chosen for order in some}))
-    whole = _means(_poles(data, data.mean, orders, band), found, chosen)
-    parts = [
-        _means(_poles(data, data.without(block), orders, band), found, chosen)
-        for block in range(data.blocks.shape[0])
-    ]
-    modes, poles, spread = [], [], []
-    for i, candidate in enumerate(found):
-        mean = whole[i]
-        left_out = [part[i] for part in parts]
-        if mean is None or any(one is None for one in left_out):
-            continue
-        sd = _jackknife([one.pole for one in left_out if one is not None])
-        if _known(mean.pole, sd):
-            modes.append(candidate)
-            poles.append(mean)
-            spread.append(sd)
-    return modes, poles, np.array(spread).reshape(-1, 2)
-
-
-def _poles(
-    data: Correlations,
-    correlation: FloatArray,
-    orders: Sequence[int],
-    band: tuple[float, float],
-) -> tuple[OrderPoles, ...]:
-    return subspace_poles(
-        correlation,
-        orders,
-        sample_rate=data.sample_rate,
-        band=band,
-        scale=data.scale,
-    )
-
-
-def _late_orders(candidate: Candidate, table: Stabilisation) -> tuple[int, ...]:
-    """Return a few of the higher orders at which a candidate was stable."""
-    members = table.order[table.stable & (table.track == candidate.track)]
-    late = members[members.size // 3 :]
-    picked = np.linspace(0, late.size - 1, min(_ORDERS_AVERAGED, late.size))
-    return tuple(int(order) for order in late[np.round(picked).astype(int)])
-
-
-def _means(
-    orders: Sequence[OrderPoles],
-    found: Sequence[Candidate],
-    chosen: Sequence[tuple[int, ...]],
-) -> list[_Mean | None]:
-    by_order = {one.order: one for one in orders}
-    return [
-        _mean_pole(candidate, [by_order[order] for order in some])
-        for candidate, some in zip(found, chosen, strict=True)
-    ]
-
-
-def _mean_pole(candidate: Candidate, orders: Sequence[OrderPoles]) -> _Mean | None:
-    """Take the median of the nearest poles; None where an order lost it."""
-    poles, shapes = [], []
-    for one in orders:
-        if one.pole.size == 0:
-            return None
-        distance = np.abs(one.pole - candidate.pole)
-        nearest = int(np.argmin(distance))
-        if distance[nearest] > _LEASH * abs(candidate.pole.real):
-            return None
-        poles.append(one.pole[nearest])
-        shapes.append(one.shape[nearest])
-    total = np.array(shapes)
-    # Each order's shape has its own phase: the first singular vector is their mean.
-    shape = np.linalg.svd(total, full_matrices=False)[2][0]
-    pole = np.array(poles)
-    middle = complex(np.median(pole.real), np.median(pole.imag))
-    return _Mean(middle, shape / shape[np.argmax(np.abs(shape))])
-
-
-def _jackknife(poles: Sequence[complex]) -> FloatArray:
-    """Return the sd of frequency [Hz] and damping ratio from leave-one-out poles."""
-    pole, count = np.array(poles), len(poles)
-    columns = np.stack((np.abs(pole) / (2.0 * np.pi), -pole.real / np.abs(pole)))
-    away = columns - columns.mean(axis=1, keepdims=True)
-    variance = (count - 1) / count * np.sum(away**2, axis=1)
-    few = scipy.stats.t.ppf(0.975, count - 1) / scipy.stats.norm.ppf(0.975)
-    return np.asarray(np.sqrt(variance) * few)
-
-
-def _known(pole: complex, sd: FloatArray) -> bool:
-    damping = -pole.real / abs(pole)
-    half_width = abs(pole.real) / (2.0 * np.pi)
-    return bool(sd[1] < _VAGUE * damping and sd[0] < _ADRIFT * half_width)
-
-
-def _band(
-    recording: Recording, settings: OutputOnlySettings
-) -> tuple[float, float]:
+def _band(recording: Recording, settings: OutputOnlySettings) -> tuple[float, float]:
     carried = recording.sample_rate * _HIGHEST
     # Below two periods in the span of the lags nothing can be told.
     low, high = settings.band or (carried / settings.rows, carried)

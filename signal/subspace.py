@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.linalg
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.signal.lscf import OrderPoles
 
 
@@ -45,13 +45,13 @@ def subspace_poles(
     upper, lower = observability[:-n_outputs], observability[n_outputs:]
     orthogonal, triangle = scipy.linalg.qr(upper, mode="economic")
     shifted = orthogonal.T @ lower
+    # The inverse of a triangle nests: its leading blocks serve the lower orders.
+    inverse = scipy.linalg.solve_triangular(triangle, np.eye(triangle.shape[0]))
     size = np.ones(n_outputs) if scale is None else scale
     return tuple(
         _order_poles(
             order,
-            scipy.linalg.solve_triangular(
-                triangle[:order, :order], shifted[:order, :order]
-            ),
+            inverse[:order, :order] @ shifted[:order, :order],
             observability[:n_outputs, :order] * size[:, None],
             sample_rate,
             band,
@@ -64,7 +64,7 @@ def most_states(correlation: FloatArray) -> int:
     """Return the largest order that these lags can carry."""
     n_lags, n_outputs, n_references = correlation.shape
     rows = n_lags // 2
-    return min((rows - 1) * n_outputs, rows * n_references)
+    return int(min((rows - 1) * n_outputs, rows * n_references))
 
 
 def _observability(correlation: FloatArray, order: int) -> FloatArray:
@@ -76,12 +76,20 @@ def _observability(correlation: FloatArray, order: int) -> FloatArray:
     hankel = blocks.reshape(rows * n_outputs, rows * n_references)
     # Left vectors only: a symmetric eigenproblem of the smaller side.
     if rows * n_outputs <= rows * n_references:
-        values, vectors = scipy.linalg.eigh(hankel @ hankel.T)
-        leading = vectors[:, ::-1][:, :order]
-        return np.asarray(leading * np.maximum(values[::-1][:order], 0.0) ** 0.25)
-    values, vectors = scipy.linalg.eigh(hankel.T @ hankel)
-    singular = np.sqrt(np.maximum(values[::-1][:order], np.finfo(float).tiny))
-    return np.asarray(hankel @ vectors[:, ::-1][:, :order] / np.sqrt(singular))
+        values, vectors = _leading(hankel @ hankel.T, order)
+        return np.asarray(vectors * np.maximum(values, 0.0) ** 0.25)
+    values, vectors = _leading(hankel.T @ hankel, order)
+    fourth_root = np.maximum(values, np.finfo(float).tiny) ** 0.25
+    return np.asarray(hankel @ vectors / fourth_root)
+
+
+def _leading(square: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+    """Return the largest eigenvalues of a symmetric matrix, largest first."""
+    size = square.shape[0]
+    values, vectors = scipy.linalg.eigh(
+        square, subset_by_index=(size - order, size - 1)
+    )
+    return values[::-1], vectors[:, ::-1]
 
 
 def _order_poles(
@@ -94,7 +102,7 @@ def _order_poles(
     roots, vectors = np.linalg.eig(transition)
     roots = np.asarray(roots, complex)
     safe = np.where(np.abs(roots) > 1e-12, roots, 1e-12)
-    pole: ComplexArray = sample_rate * np.log(safe)
+    pole = np.asarray(sample_rate * np.log(safe), complex)
     frequency = np.abs(pole) / (2.0 * np.pi)
     kept = (pole.imag > 0.0) & (pole.real < 0.0)
     kept &= (frequency >= band[0]) & (frequency <= band[1])
