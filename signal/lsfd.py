@@ -14,7 +14,7 @@ above. Two terms only, as the textbooks have it, let strong modes beyond the ban
 the damping of those within.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,10 +60,46 @@ class LinearFit:
     synthesis: ComplexArray
     significance: FloatArray
 
+    def of_modes(self, n_modes: int) -> "LinearFit":
+        """Return the same fit with only its first poles counted as modes."""
+        return replace(self, significance=self.significance[:n_modes])
+
     def residues(self) -> ComplexArray:
         """Return receptance residues, shape (n_modes, n_frf)."""
         modal = self.coefficients[:, : 2 * self.significance.size]
         return np.asarray((modal[:, ::2] + 1j * modal[:, 1::2]).T)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ResidualTerms:
+    """What lies below and above the band, as seen in it.
+
+    Attributes:
+        lower: of the receptance, lower / s^2 [1/kg]: one over the mass that modes
+            below the band, or a free body, put in; shape (n_frf,).
+        upper: of the receptance [m/N]: the compliance of the modes above, shape
+            (n_frf,).
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+
+
+def residual_terms(lines: Lines, fit: LinearFit) -> ResidualTerms:
+    """Return the lower and upper residual of every FRF.
+
+    Args:
+        lines: what was fitted.
+        fit: of `fit_residues`.
+
+    Returns:
+        The two classical terms; the further powers of s that the fit carries beside
+        them are left out.
+    """
+    terms = fit.coefficients[:, 2 * fit.significance.size :]
+    scale = np.abs(lines.laplace[lines.laplace.size // 2])
+    lower = terms[:, _RESIDUAL_POWERS.index(-2)] * scale**2
+    return ResidualTerms(lower, terms[:, _RESIDUAL_POWERS.index(0)])
 
 
 def measured_width(lines: Lines, pole: ComplexArray) -> FloatArray:
@@ -137,13 +173,21 @@ def unstacked(rows: FloatArray) -> ComplexArray:
     return np.asarray(rows[:half] + 1j * rows[half:])
 
 
-def fit_residues(lines: Lines, pole: ComplexArray, variance: FloatArray) -> LinearFit:
+def fit_residues(
+    lines: Lines,
+    pole: ComplexArray,
+    variance: FloatArray,
+    *,
+    real_modes: bool = False,
+) -> LinearFit:
     """Fit residues and residual terms to every FRF.
 
     Args:
         lines: what is fitted.
         pole: [rad/s], shape (n_modes,).
         variance: E|error|^2 of each line, shape (n_frf, n_lines).
+        real_modes: residues purely imaginary, as those of a proportionally damped
+            structure are: half the unknowns, and a bias where damping is not so.
 
     Returns:
         The fit, its synthesis on the same lines, and the weight of each mode in it.
@@ -199,7 +243,8 @@ def inverses(gram: FloatArray) -> FloatArray:
     Returns:
         Same shape.
     """
-    diagonal = np.sqrt(np.einsum("...ii->...i", gram))
+    # Rounding can leave the square of next to nothing below zero.
+    diagonal = np.sqrt(np.maximum(np.einsum("...ii->...i", gram), 0.0))
     scale = 1.0 / np.where(diagonal > 0.0, diagonal, 1.0)
     outer = scale[..., :, None] * scale[..., None, :]
     return np.asarray(

@@ -28,6 +28,8 @@ _SMALL_STEP = 1e-4
 # A pole that leaves its start by this many half-power half-widths is lost, not refined.
 _LEASH = 1.0
 _LEASH_DAMPING = 10.0
+# A band that begins below this share of its end begins at zero.
+_NEXT_TO_ZERO = 0.1
 # Damping of the step beyond which it is the pole that is wrong, not the step.
 _PATIENCE = 1.0
 _STUCK = 1e6
@@ -62,7 +64,9 @@ class RefinedPoles:
             large; shape (n_modes,).
         converged: False for a pole that ran away and was put back where it started,
             and for all if the steps ran out; shape (n_modes,).
-        linearised: how residues follow.
+        linearised: how residues follow, those of computational poles last.
+        beyond: computational poles where they came to rest [rad/s], shape (n,).
+        residual: what is left of the FRF, shape (n_frf, n_lines).
     """
 
     pole: ComplexArray
@@ -70,6 +74,8 @@ class RefinedPoles:
     inflation: FloatArray
     converged: BoolArray
     linearised: Linearised
+    beyond: ComplexArray
+    residual: ComplexArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,11 +101,13 @@ class _Prior:
     Modes that overlap closely can trade damping for residue at no cost in misfit; only
     the start then tells them apart: it is taken to be right within a half-power
     half-width, beyond which a pole counts as another one. Wherever the lines resolve a
-    pole, that is worth nothing beside them.
+    pole, that is worth nothing beside them. The first `n_modes` are modes, the others
+    computational poles beyond the band.
     """
 
     start: ComplexArray
     weight: FloatArray
+    n_modes: int
 
     def cost(self, pole: ComplexArray) -> float:
         """Return the weighted squared distance from the start."""
@@ -111,6 +119,7 @@ def refine_poles(
     start: ComplexArray,
     variance: FloatArray,
     *,
+    beyond: ComplexArray | None = None,
     doubt: FloatArray | None = None,
     begin: ComplexArray | None = None,
     steps: int = 30,
@@ -121,6 +130,8 @@ def refine_poles(
         lines: what is fitted.
         start: poles that the answer may not leave [rad/s], shape (n_modes,).
         variance: E|error|^2 of each line, shape (n_frf, n_lines).
+        beyond: computational poles outside the band, fitted along wherever they go
+            as long as they stay outside [rad/s], shape (n,), or None.
         doubt: inflation met in an earlier fit, shape (n_modes,): the start weighs that
             much more against lines that were wrong by as much; None for 1.
         begin: where the search begins, if an earlier one came close; None for `start`.
@@ -132,17 +143,44 @@ def refine_poles(
     Source:
         Golub and Pereyra, Inverse Problems 19 (2003) R1; Kaufman, BIT 15 (1975) 49.
     """
-    pole = start.copy() if begin is None else begin.copy()
-    free, damping = np.ones(start.size, bool), 1e-3
+    n_modes = start.size
+    extra = np.empty(0, complex) if beyond is None else beyond
+    reach = _LEASH * measured_width(lines, start)
+    reach = np.append(reach, np.full(extra.size, np.ptp(lines.laplace.imag)))
+    weight = (1.0 / reach) ** 2
+    weight[:n_modes] *= 1.0 if doubt is None else doubt
+    prior = _Prior(np.append(start, extra), weight, n_modes)
+    pole = np.append(start if begin is None else begin, extra)
+    pole, here, converged = _search(lines, prior, pole, variance, steps)
+    joint = _joint_covariance(here, prior)
+    own = pole[:n_modes]
+    return RefinedPoles(
+        own,
+        _own_blocks(joint)[:n_modes],
+        misfit_around(lines, own, here.residual, variance),
+        converged[:n_modes],
+        Linearised(joint, here.residue_noise, here.residue_slope),
+        pole[n_modes:],
+        here.residual,
+    )
+
+
+def _search(
+    lines: Lines,
+    prior: _Prior,
+    pole: ComplexArray,
+    variance: FloatArray,
+    steps: int,
+) -> tuple[ComplexArray, _Point, BoolArray]:
+    """Return the poles at the optimum, what is known there, and which converged."""
+    free, damping = np.ones(pole.size, bool), 1e-3
     here, settled = _evaluate(lines, pole, variance), False
-    doubt = np.ones(start.size) if doubt is None else doubt
-    prior = _Prior(start, doubt / (_LEASH * measured_width(lines, start)) ** 2)
     for _ in range(steps):
         trial = pole + np.where(free, _step(here, prior, pole, free, damping), 0.0)
-        lost = _lost(lines, trial, start)
+        lost = _lost(lines, trial, prior)
         if lost.any() and damping > _PATIENCE:
-            pole, free, damping = np.where(lost, start, pole), free & ~lost, 1e-3
-            here = _evaluate(lines, pole, variance)
+            pole, free = np.where(lost, prior.start, pole), free & ~lost
+            here, damping = _evaluate(lines, pole, variance), 1e-3
             continue
         there = None if lost.any() else _evaluate(lines, trial, variance)
         if there is None or there.cost + prior.cost(trial) > here.cost + prior.cost(
@@ -153,17 +191,10 @@ def refine_poles(
         else:
             moved = np.abs(trial - pole) / measured_width(lines, pole)
             pole, here, damping = trial, there, max(damping / 10.0, 1e-9)
-            settled = bool(np.all(moved < _SMALL_STEP))
+            settled = bool(np.all(moved[: prior.n_modes] < _SMALL_STEP))
         if settled:
             break
-    joint = _joint_covariance(here, prior)
-    return RefinedPoles(
-        pole,
-        _own_blocks(joint),
-        misfit_around(lines, pole, here.residual, variance),
-        free & settled,
-        Linearised(joint, here.residue_noise, here.residue_slope),
-    )
+    return pole, here, free & settled
 
 
 def _evaluate(lines: Lines, pole: ComplexArray, variance: FloatArray) -> _Point:
@@ -238,13 +269,38 @@ def _step(
     return np.asarray(change.view(np.complex128))
 
 
-def _lost(lines: Lines, pole: ComplexArray, start: ComplexArray) -> BoolArray:
-    """Tell which poles are no longer damped, or no longer those they started as."""
+def _lost(lines: Lines, pole: ComplexArray, prior: _Prior) -> BoolArray:
+    """Tell which poles are no longer damped, or no longer those they started as.
+
+    A computational pole is lost where it has come to stand within the band.
+    """
+    start = prior.start
     ratio = pole.real / start.real
     before, now = measured_width(lines, start), measured_width(lines, pole)
     astray: BoolArray = np.abs((pole - start).imag) > _LEASH * np.maximum(before, now)
     astray |= (ratio < 1.0 / _LEASH_DAMPING) | (ratio > _LEASH_DAMPING)
-    return astray
+    inside = ~unresolved(lines, pole) | (pole.real >= 0.0) | (pole.imag <= 0.0)
+    return np.asarray(np.where(np.arange(pole.size) < prior.n_modes, astray, inside))
+
+
+def unresolved(lines: Lines, pole: ComplexArray) -> BoolArray:
+    """Tell which poles do not have their peak within the band.
+
+    Beyond it, or within less than a half-power half-width of its edge, where one flank
+    is all that was measured: nothing tells such a pole from what lies beyond.
+
+    Args:
+        lines: what is fitted.
+        pole: [rad/s], shape (n,).
+
+    Returns:
+        Shape (n,).
+    """
+    low, high = lines.laplace.imag[[0, -1]]
+    width = measured_width(lines, pole)
+    # Below a band that begins next to zero there is nothing.
+    floor = low + width if low > _NEXT_TO_ZERO * high else 0.0 * width
+    return np.asarray((pole.imag < floor) | (pole.imag > high - width))
 
 
 def _joint_covariance(here: _Point, prior: _Prior) -> FloatArray:

@@ -12,6 +12,7 @@ import numpy as np
 import scipy.stats
 
 from jointbench.acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from jointbench.signal.beyond import find_beyond
 from jointbench.signal.line_noise import (
     line_noise,
     local_level,
@@ -19,7 +20,8 @@ from jointbench.signal.line_noise import (
     model_error,
 )
 from jointbench.signal.lsfd import LinearFit, Lines, fit_residues, measured_width
-from jointbench.signal.refine import RefinedPoles, refine_poles
+from jointbench.signal.misfit import misfit_around
+from jointbench.signal.refine import RefinedPoles, refine_poles, unresolved
 
 # Relative model error taken for granted before a fit has shown its own [-].
 _FIRST_MODEL_ERROR = 0.02
@@ -43,6 +45,7 @@ class FittedModes:
         significance: chi-squared lost without each mode, by the misfit around it,
             shape (n_modes,).
         model_error: of the fit, as a share of the local level [-].
+        misfit: residual around each mode over noise alone [-], shape (n_modes,).
     """
 
     chosen: IntArray
@@ -51,6 +54,7 @@ class FittedModes:
     variance: FloatArray
     significance: FloatArray
     model_error: float
+    misfit: FloatArray
 
 
 def fit_modes(
@@ -74,36 +78,76 @@ def fit_modes(
     Returns:
         The modes, possibly none.
     """
-    noise = line_noise(lines.response, scatter, lines.response)
-    level = local_level(lines.response)
+    noise, level = line_noise(lines.response, scatter), local_level(lines.response)
     variance = noise + _FIRST_MODEL_ERROR**2 * level
-    chosen = _needed(lines, candidates, noise, variance)
     steps = _STEPS if refine else 0
-    poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
-    fit = fit_residues(lines, poles.pole, variance)
-    residual = lines.response - fit.synthesis
-    if scatter is None:
-        # The response itself is rough where it resonates; what a fit leaves is not.
-        noise = line_noise(residual, None, lines.response)
+    chosen, poles = _first_fit(lines, candidates, noise, variance, steps)
+    # The response itself is rough where it resonates; what a fit leaves is not.
+    noise = line_noise(lines.response, scatter, poles.residual)
+    beyond = poles.beyond
+    if refine:
+        beyond = find_beyond(lines, poles.pole, beyond, poles.residual, noise, variance)
+    residual = (
+        poles.residual
+        if beyond.size == poles.beyond.size
+        else refine_poles(lines, poles.pole, variance, beyond=beyond, steps=0).residual
+    )
     error = model_error(residual, noise, lines.response)
     variance = noise + error**2 * level
-    kept = _needed(lines, poles.pole, noise, variance)
+    kept = _needed(lines, poles.pole, noise, variance, beyond)
     while True:
         chosen = chosen[kept]
         poles = refine_poles(
             lines,
             candidates[chosen],
             variance,
+            beyond=beyond,
             doubt=poles.inflation[kept],
             begin=poles.pole[kept],
             steps=steps,
         )
-        fit = fit_residues(lines, poles.pole, variance)
-        significance = _significance(lines, fit, poles.pole, noise)
-        vague = _vague(lines, poles, significance)
-        if not vague.any():
-            return FittedModes(chosen, poles, fit, variance, significance, error)
-        kept = np.flatnonzero(~vague)
+        beyond = poles.beyond
+        fit = fit_residues(lines, np.append(poles.pole, beyond), variance)
+        significance = _significance(lines, fit, poles.pole, noise, beyond)
+        bad = _vague(lines, poles, significance) | unresolved(lines, poles.pole)
+        if not bad.any():
+            return FittedModes(
+                chosen,
+                poles,
+                fit.of_modes(chosen.size),
+                variance,
+                significance,
+                error,
+                misfit_around(lines, poles.pole, poles.residual, noise),
+            )
+        aside = unresolved(lines, poles.pole)
+        beyond = np.append(beyond, poles.pole[aside])
+        kept = np.flatnonzero(~bad)
+
+
+def _first_fit(
+    lines: Lines,
+    candidates: ComplexArray,
+    noise: FloatArray,
+    variance: FloatArray,
+    steps: int,
+) -> tuple[IntArray, RefinedPoles]:
+    """Refine what is needed; poles that end beyond the band become computational."""
+    none = np.empty(0, complex)
+    chosen = _needed(lines, candidates, noise, variance, none)
+    poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
+    aside = unresolved(lines, poles.pole)
+    if not aside.any() or steps == 0:
+        return chosen, poles
+    left = refine_poles(
+        lines,
+        candidates[chosen[~aside]],
+        variance,
+        beyond=poles.pole[aside],
+        begin=poles.pole[~aside],
+        steps=steps,
+    )
+    return chosen[~aside], left
 
 
 def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolArray:
@@ -125,15 +169,19 @@ def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolA
 
 
 def _needed(
-    lines: Lines, pole: ComplexArray, noise: FloatArray, variance: FloatArray
+    lines: Lines,
+    pole: ComplexArray,
+    noise: FloatArray,
+    variance: FloatArray,
+    beyond: ComplexArray,
 ) -> IntArray:
     """Drop the least needed pole until all that are left are needed; return indices."""
     left = np.arange(pole.size)
     chance = _CHANCE / lines.laplace.size
     limit = float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
     while left.size:
-        fit = fit_residues(lines, pole[left], variance)
-        significance = _significance(lines, fit, pole[left], noise)
+        fit = fit_residues(lines, np.append(pole[left], beyond), variance)
+        significance = _significance(lines, fit, pole[left], noise, beyond)
         weak: BoolArray = significance < limit
         if not weak.any():
             break
@@ -144,12 +192,17 @@ def _needed(
 
 
 def _significance(
-    lines: Lines, fit: LinearFit, pole: ComplexArray, noise: FloatArray
+    lines: Lines,
+    fit: LinearFit,
+    pole: ComplexArray,
+    noise: FloatArray,
+    beyond: ComplexArray,
 ) -> FloatArray:
     """Judge each mode by the noise or by the misfit around it, whichever is more."""
     misfit = local_misfit(lines.response - fit.synthesis)
-    apparent = fit_residues(lines, pole, np.maximum(noise, misfit)).significance
-    return np.asarray(apparent / _window_gain(lines, pole))
+    everything = np.append(pole, beyond)
+    judged = fit_residues(lines, everything, np.maximum(noise, misfit))
+    return np.asarray(judged.significance[: pole.size] / _window_gain(lines, pole))
 
 
 def _window_gain(lines: Lines, pole: ComplexArray) -> FloatArray:
