@@ -24,6 +24,8 @@ from jointbench.signal.frf import Frf
 # Powers of s of the residual terms, beside the derivative of the FRF's kind.
 _RESIDUAL_POWERS = (-2, -1, 0, 1, 2, 3, 4, 5, 6)
 _RIDGE = 1e-13
+# Up to here the products of columns cost more than they save.
+_FEW_FRFS = 8
 # Products of columns are formed for this many lines at a time, to stay in the cache.
 _LINES_AT_ONCE = 512
 
@@ -96,8 +98,16 @@ def residual_terms(lines: Lines, fit: LinearFit) -> ResidualTerms:
         The two classical terms; the further powers of s that the fit carries beside
         them are left out.
     """
-    terms = fit.coefficients[:, 2 * fit.significance.size :]
-    scale = np.abs(lines.laplace[lines.laplace.size // 2])
+    n_modal = 2 * fit.significance.size
+    s = lines.laplace
+    used = _residual_terms(s, s**lines.derivatives)
+    parts = fit.coefficients[:, n_modal:] @ used.T
+    scale = np.abs(s[s.size // 2])
+    powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
+    # The fit has these columns made orthogonal to each other: taken apart again here.
+    columns = stacked(powers * (s**lines.derivatives)[:, None])
+    size = np.linalg.norm(columns, axis=0)
+    terms = np.linalg.lstsq(columns / size, stacked(parts.T), rcond=None)[0].T / size
     lower = terms[:, _RESIDUAL_POWERS.index(-2)] * scale**2
     return ResidualTerms(lower, terms[:, _RESIDUAL_POWERS.index(0)])
 
@@ -197,17 +207,27 @@ def fit_residues(
     """
     basis = modal_basis(lines, pole)
     weight = 2.0 / variance
-    inverse = inverses(gram_matrices(basis, weight))
-    right = correlations(basis, weight * lines.response)
-    coefficients = (inverse @ right[:, :, None])[:, :, 0]
+    used = np.ones(basis.shape[1], bool)
+    if real_modes:
+        used[: 2 * pole.size : 2] = False
+    some = np.ascontiguousarray(basis[:, used])
+    solved = inverses(gram_matrices(some, weight))
+    right = correlations(some, weight * lines.response)
+    n_frf, size = variance.shape[0], basis.shape[1]
+    coefficients, inverse = (
+        np.zeros((n_frf, size)),
+        np.tile(np.eye(size), (n_frf, 1, 1)),
+    )
+    coefficients[:, used] = (solved @ right[:, :, None])[:, :, 0]
+    inverse[np.ix_(np.arange(n_frf), used, used)] = solved
     significance = _wald(coefficients, inverse, pole.size)
     return LinearFit(coefficients, coefficients @ basis.T, significance)
 
 
 def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
-    """Return Re(columns^H diag(weight) columns) for many rows of weights at once.
+    """Return Re(columns^H diag(weight) columns) for all rows of weights.
 
-    Each product of two columns serves all rows: one real matrix product in all.
+    With many rows, each product of two columns serves them all.
 
     Args:
         columns: shape (n_lines, n).
@@ -216,6 +236,10 @@ def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
     Returns:
         Shape (n_frf, n, n).
     """
+    if weight.shape[0] <= _FEW_FRFS:
+        rows = stacked(columns)
+        scaled = (rows * np.sqrt(np.tile(w, 2))[:, None] for w in weight)
+        return np.array([part.T @ part for part in scaled])
     size = columns.shape[1]
     upper = np.triu_indices(size)
     packed = np.zeros((weight.shape[0], upper[0].size))
