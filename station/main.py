@@ -179,6 +179,10 @@ def modal_command(
     out: Annotated[
         Path | None, typer.Option(help="Results file; beside a session by default.")
     ] = None,
+    output_only: Annotated[
+        bool,
+        typer.Option("--output-only", help="No force channel: from responses alone."),
+    ] = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
@@ -186,6 +190,18 @@ def modal_command(
 
     Example: jointbench modal session.h5 --json modes.json
     """
+    if output_only:
+        from jointbench.station.modal import parse_band
+        from jointbench.station.output_only import run_output_only
+
+        run_output_only(
+            files,
+            columns=columns,
+            band=parse_band(band),
+            order=order,
+            json_target=json,
+        )
+        return
     from jointbench.station.modal import run_modal
 
     run_modal(

@@ -16,6 +16,9 @@ from jointbench.station.output import console, table, with_sd, working, write_js
 from jointbench.station.outputs import check_outputs
 from jointbench.station.results_file import results_path, write_results
 
+STAGE_COLUMNS = ("|W| [-]", "phase of W [deg]")
+"""Headings of `stage_cells`."""
+
 
 def run_modal(
     files: Sequence[Path],
@@ -82,14 +85,22 @@ def show_modal(chain: ModalChain, json_target: str | None) -> None:
             with_sd(
                 100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
             ),
+            *stage_cells(chain, number),
         )
         for number in range(model.natural_frequency.size)
     ]
     low, high = chain.result.band
     title = f"Modes between {low:.0f} and {high:.0f} Hz (± one standard deviation)"
-    screen.print(
-        table(title, ("mode", "natural frequency [Hz]", "damping ratio [%]"), rows)
-    )
+    columns = ("mode", "natural frequency [Hz]", "damping ratio [%]")
+    screen.print(table(title, (*columns, *STAGE_COLUMNS), rows))
+
+
+def stage_cells(chain: ModalChain, number: int) -> tuple[str, str]:
+    """Return what the Kalman stage did at a mode: its gain and its phase."""
+    gain = chain.result.stage_gain
+    if gain is None:
+        return "-", "-"
+    return f"{gain.gain[number]:.4f}", f"{np.degrees(gain.phase[number]):.1f}"
 
 
 def _hits_line(recording: Recording) -> str:

@@ -17,7 +17,7 @@ from jointbench.station.figures import (
     markers,
     thin,
 )
-from jointbench.station.modal import synthesis_error
+from jointbench.station.modal import STAGE_COLUMNS, stage_cells, synthesis_error
 from jointbench.station.output import with_sd
 from jointbench.station.report_page import DataTable, Plot, Section, Text
 
@@ -72,10 +72,15 @@ def _frf_plot(chain: ModalChain) -> Plot:
     )
     caption = (
         f"{frf.kind.value.capitalize()} from {frf.averages} accepted hits a point "
-        "(H1): measured as lines, synthesised from the identified modes as dashes; "
-        "phase; ordinary coherence."
+        f"({_estimator(chain)}): measured as lines, synthesised from the identified "
+        "modes as dashes; phase; ordinary coherence."
     )
     return Plot("frf-plot", caption, plot, 620)
+
+
+def _estimator(chain: ModalChain) -> str:
+    detail = next(dict(s.detail) for s in chain.provenance if s.name == "estimate_frf")
+    return f"{detail['estimator']}, {detail['bias']}"
 
 
 def _one_frf(
@@ -201,23 +206,16 @@ def modes_table(chain: ModalChain) -> DataTable:
             with_sd(
                 100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
             ),
-            *_stage(chain, number),
+            *stage_cells(chain, number),
         )
         for number in range(len(model.natural_frequency))
     )
     return DataTable(
         "Identified modes with one standard deviation; gain and phase of the Kalman "
         "stage at each mode.",
-        ("mode", "frequency [Hz]", "damping ratio [%]", "|W| [-]", "phase of W [deg]"),
+        ("mode", "frequency [Hz]", "damping ratio [%]", *STAGE_COLUMNS),
         rows,
     )
-
-
-def _stage(chain: ModalChain, number: int) -> tuple[str, str]:
-    gain = chain.result.stage_gain
-    if gain is None:
-        return "-", "-"
-    return f"{gain.gain[number]:.4f}", f"{np.degrees(gain.phase[number]):.1f}"
 
 
 def _window(chain: ModalChain) -> str:
