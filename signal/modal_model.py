@@ -46,6 +46,7 @@ class ModalModel:
         misfit: residual around each mode over its noise [-]: 1 where noise is all
             there is, shape (n_modes,).
         stable_orders: at how many orders it was stable, shape (n_modes,).
+        by_hand: True for a mode that a person insisted on, shape (n_modes,).
         outputs: labels of the outputs.
         inputs: labels of the inputs.
         provenance: how it came about.
@@ -63,6 +64,7 @@ class ModalModel:
     significance: FloatArray
     misfit: FloatArray
     stable_orders: IntArray
+    by_hand: BoolArray
     outputs: tuple[str, ...]
     inputs: tuple[str, ...]
     provenance: Provenance = field(default=())
@@ -86,6 +88,7 @@ class ModalModel:
             ("significance", (n_modes,)),
             ("misfit", (n_modes,)),
             ("stable_orders", (n_modes,)),
+            ("by_hand", (n_modes,)),
         ):
             require_shape(name, getattr(self, name), shape)
             freeze(self, name)
@@ -148,6 +151,7 @@ def build_model(
         significance=fitted.significance[by_frequency],
         misfit=fitted.misfit[by_frequency],
         stable_orders=np.array([c.stable_orders for c in chosen], np.int64),
+        by_hand=np.array([c.by_hand for c in chosen], bool),
         outputs=frf.outputs,
         inputs=frf.inputs,
         provenance=provenance,

@@ -9,6 +9,7 @@ from jointbench.acquisition.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.errors import NoModeFound, UsageError
 from jointbench.acquisition.records import Step, step
 from jointbench.signal.band import choose_band
+from jointbench.signal.choices import Choices, overrule
 from jointbench.signal.frf import Frf
 from jointbench.signal.kalman import stage_gain_of
 from jointbench.signal.kalman_model import StageGain
@@ -42,12 +43,14 @@ class ModalSettings:
         highest_order: of the fit, 2 or more, or None for 100 over the number of inputs.
         stability: when a pole counts as stable.
         refine: whether poles are refined by nonlinear least squares.
+        choices: poles kept or dropped by hand.
     """
 
     band: tuple[float, float] | None = None
     highest_order: int | None = None
     stability: StabilityLimits = field(default_factory=StabilityLimits)
     refine: bool = True
+    choices: Choices = field(default_factory=Choices)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,15 +118,22 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
     )
     table = stabilise(poles, settings.stability)
     found = candidates(table, settings.stability)
+    found = overrule(found, table, settings.choices)
     lines = lines_of(frf, keep)
     start = np.array([c.pole for c in found], complex)
-    fitted = fit_modes(lines, start, _scatter(frf, keep), refine=settings.refine)
+    fitted = fit_modes(
+        lines,
+        start,
+        _scatter(frf, keep),
+        held=np.array([c.by_hand for c in found], bool),
+        refine=settings.refine,
+    )
     if fitted.chosen.size == 0:
         raise NoModeFound(
             f"none of {start.size} stable poles rises above the noise, orders "
             f"{orders[0]} to {orders[-1]}, {reason}; give another band or more hits"
         )
-    done = _record(reason, orders, start.size, fitted)
+    done = _record(reason, orders, start.size, fitted, settings.choices)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
     return ModalResult(
         model=model,
@@ -181,7 +191,11 @@ def _require_alive(frf: Frf) -> None:
 
 
 def _record(
-    band: str, orders: tuple[int, ...], candidates_found: int, fitted: FittedModes
+    band: str,
+    orders: tuple[int, ...],
+    candidates_found: int,
+    fitted: FittedModes,
+    choices: Choices,
 ) -> Step:
     return step(
         "identify_modes",
@@ -191,6 +205,9 @@ def _record(
         modes=fitted.chosen.size,
         model_error=fitted.model_error,
         unrefined=int(np.count_nonzero(~fitted.poles.converged)),
+        beyond_band=fitted.poles.beyond.size,
+        kept_by_hand=", ".join(f"{f:g} Hz" for f in choices.keep) or "none",
+        dropped_by_hand=", ".join(f"{f:g} Hz" for f in choices.drop) or "none",
     )
 
 

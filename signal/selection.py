@@ -62,6 +62,7 @@ def fit_modes(
     candidates: ComplexArray,
     scatter: FloatArray | None,
     *,
+    held: BoolArray | None = None,
     refine: bool = True,
 ) -> FittedModes:
     """Refine candidate poles and keep those that the FRF needs.
@@ -73,6 +74,8 @@ def fit_modes(
         lines: what is fitted.
         candidates: poles [rad/s], shape (n_candidates,).
         scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
+        held: True for candidates that stay whatever the FRF says, shape
+            (n_candidates,), or None.
         refine: False keeps the poles where LSCF put them.
 
     Returns:
@@ -81,7 +84,8 @@ def fit_modes(
     noise, level = line_noise(lines.response, scatter), local_level(lines.response)
     variance = noise + _FIRST_MODEL_ERROR**2 * level
     steps = _STEPS if refine else 0
-    chosen, poles = _first_fit(lines, candidates, noise, variance, steps)
+    held = np.zeros(candidates.size, bool) if held is None else held
+    chosen, poles = _first_fit(lines, candidates, held, noise, variance, steps)
     # The response itself is rough where it resonates; what a fit leaves is not.
     noise = line_noise(lines.response, scatter, poles.residual)
     beyond = poles.beyond
@@ -94,7 +98,7 @@ def fit_modes(
     )
     error = model_error(residual, noise, lines.response)
     variance = noise + error**2 * level
-    kept = _needed(lines, poles.pole, noise, variance, beyond)
+    kept = _needed(lines, poles.pole, held[chosen], noise, variance, beyond)
     while True:
         chosen = chosen[kept]
         poles = refine_poles(
@@ -109,7 +113,8 @@ def fit_modes(
         beyond = poles.beyond
         fit = fit_residues(lines, np.append(poles.pole, beyond), variance)
         significance = _significance(lines, fit, poles.pole, noise, beyond)
-        bad = _vague(lines, poles, significance) | unresolved(lines, poles.pole)
+        aside = unresolved(lines, poles.pole) & ~held[chosen]
+        bad = (_vague(lines, poles, significance) & ~held[chosen]) | aside
         if not bad.any():
             return FittedModes(
                 chosen,
@@ -120,7 +125,6 @@ def fit_modes(
                 error,
                 misfit_around(lines, poles.pole, poles.residual, noise),
             )
-        aside = unresolved(lines, poles.pole)
         beyond = np.append(beyond, poles.pole[aside])
         kept = np.flatnonzero(~bad)
 
@@ -128,15 +132,16 @@ def fit_modes(
 def _first_fit(
     lines: Lines,
     candidates: ComplexArray,
+    held: BoolArray,
     noise: FloatArray,
     variance: FloatArray,
     steps: int,
 ) -> tuple[IntArray, RefinedPoles]:
     """Refine what is needed; poles that end beyond the band become computational."""
     none = np.empty(0, complex)
-    chosen = _needed(lines, candidates, noise, variance, none)
+    chosen = _needed(lines, candidates, held, noise, variance, none)
     poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
-    aside = unresolved(lines, poles.pole)
+    aside = unresolved(lines, poles.pole) & ~held[chosen]
     if not aside.any() or steps == 0:
         return chosen, poles
     left = refine_poles(
@@ -171,6 +176,7 @@ def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolA
 def _needed(
     lines: Lines,
     pole: ComplexArray,
+    held: BoolArray,
     noise: FloatArray,
     variance: FloatArray,
     beyond: ComplexArray,
@@ -182,11 +188,11 @@ def _needed(
     while left.size:
         fit = fit_residues(lines, np.append(pole[left], beyond), variance)
         significance = _significance(lines, fit, pole[left], noise, beyond)
-        weak: BoolArray = significance < limit
+        weak: BoolArray = (significance < limit) & ~held[left]
         if not weak.any():
             break
         # Weak ones may stand in for each other: only the weakest goes, unless hopeless.
-        weak &= significance <= max(0.1 * limit, float(significance.min()))
+        weak &= significance <= max(0.1 * limit, float(significance[weak].min()))
         left = left[~weak]
     return left
 
@@ -202,7 +208,8 @@ def _significance(
     misfit = local_misfit(lines.response - fit.synthesis)
     everything = np.append(pole, beyond)
     judged = fit_residues(lines, everything, np.maximum(noise, misfit))
-    return np.asarray(judged.significance[: pole.size] / _window_gain(lines, pole))
+    apparent = np.nan_to_num(judged.significance[: pole.size])
+    return np.asarray(apparent / _window_gain(lines, pole))
 
 
 def _window_gain(lines: Lines, pole: ComplexArray) -> FloatArray:
