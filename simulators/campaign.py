@@ -114,8 +114,9 @@ def make_campaign(
     if effects:
         scale = margin_scale(design)
         rng = np.random.default_rng([seed, 12])
-        hidden = tuple(_hide(scale, each, margin, size, rng) for each in effects)
-        margins = tuple(expected_margin(scale, each) for each in hidden)
+        pairs = [_hide(scale, each, margin, size, rng) for each in effects]
+        hidden = tuple(effect for effect, _ in pairs)
+        margins = tuple(known or expected_margin(scale, e) for e, known in pairs)
     force, acceleration = _with_noise(design, *simulate_records(design, hidden))
     return Campaign(design, hidden, margins, force, acceleration)
 
@@ -187,16 +188,24 @@ def size_to_margin(
         factor of 3, mostly, by that of rivals at their best; or as large as
         `largest`.
     """
+    return _sized(scale, largest, wanted)[0]
+
+
+def _sized(
+    scale: MarginScale, largest: HiddenEffect, wanted: float
+) -> tuple[HiddenEffect, Margin | None]:
+    """Return the effect at its size, with its margin where that is known already."""
     if not FAMILIES[largest.name].resizable:
-        return largest
+        return largest, None
     share = _first_share(scale, largest, wanted)
     last: tuple[float, float] | None = None
     for _ in range(_MORE_SIZES):
         sized = resize_effect(largest, share)
-        margin = max(expected_margin(scale, sized).margin, 1e-12)
+        known = expected_margin(scale, sized)
+        margin = max(known.margin, 1e-12)
         missing = float(np.log(wanted / margin))
         if abs(missing) < np.log(_FAR) or (share == 1.0 and missing > 0):
-            break
+            return sized, known
         # Between a change that grows as the square and a second-order one.
         power = 3.0
         if last is not None and last[0] != share:
@@ -204,7 +213,7 @@ def size_to_margin(
             power = float(np.clip(slope, 1.0, 5.0))
         last = share, margin
         share = min(1.0, share * float(np.exp(np.clip(missing / power, -3.0, 3.0))))
-    return resize_effect(largest, share)
+    return resize_effect(largest, share), None
 
 
 def _first_share(scale: MarginScale, largest: HiddenEffect, wanted: float) -> float:
@@ -235,15 +244,15 @@ def _hide(
     margin: float | tuple[float, float],
     size: float | None,
     rng: np.random.Generator,
-) -> HiddenEffect:
+) -> tuple[HiddenEffect, Margin | None]:
     if isinstance(effect, HiddenEffect):
-        return effect
+        return effect, None
     largest = draw_effect(effect, scale.scales, rng)
     if size is not None:
-        return resize_effect(largest, size)
+        return resize_effect(largest, size), None
     low, high = margin if isinstance(margin, tuple) else (margin, margin)
     wanted = float(np.exp(rng.uniform(np.log(low), np.log(high))))
-    return size_to_margin(scale, largest, wanted)
+    return _sized(scale, largest, wanted)
 
 
 def _with_noise(

@@ -150,12 +150,12 @@ HIDDEN_MODE = LumpedEffect(
                 "f",
                 "Hz",
                 "frequency",
-                0.2,
+                0.4,
                 6.0,
-                tuple(float(x) for x in np.geomspace(0.3, 4.0, 28)),
+                tuple(float(x) for x in np.geomspace(0.42, 4.0, 26)),
                 LOG,
             ),
-            Parameter("zeta", "-", "one", 1e-3, 0.3, (0.02,), LOG, prior=(0.015, 1.0)),
+            Parameter("zeta", "-", "one", 1e-3, 0.1, (0.02,), LOG, prior=(0.015, 1.0)),
         ),
         "Den Hartog 1956, Mechanical Vibrations, sec. 3.2: attached oscillator",
         {
@@ -172,7 +172,7 @@ PRELOAD_STIFFNESS = LumpedEffect(
     Effect(
         "preload_stiffness",
         "preload",
-        (Parameter("n", "-", "one", -1.5, 1.5, off=0.0),),
+        (Parameter("n", "-", "one", -1.5, 1.5, off=0.0, far=(0.1, 0.25, 0.5)),),
         "Greenwood and Williamson 1966: k grows with a power of the load",
         {"loosening": "repeat the preload sequence backwards"},
     ),
@@ -194,7 +194,7 @@ LOOSENING = LumpedEffect(
     Effect(
         "loosening",
         "preload",
-        (Parameter("frac", "-", "one", -0.9, 0.9, off=0.0),),
+        (Parameter("frac", "-", "one", -0.9, 0.9, off=0.0, far=(0.05, 0.2)),),
         "Junker 1969, SAE 690055: stiffness lost from hit to hit",
         {"preload_stiffness": "repeat the preload sequence backwards"},
     ),

@@ -46,12 +46,13 @@ class Calibration:
 
 
 CALIBRATION = Calibration(
-    intercept=1.2,
-    margin=1.6,
-    slack=0.8,
-    amplitude=0.8,
-    second=-0.5,
-    record="set by hand before any calibration; to be learnt on simulated campaigns",
+    intercept=1.889,
+    margin=0.0,
+    slack=0.813,
+    amplitude=0.0,
+    second=-0.479,
+    record="benchmarks/gap/calibrate.py on 73 names told of 141 simulated campaigns, "
+    "seeds 20000 and on; one campaign in ten taken to hide what no catalogue has",
 )
 
 

@@ -18,7 +18,7 @@ from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.naming import noise_sd, weakest_amplitude
+from jointbench.analysis.gap.naming import noise_sd, weakest
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.race import Progress, score
 from jointbench.analysis.gap.records import (
@@ -184,7 +184,8 @@ def evidence_of(outcome: Outcome, bench: Bench, fit: Fit) -> Evidence:
     margin = (min(others) if others else FAR) - score(bench, fit)
     allowed = max(outcome.gate.allowed, 1e-12)
     slack = 1.0 - max(outcome.gate.excess, 0.0) / allowed
-    return Evidence(margin, slack, weakest_amplitude(fit), len(fit.candidates))
+    sure = weakest(fit, (outcome.base, *outcome.ranked))
+    return Evidence(margin, slack, sure, len(fit.candidates))
 
 
 def _effects(

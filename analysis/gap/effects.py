@@ -43,6 +43,8 @@ class Parameter:
         transform: how the optimiser sees it.
         prior: (median [scale], relative sd) of a lognormal prior, or None.
         off: value at which the effect vanishes; None for shape parameters.
+        far: amplitudes [scale] from which a strong effect is tried as well, where
+            its directed test points too far or the wrong way.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Parameter:
     transform: Transform = Transform.LINEAR
     prior: tuple[float, float] | None = None
     off: float | None = None
+    far: tuple[float, ...] = ()
 
     def encode(self, multiple: float) -> float:
         """Return the fitted coordinate of a value given in multiples of the scale."""

@@ -155,8 +155,6 @@ def jacobian_of(
     x: FloatArray,
     residual: FloatArray,
     stage: Stage,
-    *,
-    linear_base: bool = False,
 ) -> FloatArray:
     """Difference the residual.
 
@@ -165,23 +163,14 @@ def jacobian_of(
         x: where, shape (n,).
         residual: at x, shape (n_rows,).
         stage: how thoroughly.
-        linear_base: take the base's columns with the effects off: cheap, and close
-            enough to descend by while the step of the effects is being found.
     """
     columns = np.empty((x.size, residual.size))
     steps = steps_of(problem, x)
-    plain = residual
-    if linear_base:
-        plain = problem.bench.residual(x[: problem.n_base], (), stage)
     for i, h in enumerate(steps):
         moved = x.copy()
         moved[i] += h
-        if linear_base and i < problem.n_base:
-            columns[i] = problem.bench.residual(moved[: problem.n_base], (), stage)
-            columns[i] -= plain
-        else:
-            columns[i] = problem.residual(moved, stage)
-            columns[i] -= residual
+        columns[i] = problem.residual(moved, stage)
+        columns[i] -= residual
         columns[i] /= h
     return columns.T
 
@@ -193,7 +182,6 @@ def minimise(
     *,
     iterations: int = 20,
     rival: float | None = None,
-    linear_base: bool = False,
     jacobian_stage: Stage | None = None,
     exact_slopes: bool = True,
 ) -> Fit:
@@ -206,7 +194,6 @@ def minimise(
         iterations: at most.
         rival: cost of the best so far; a descent that at its pace would need very
             many more steps to come there is given up.
-        linear_base: see `jacobian_of`.
         jacobian_stage: a cheaper stage for the slopes, or None for the same.
         exact_slopes: difference the slopes once more at the end, which an
             intermediate stage does not need.
@@ -214,7 +201,7 @@ def minimise(
 
     def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
         if jacobian_stage is None:
-            return jacobian_of(problem, x, r, stage, linear_base=linear_base)
+            return jacobian_of(problem, x, r, stage)
         coarse = problem.residual(x, jacobian_stage)
         return jacobian_of(problem, x, coarse, jacobian_stage)
 
@@ -321,16 +308,15 @@ def _step(
     g = (gradient / size)[free]
     for _ in range(9):
         step = np.zeros(x.size)
-        step[free] = -np.linalg.solve(h + damping * np.eye(h.shape[0]), g)
+        step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
         trial = _moved(problem, x, step / size)
         try_r, try_cost = _looked_at(problem, trial, stage)
         for _ in range(CORRECTIONS):
             if try_cost < cost or not np.isfinite(try_cost):
                 break
             pull = j.T @ try_r + problem.prior * (trial - problem.centre)
-            step[free] = -np.linalg.solve(
-                h + STIFF * np.eye(h.shape[0]), (pull / size)[free]
-            )
+            stiff = h + STIFF * np.eye(h.shape[0])
+            step[free] = -_solve(stiff, (pull / size)[free])
             trial = _moved(problem, trial, step / size)
             try_r, try_cost = _looked_at(problem, trial, stage)
         if np.isfinite(try_cost) and try_cost < cost:
@@ -339,6 +325,11 @@ def _step(
         if damping > 1e7:
             break
     return None, damping
+
+
+def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve, or return the least of all solutions where two parameters are one."""
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-14)[0])
 
 
 def _moved(problem: Problem, x: FloatArray, step: FloatArray) -> FloatArray:
@@ -355,17 +346,20 @@ def _looked_at(
     problem: Problem, x: FloatArray, stage: Stage
 ) -> tuple[FloatArray, float]:
     with np.errstate(all="ignore"):
-        r = problem.residual(x, stage)
+        try:
+            r = problem.residual(x, stage)
+        except np.linalg.LinAlgError:  # a model whose modes cannot be told apart
+            return np.full(problem.bench.blocks.group.size, np.inf), np.inf
         cost = float(r @ r) + problem.penalty(x)
     return r, cost if np.isfinite(cost) else np.inf
 
 
-Stages = Sequence[tuple[Stage, int, bool]]
+Stages = Sequence[tuple[Stage, int]]
 BASE_STAGES: Stages = (
-    (Stage(0.002), 6, False),
-    (Stage(0.006), 6, False),
-    (Stage(0.020), 6, False),
-    (FULL, 20, False),
+    (Stage(0.002), 6),
+    (Stage(0.006), 6),
+    (Stage(0.020), 6),
+    (FULL, 20),
 )
 
 
@@ -380,14 +374,13 @@ def fit_stages(
     """Fit coarse to fine; the last stage decides."""
     x = start
     fit: Fit | None = None
-    for stage, iterations, linear_base in stages:
+    for stage, iterations in stages:
         last = stage.window is None
         fit = minimise(
             problem,
             x,
             stage,
             iterations=iterations,
-            linear_base=linear_base,
             rival=rival if last else None,
             exact_slopes=last,
         )

@@ -132,7 +132,7 @@ def _part(
         own = np.asarray(action.entry.poles(action.values), dtype=np.complex128)
     scale = float(np.sqrt(theta[len(model.bodies) :].max() / theta[0]))
     turn = np.arange(2 * (3 + own.size)) + 0.5
-    s = scale * (0.3 + 1j * turn / turn.size)
+    s = np.asarray(scale * (0.3 + 1j * turn / turn.size), dtype=np.complex128)
     columns = [np.ones_like(s), s / scale, (s / scale) ** 2]
     columns += [scale / (s - q) for q in own]
     state = state_of(model, theta, s, conditions, action)
@@ -141,7 +141,8 @@ def _part(
     added = np.asarray(action.entry.stiffness(state, action.values))
     found = np.linalg.lstsq(np.stack(columns, axis=1), added.T, rcond=None)[0].T
     polynomial = found[:, :3].real / np.array([1.0, scale, scale**2])
-    return _Part(across, polynomial, own, found[:, 3:] * scale)
+    strengths = np.asarray(found[:, 3:] * scale, dtype=np.complex128)
+    return _Part(across, polynomial, own, strengths)
 
 
 def _inertia(masses: FloatArray, parts: Sequence[_Part], variants: int) -> FloatArray:

@@ -13,8 +13,10 @@ from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import Progress, finish, race, score
 from jointbench.analysis.gap.screening import Screening, screen
 
-REFINEMENTS = 3
-REJUDGED = 2
+REFINEMENTS = 8
+SETTLED = 3.0
+"""Change of the cost below which noise, scatter and fit agree with each other."""
+REJUDGED = 3
 MOST_EFFECTS = 3
 FIRSTS = 3
 HOPEFUL = 4.0
@@ -65,6 +67,8 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         if judged.passed or not fits or len(fits[0].candidates) < count:
             break
         firsts = fits[: FIRSTS if count == 1 else 1]
+        if count > 1 and not _apart(firsts[0]):
+            break
         more = add_another(refined, firsts, progress)
         if not more:
             break
@@ -80,13 +84,22 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     return Outcome(refined, base, first, screening, best, judged, tuple(fits), level)
 
 
+def _apart(fit: Fit) -> bool:
+    """Tell whether no link bears two effects: three at one link explain anything."""
+    links = [c.site for c in fit.candidates if c.site.kind == "link"]
+    return len(set(links)) == len(links)
+
+
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     """Fit the base coarse to fine, estimate the noise there, and settle."""
     problem = make_problem(bench, ())
     fit = fit_stages(problem, np.zeros(problem.n_base))
     for _ in range(REFINEMENTS):
+        before = fit.cost
         bench = bench.refine(fit.base, ())
         fit = minimise(make_problem(bench, ()), fit.x)
+        if abs(fit.cost - before) < SETTLED:
+            break
     return bench, fit
 
 

@@ -23,6 +23,7 @@ from jointbench.analysis.gap.noise import (
     regress,
     repeat_groups,
     whitening_basis,
+    without_trend,
 )
 from jointbench.analysis.gap.physics import Conditions, LumpedEffect
 from jointbench.analysis.gap.records import View
@@ -207,8 +208,11 @@ class LumpedBench:
         )
         campaign = self.campaign
         groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
+        patterns = _patterns(self.excitation.conditions)
         scatter = tuple(
-            gain_scatter(coefficients[:, i], variances[:, i], groups)
+            gain_scatter(
+                without_trend(coefficients[:, i], patterns), variances[:, i], groups
+            )
             for i in range(ways.shape[1])
         )
         if self.campaign.repeatability is not None:
@@ -262,6 +266,11 @@ class LumpedBench:
             return 0
         records, channels = self.noise.sigma.shape
         return int(records) * (int(channels) if candidate.site.name == "all" else 1)
+
+
+def _patterns(conditions: Conditions) -> FloatArray:
+    """Return what a joint could depend on from record to record, (2, n_records)."""
+    return np.stack([np.log(conditions.preload), conditions.progress])
 
 
 def _window(bench: LumpedBench, decay: float) -> FloatArray:

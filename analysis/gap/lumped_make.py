@@ -84,7 +84,7 @@ def _blocks(campaign: Campaign) -> Blocks:
     group = np.repeat(np.arange(records), channels * samples)
     labels = tuple(
         {
-            "level": f"{level:g} N",
+            "level": f"{level:.3g}" if campaign.continuous else f"{level:g} N",
             "hit point": f"{campaign.model.bodies[hit].name}",
             "preload": f"{preload:g} N",
             "order": f"{order:g}",

@@ -13,21 +13,29 @@ from jointbench.analysis.gap.screening import Screening
 
 RIVAL_WITHIN = 15.0
 """Score within which a rival is not told apart."""
+CROWDED_WITHIN = 60.0
+"""The same where one site bears two effects: two laws together bend as many do."""
 TWIN_WITHIN = 0.5
 """Score within which the same fault at one channel and at all is one statement."""
 EVERYWHERE = "all"
 AMPLITUDE_SD = 4.0
 PULL_LIMIT = 4.0
 GLOBAL_SD = 4.5
+RECORDS_SD = 4.5
 NOISE_SHARE = 0.2
 """Share of the spectrum from which the noise is estimated."""
 WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
+MODEL_ERROR = 2e-5
+"""Share of the base's excess chi2 that a right nonlinear law may leave: kinks between
+steps, the anti-alias filter."""
+BENT = {"stiffness", "contact"}
+"""Families of nonlinear laws without memory."""
 FRICTION_ERROR = 1e-4
 """The same for sliders, whose distribution is never that of the model."""
-MODEL_ERROR = 2e-5
-"""Share of the base's excess chi2 that a right model may leave: kinks between steps,
-the anti-alias filter, sliders of another make."""
+EXACT_ERROR = 1e-6
+"""The same for effects that are linear or act on a channel: they are exact, and would
+otherwise hide a second effect behind a great first one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +86,8 @@ def gate(
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
     elif remaining > limit:
         reason = f"a further effect would take {remaining:.0f} units of chi2"
+    elif (odd := _unlike_records(bench, fit)) > RECORDS_SD + share * base_excess * dof:
+        reason = f"records want parameters of their own ({odd:.1f} sd beyond noise)"
     elif np.abs(fit.pulls).max() > PULL_LIMIT:
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
     elif fit.candidates and weakest(fit, (base, *others)) < AMPLITUDE_SD:
@@ -87,8 +97,10 @@ def gate(
 
 
 def _model_error(fit: Fit) -> float:
-    friction = any(c.effect.family == "friction" for c in fit.candidates)
-    return FRICTION_ERROR if friction else MODEL_ERROR
+    families = {c.effect.family for c in fit.candidates}
+    if "friction" in families:
+        return FRICTION_ERROR
+    return MODEL_ERROR if families & BENT else EXACT_ERROR
 
 
 def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]:
@@ -98,15 +110,36 @@ def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]
     are not those of the joint. Anywhere else nothing of it should be seen.
     """
     rubbed = {c.site for c in fit.candidates if c.effect.family == "friction"}
+    elsewhere = min(_model_error(fit), MODEL_ERROR)
     worst, at = (0.0, WIDENED * left.threshold), -np.inf
     for d in left.directions:
         if d.suggested:
             continue
-        share = FRICTION_ERROR if d.candidate.site in rubbed else MODEL_ERROR
+        share = FRICTION_ERROR if d.candidate.site in rubbed else elsewhere
         limit = WIDENED * left.threshold + share * base_excess
         if d.drop - limit > at:
             worst, at = (d.drop, limit), d.drop - limit
     return worst
+
+
+def _unlike_records(bench: Bench, fit: Fit) -> float:
+    """Return how much better every record could be fitted by itself, in sd of noise.
+
+    A law that imitates the true one leaves misfits that no effect of the catalogue
+    takes, but that differ from level to level: parameters that fit all records are
+    not the best of any.
+    """
+    if not bench.blocks.white or not fit.candidates:
+        return 0.0
+    size = np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
+    taken, free = 0.0, -fit.x.size
+    for group in np.unique(bench.blocks.group):
+        rows = bench.blocks.group == group
+        u, s, _ = np.linalg.svd(fit.jacobian[rows] / size, full_matrices=False)
+        u = u[:, s > 1e-6 * s[0]]
+        taken += float(np.sum((u.T @ fit.residual[rows]) ** 2))
+        free += u.shape[1]
+    return (taken - free) / float(np.sqrt(2.0 * max(free, 1)))
 
 
 def noise_sd(bench: Bench) -> float:
@@ -155,11 +188,12 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     if not fits:
         return []
     best, own = score(bench, fits[0]), _labels(fits[0])
+    sites = [c.site for c in fits[0].candidates]
+    near = RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
     return [
         f
         for f in fits
-        if score(bench, f) < best + RIVAL_WITHIN
-        and (f is fits[0] or not own < _labels(f))
+        if score(bench, f) < best + near and (f is fits[0] or not own < _labels(f))
     ]
 
 

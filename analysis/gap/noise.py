@@ -15,6 +15,8 @@ HIGH_BAND = (0.30, 0.497)
 SCATTER_MAX = 0.004
 UNLIKELY = 0.0025
 """Chance of repeats as close as those seen, below which a scatter is ruled out."""
+TREND_CHANCE = 1e-4
+"""Chance of a pattern over the records, below which it is a trend and no scatter."""
 SMALLEST_SHARE = 0.03
 FORCE_SHAPES = 8
 
@@ -127,6 +129,34 @@ def gain_scatter(
     allowed = grid[pivot > scipy.stats.chi2.ppf(UNLIKELY, steps.size)]
     high = max(float(allowed.max(initial=0.0)), low)
     return float(np.sqrt(np.clip(wide, low, high)))
+
+
+def without_trend(values: FloatArray, patterns: FloatArray) -> FloatArray:
+    """Take out of one value a record the pattern that explains them best, if one does.
+
+    A trend over the records is no scatter, but counts as scatter if nothing is done:
+    then it hides itself. Only a pattern that chance would hardly make is taken out.
+
+    Args:
+        values: shape (n_records,).
+        patterns: what records could depend on, shape (n_patterns, n_records).
+
+    Returns:
+        Values less their dependence on one pattern, shape (n_records,).
+    """
+    best, least = values, TREND_CHANCE
+    centred = values - values.mean()
+    for pattern in patterns:
+        q = pattern - pattern.mean()
+        if q @ q < 1e-12 or values.size < 4:
+            continue
+        slope = float(q @ centred) / float(q @ q)
+        left = centred - slope * q
+        ratio = (values.size - 2) * (centred @ centred / max(left @ left, 1e-300) - 1)
+        chance = float(scipy.stats.f.sf(ratio, 1, values.size - 2))
+        if chance < least:
+            best, least = values - slope * q, chance
+    return best
 
 
 def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:

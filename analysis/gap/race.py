@@ -161,6 +161,9 @@ def _far(
         problem = make_problem(bench, (*fit.candidates, candidate))
         directions = screening.best(candidate, 2)
         runners += [_along(problem, fit, d, COARSE_ROUNDS[0][0]) for d in directions]
+        for amplitude in candidate.effect.parameters[0].far:
+            x = np.concatenate([fit.x, [amplitude]])
+            runners.append(_started(problem, x))
         if candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
             progress(f"{candidate.label} from the sheet")
             runners.append(_from_nominal(problem, fit, directions))
@@ -196,6 +199,12 @@ def _runner(problem: Problem, x: FloatArray) -> Runner:
     return Runner(problem, np.clip(x, problem.lower, problem.upper), np.inf)
 
 
+def _started(problem: Problem, x: FloatArray) -> Runner:
+    stage = COARSE_ROUNDS[0][0]
+    fit = minimise(problem, x, stage, iterations=4, exact_slopes=False)
+    return Runner(problem, fit.x, fit.cost)
+
+
 def swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
     """Start where an effect hands back to the base what the base took of it.
 
@@ -224,7 +233,7 @@ def _from_nominal(
     start[fit.n_base :] = fit.x[fit.n_base :]
     tail = directions[0].coordinates if directions else np.zeros(1)
     x = np.concatenate([start, tail])
-    for stage, iterations, _ in BASE_STAGES[:-1]:
+    for stage, iterations in BASE_STAGES[:-1]:
         x = minimise(problem, x, stage, iterations=iterations, exact_slopes=False).x
     return _runner(problem, x)
 

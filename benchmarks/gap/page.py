@@ -154,11 +154,16 @@ def site_share(runs: Sequence[Run]) -> str:
     return share_text(hits, len(mine))
 
 
+FRICTION = ("jenkins", "iwan", "bouc_wen")
+
+
 def coverage(runs: Sequence[Run]) -> list[str]:
     """Return, effect by effect, how often 2 sd hold the true parameters."""
     inside: dict[str, list[bool]] = {}
     for run in right_singles(runs):
         effect = run["found"]["effects"][0]
+        if effect["name"] in FRICTION:
+            continue
         for name, estimate in effect["parameters"].items():
             truth = run["parameters"][0].get(name)
             if truth is None or not np.isfinite(estimate["sd"]):
@@ -172,6 +177,77 @@ def coverage(runs: Sequence[Run]) -> list[str]:
         for name, row in sorted(inside.items())
     ]
     return [*lines, f"| all | {share_text(sum(every), len(every))} |"]
+
+
+def force_curves(runs: Sequence[Run]) -> str:
+    """Return how well the curves of hysteretic laws come out, where they were named.
+
+    What a law takes off the elastic force on first loading, up to the largest motion
+    of the joint, against the truth; the largest difference over the largest value.
+    """
+    errors = [
+        error_of(run)
+        for run in right_singles(runs)
+        if run["found"]["effects"][0]["name"] in FRICTION
+    ]
+    if not errors:
+        return "none was named"
+    inside = sum(e <= 0.1 for e in errors)
+    return (
+        f"median error {100 * np.median(errors):.1f} %; within 10 %: "
+        f"{share_text(inside, len(errors))}"
+    )
+
+
+def error_of(run: Run) -> float:
+    """Return the error of one force curve [-]."""
+    from jointbench.simulators.campaign_design import draw_design
+    from jointbench.simulators.effect_draws import specimen_scales
+
+    effect = run["found"]["effects"][0]
+    told = {name: one["value"] for name, one in effect["parameters"].items()}
+    travel = specimen_scales(draw_design(run["seed"])).elongation
+    r = np.linspace(0.0, travel, 200)
+    truth = softening(effect["name"], run["parameters"][0], r)
+    error = np.abs(softening(effect["name"], told, r) - truth).max()
+    return float(error / np.abs(truth).max())
+
+
+def softening(name: str, p: dict[str, float], r: np.ndarray) -> np.ndarray:
+    """Return elastic force less that of a hysteretic law on first loading [N]."""
+    from jointbench.analysis.gap.slider_march import slider_tables
+
+    if name == "iwan":
+        edges = np.linspace(0, 1, int(p.get("sliders", 14)) + 1)
+        power = p["chi"] + 2
+        shares = np.diff(edges**power)
+        centres = np.diff(edges ** (power + 1)) / shares * power / (power + 1)
+        weights, slips = p["kt"] * shares, p["phimax"] * centres
+    elif name == "jenkins":
+        weights, slips = np.array([p["kt"]]), np.array([p["Fs"] / p["kt"]])
+    else:
+        yielding = p["zy"] / (p["b"] + p["g"]) ** (1 / p["n"])
+        weights, slips = np.array([p["k"]]), np.array([yielding])
+    tables, tops = slider_tables(1.0, 0.0, p.get("sharpness", p.get("n", 1.0)))
+    grid = np.arange(tables.shape[1]) / tops[0]
+    x = r[:, None] / slips
+    force = np.interp(x, grid, tables[0], right=1.0) * slips
+    return np.asarray(np.sum(weights * (r[:, None] - force), axis=1))
+
+
+def null_test(runs: Sequence[Run]) -> str:
+    """Return how often the directed tests of a null exceed their limit."""
+    tests = [
+        r["found"]["null_test"]
+        for r in runs
+        if r["kind"] == "null" and "null_test" in r["found"]
+    ]
+    above = sum(t["largest"] > t["limit"] for t in tests)
+    far = sum(t["largest"] > 1.3 * t["limit"] for t in tests)
+    return (
+        f"over the 99.5 % limit {share_text(above, len(tests))}, over 1.3 times the "
+        f"limit, where the engine looks further, {share_text(far, len(tests))}"
+    )
 
 
 def shrinkage(runs: Sequence[Run]) -> str:
@@ -289,22 +365,26 @@ def failures(runs: Sequence[Run]) -> list[str]:
     return lines
 
 
-def page(runs: list[Run]) -> str:
+def page(runs: list[Run], engine: str) -> str:
     """Return the whole page."""
     sets = sets_of(runs)
     parts = [
         ["# Gap engine on fresh simulated campaigns", ""],
         [
             "Made by `benchmarks/gap/campaigns.py`, `judge.py` and `page.py`. Counts, "
-            "with 95 % Wilson intervals in %; time is CPU time of one core.",
+            "with 95 % Wilson intervals in %; time is CPU time of one core, on a "
+            "machine that was busy with other work as well.",
+            f"Engine: {engine}." if engine else "",
             "",
         ],
         [*confusion(sets), ""],
+        [f"Null test where nothing is missing: {null_test(runs)}.", ""],
         [f"Site of right names: {site_share(runs)}.", ""],
         [f"Gap on held-out records, right names: {shrinkage(runs)}.", ""],
         [f"Pull where only the priors see the effect: {pulls(runs)}.", ""],
         ["## What was told of each effect", "", *matrix(runs), ""],
         ["## Parameters of right names", "", *coverage(runs), ""],
+        [f"Force curves of hysteretic laws: {force_curves(runs)}.", ""],
         ["## Confidence", "", *reliability(runs), ""],
         ["## Beside answerers that do not think", "", *trivial(sets), ""],
         ["## What went wrong", "", *failures(runs), ""],
@@ -316,8 +396,10 @@ def main() -> None:
     """Print the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("runs", type=Path)
-    lines = parser.parse_args().runs.read_text(encoding="utf-8").splitlines()
-    sys.stdout.write(page([json.loads(line) for line in lines]))
+    parser.add_argument("--engine", default="", help="which state was judged")
+    arguments = parser.parse_args()
+    lines = arguments.runs.read_text(encoding="utf-8").splitlines()
+    sys.stdout.write(page([json.loads(line) for line in lines], arguments.engine))
 
 
 if __name__ == "__main__":

@@ -142,8 +142,15 @@ def test_holding_out_agrees_with_a_refit_without_the_group() -> None:
     assert held.chi2[2] == pytest.approx(float(moved[out] @ moved[out]), rel=1e-4)
 
 
-def test_confidence_grows_with_the_margin_over_the_nearest_rival() -> None:
-    """More margin is never less sure."""
-    sure = [confidence_of(Evidence(m, 0.8, 20.0, 1)) for m in (15.0, 150.0, 1e4)]
-    assert sure == sorted(sure)
-    assert 0.5 < sure[0] < sure[-1] < 1.0
+def test_confidence_never_falls_with_more_evidence() -> None:
+    """A wider margin, more slack and one effect instead of two are never less sure."""
+    poor = Evidence(15.0, 0.1, 5.0, 2)
+    better = (
+        replace(poor, margin=1e4),
+        replace(poor, slack=1.0),
+        replace(poor, amplitude=100.0),
+        replace(poor, effects=1),
+    )
+    sure = [confidence_of(evidence) for evidence in better]
+    assert all(0.5 < confidence_of(poor) <= c < 1.0 for c in sure)
+    assert max(sure) > confidence_of(poor) + 0.02

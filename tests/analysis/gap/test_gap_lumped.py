@@ -13,12 +13,12 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.slider_march import slide, slider_tables
 from jointbench.analysis.gap.noise import (
     channel_sigma,
     gain_scatter,
     whitening_basis,
 )
+from jointbench.analysis.gap.slider_march import slide, slider_tables
 
 _spec = importlib.util.spec_from_file_location(
     "gap_bench", Path(__file__).with_name("gap_bench.py")

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Effects hidden by the simulators' own physics, found by the engine: fixed seeds.
+
+The statistics over many campaigns: benchmarks/gap and docs/gap-confusion.md.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from jointbench.analysis.gap.campaign import read_campaign
+from jointbench.analysis.gap.diagnose import diagnose
+from jointbench.analysis.gap.records import Diagnosis, Finding
+from jointbench.simulators.campaign import Campaign, quick_campaign
+from jointbench.simulators.campaign_file import write_campaign
+
+pytestmark = pytest.mark.timeout(400)
+
+
+def told(campaign: Campaign, folder: Path, *without: str) -> Diagnosis:
+    """Return the diagnosis of a campaign after a way through its file."""
+    path = folder / "campaign.h5"
+    write_campaign(campaign, path)
+    return diagnose(read_campaign(path), without=frozenset(without))
+
+
+@pytest.mark.parametrize(("seed", "scatter"), [(901, 0.0), (902, 0.0015), (903, 0.002)])
+def test_nothing_hidden_is_nothing_found(
+    seed: int, scatter: float, tmp_path: Path
+) -> None:
+    """Verdict none, with and without scatter from hit to hit."""
+    found = told(quick_campaign(seed, hit_scatter=scatter), tmp_path)
+    assert found.verdict is Finding.NONE
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "scatter"),
+    [
+        ("cubic_stiffness", 0.02, 0.0),
+        ("gap", 0.02, 0.0),
+        ("maxwell", 0.02, 0.001),
+        ("hidden_mode", 0.2, 0.0),
+        ("delay", 0.02, 0.0),
+        ("preload_stiffness", 0.2, 0.0015),
+        ("hum", 0.5, 0.0),
+        ("saturation", 1.0, 0.002),
+    ],
+)
+def test_one_hidden_effect_is_named_at_its_site(
+    name: str, size: float, scatter: float, tmp_path: Path
+) -> None:
+    """Name and site are right, and the gap on held-out records closes."""
+    campaign = quick_campaign(
+        911, effects=(name,), size=size, grid="small", noise=0.05, hit_scatter=scatter
+    )
+    found = told(campaign, tmp_path)
+    assert [(e.name, e.site) for e in found.effects] == [
+        (e.name, e.site) for e in campaign.effects
+    ]
+    assert found.verdict is Finding.NAMED
+    assert found.gap_after.value < 0.1 * found.gap_before.value + 0.2
+
+
+def test_two_hidden_effects_are_both_named(tmp_path: Path) -> None:
+    """A preload law of the joint and a mode of a body, one after the other."""
+    names = ("preload_stiffness", "hidden_mode")
+    campaign = quick_campaign(921, effects=names, size=0.2, grid="small", noise=0.05)
+    found = told(campaign, tmp_path)
+    assert {e.name for e in found.effects} == set(names)
+    assert found.verdict is Finding.NAMED
+
+
+@pytest.mark.parametrize("name", ["extra_damping", "hidden_mode", "saturation"])
+def test_an_effect_out_of_the_catalogue_gets_no_other_name(
+    name: str, tmp_path: Path
+) -> None:
+    """Something is missing, and it is said that it is not known."""
+    campaign = quick_campaign(931, effects=(name,), size=0.3, grid="small", noise=0.05)
+    assert told(campaign, tmp_path, name).verdict is Finding.UNKNOWN
