@@ -124,6 +124,7 @@ def model(scale: complex = 1.0) -> ModalModel:
         participation=participation,
         significance=np.ones(2),
         stable_orders=np.ones(2, np.int64),
+        by_hand=np.zeros(2, bool),
         outputs=("a@1", "b@2", "c@3"),
         inputs=("2",),
     )
