@@ -30,6 +30,10 @@ _MOVING = 0.5
 # A share of samples beyond which there is nothing left to track.
 _MOST_LOST = 0.3
 _LEAST_NOISE = 1e-9
+# Pieces of the spectrum that are looked at for noise, and how many hold it alone.
+_PIECES, _QUIET = 400, 0.1
+# Half-power half-widths either side of a resonance that tell how strong it is.
+_HALF_WIDTHS = 3.0
 # A gap is seen with this many decays of the slowest oscillator on either side.
 _DECAYS = 2.0
 _MOST_AROUND = 4000
@@ -240,26 +244,27 @@ def _require_inside(
 def _strengths(
     samples: FloatArray, turn: FloatArray, decay: FloatArray
 ) -> tuple[FloatArray, float]:
-    """Fit the power of each oscillator's push, and white noise, to the periodogram."""
+    """Fit the power of each oscillator's push, and white noise, to the periodogram.
+
+    Only what stands around each resonance tells its push: a ring that was struck does
+    not fall off like one that is pushed at random, and its skirts would be taken for
+    noise, or for a neighbour. The quietest tenth of the band tells the noise.
+    """
     spectrum = np.abs(scipy.fft.rfft(samples)) ** 2 / samples.size
-    pieces = np.array_split(spectrum[1:], min(400, spectrum.size - 1))
-    level = np.array([piece.mean() for piece in pieces])
-    share = np.array_split(np.arange(1, spectrum.size) / samples.size, len(pieces))
-    columns = [np.ones(level.size)]
-    for angle, left in zip(turn, decay, strict=True):
-        root = left * np.exp(1j * angle)
-        z = [np.exp(2j * np.pi * turns) for turns in share]
-        both = [
-            np.mean(
-                0.5 / np.abs(x - root) ** 2 + 0.5 / np.abs(x - root.conjugate()) ** 2
-            )
-            for x in z
-        ]
-        columns.append(np.array(both))
-    floor = 1e-3 * float(np.median(level)) + np.finfo(float).tiny
-    weight = 1.0 / (level + floor)
-    design = np.array(columns).T * weight[:, None]
-    found = scipy.optimize.nnls(design, level * weight)[0]
+    angle = 2.0 * np.pi * np.arange(spectrum.size) / samples.size
+    pieces = np.array_split(spectrum[1:], min(_PIECES, spectrum.size - 1))
     total = float(np.mean(samples**2)) + np.finfo(float).tiny
-    noise = max(float(found[0]), _LEAST_NOISE * total)
-    return np.maximum(found[1:], _LEAST_NOISE * noise), noise
+    quiet = float(np.quantile([piece.mean() for piece in pieces], _QUIET))
+    noise = max(quiet, _LEAST_NOISE * total)
+    reach = np.maximum(_HALF_WIDTHS * -np.log(decay), 2.0 * angle[1])
+    level, design = np.empty(turn.size), np.empty((turn.size, turn.size))
+    for i, (own, width) in enumerate(zip(turn, reach, strict=True)):
+        around = np.abs(angle - own) <= width
+        z = np.exp(1j * angle[around])
+        level[i] = spectrum[around].mean()
+        for j, root in enumerate(decay * np.exp(1j * turn)):
+            both = np.abs(z - root) ** -2 + np.abs(z - root.conjugate()) ** -2
+            design[i, j] = 0.5 * both.mean()
+    level = np.maximum(level, np.finfo(float).tiny)
+    found = scipy.optimize.nnls(design / level[:, None], np.ones(turn.size))[0]
+    return np.maximum(found, _LEAST_NOISE * noise), noise

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""FRFs as universal files, data set 58 in double precision, SI units.
+"""FRFs and mode shapes as universal files, data sets 58 and 55, SI units.
 
 Source:
     Structural Dynamics Research Laboratory, University of Cincinnati, Universal File
-    Formats, data set 58 (function at nodal degree of freedom).
+    Formats, data sets 55 (data at nodes) and 58 (function at nodal degree of freedom).
 """
 
 from collections.abc import Iterator
@@ -13,6 +13,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray
 from jointbench.signal.frf import Frf, FrfKind
+from jointbench.signal.modal_model import ModalModel
 from jointbench.station.outputs import write_text
 
 _EDGE = "    -1"
@@ -22,6 +23,8 @@ _COMPLEX_DOUBLE = 6
 _UNEVEN = 0
 _FREQUENCY = 18
 _FORCE = 13
+# Data set 55: structural, complex mode, 3 translations, displacement, complex.
+_STRUCTURAL, _COMPLEX_MODE, _TRANSLATIONS, _DISPLACEMENT, _COMPLEX = 1, 3, 2, 8, 5
 # Specific data types of the response: displacement, velocity, acceleration.
 _RESPONSE = {
     FrfKind.RECEPTANCE: (8, "Displacement", "m"),
@@ -44,6 +47,45 @@ def write_universal_frf(path: Path, frf: Frf) -> None:
         for line in _data_set(frf, row, column)
     ]
     write_text(path, "\n".join(lines) + "\n")
+
+
+def write_universal(path: Path, frf: Frf, model: ModalModel) -> None:
+    """Write FRFs (58) and mode shapes (55) into one universal file.
+
+    Args:
+        path: file to write.
+        frf: as for `write_universal_frf`.
+        model: modes of the same outputs; node n is output n, as in the FRFs. Of the
+            three translations only the third is used, for want of directions.
+    """
+    lines = [
+        line
+        for row, column in np.ndindex(frf.response.shape[:2])
+        for line in _data_set(frf, row, column)
+    ]
+    for number in range(model.natural_frequency.size):
+        lines += _shape_set(model, number)
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def _shape_set(model: ModalModel, number: int) -> Iterator[str]:
+    """Yield a complex mode: pole and Modal A as data set 55 defines them."""
+    pole = model.poles[number]
+    yield from (_EDGE, "    55")
+    frequency = f"{model.natural_frequency[number]:.6g} Hz"
+    for text in (f"mode {number + 1}, {frequency}", "jointbench", "", "", "NONE"):
+        yield _printable(text)
+    fields = (_STRUCTURAL, _COMPLEX_MODE, _TRANSLATIONS, _DISPLACEMENT, _COMPLEX, 3)
+    yield "".join(f"{value:10d}" for value in fields)
+    yield "".join(f"{value:10d}" for value in (2, 6, 1, number + 1))
+    # Modal A of a shape phi and participation L is 1 where residue = phi L / A.
+    reals = (pole.real, pole.imag, 1.0, 0.0, 0.0, 0.0)
+    yield "".join(f"{value:13.5e}" for value in reals)
+    for node, value in enumerate(model.shapes[number], 1):
+        yield f"{node:10d}"
+        parts = (0.0, 0.0, 0.0, 0.0, value.real, value.imag)
+        yield "".join(f"{part:13.5e}" for part in parts)
+    yield _EDGE
 
 
 def _data_set(frf: Frf, row: int, column: int) -> Iterator[str]:

@@ -4,9 +4,11 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from jointbench.signal.frf import Frf, FrfKind
-from jointbench.station.universal_file import write_universal_frf
+from jointbench.signal.modes import identify_modes
+from jointbench.station.universal_file import write_universal, write_universal_frf
 
 
 def test_an_frf_comes_back_from_its_universal_file(tmp_path: Path) -> None:
@@ -49,3 +51,30 @@ def test_a_hostile_label_stays_on_its_line(tmp_path: Path) -> None:
     lines = path.read_text(encoding="ascii").splitlines()
     assert lines.count("    -1") == 2
     assert max(len(line) for line in lines) <= 80
+
+
+def test_mode_shapes_follow_the_frfs_as_data_set_55(tmp_path: Path) -> None:
+    """Pole and both complex components of every mode, to the six digits written."""
+    frequency = np.linspace(1.0, 400.0, 800)
+    pole = 2.0 * np.pi * np.array([100.0, 250.0]) * (1j - 0.01)
+    shape = np.array([[1.0, -0.5], [0.4 + 0.1j, 1.0]])
+    s = 2j * np.pi * frequency
+    columns = 1.0 / (s - pole[:, None])
+    mirrored = 1.0 / (s - pole.conj()[:, None])
+    response = shape.T @ (columns / 1j) + shape.conj().T @ (mirrored / -1j)
+    frf = Frf(frequency, response[:, None], FrfKind.RECEPTANCE)
+    model = identify_modes(frf).model
+    path = tmp_path / "all.uff"
+    write_universal(path, frf, model)
+    lines = path.read_text(encoding="ascii").splitlines()
+    starts = [i for i, line in enumerate(lines) if line == "    55"]
+    assert len(starts) == 2
+    for number, start in enumerate(starts):
+        assert [int(word) for word in lines[start + 6].split()] == [1, 3, 2, 8, 5, 3]
+        assert [int(word) for word in lines[start + 7].split()] == [2, 6, 1, number + 1]
+        found = [float(lines[start + 8][i : i + 13]) for i in (0, 13)]
+        assert complex(*found) == pytest.approx(pole[number], rel=1e-4)
+        for node in (0, 1):
+            row = lines[start + 10 + 2 * node]
+            value = complex(float(row[52:65]), float(row[65:78]))
+            assert value == pytest.approx(model.shapes[number, node], abs=1e-5)
