@@ -17,9 +17,12 @@ from jointbench.station.figures import (
     markers,
     thin,
 )
+from jointbench.station.geometry import Geometry
 from jointbench.station.modal import STAGE_COLUMNS, stage_cells, synthesis_error
 from jointbench.station.output import with_sd
+from jointbench.station.report_checks import checks_section, systematic_words
 from jointbench.station.report_page import DataTable, Plot, Section, Text
+from jointbench.station.report_shapes import shapes_section
 
 MOST_POINTS = 4000
 HALF_TURN = 180.0
@@ -30,12 +33,20 @@ UNITS = {
 }
 
 
-def modal_sections(chain: ModalChain) -> tuple[Section, ...]:
-    """Return the sections FRF, stabilisation and modes."""
+def modal_sections(
+    chain: ModalChain, geometry: Geometry | None = None
+) -> tuple[Section, ...]:
+    """Return the sections FRF, stabilisation, modes, shapes and checks."""
     return (
         Section("frf", "Frequency response", (_frf_plot(chain), Text(_window(chain)))),
         Section("stabilisation", "Stabilisation", (_stabilisation_plot(chain),)),
-        Section("modes", "Modes", (modes_table(chain), Text(_kalman(chain)))),
+        Section(
+            "modes",
+            "Modes",
+            (modes_table(chain), Text(systematic_words(chain)), Text(_kalman(chain))),
+        ),
+        shapes_section(chain, geometry),
+        checks_section(chain),
     )
 
 
@@ -178,7 +189,7 @@ def _stabilisation_plot(chain: ModalChain) -> Plot:
     )
     caption = (
         "Poles of every model order of the least-squares complex frequency estimator. "
-        "Vertical lines: the modes that were chosen, automatically."
+        "Vertical lines: the modes that were chosen."
     )
     return Plot("stabilisation-plot", caption, plot, 440)
 
@@ -207,13 +218,14 @@ def modes_table(chain: ModalChain) -> DataTable:
                 100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
             ),
             *stage_cells(chain, number),
+            "hand" if model.by_hand[number] else "program",
         )
         for number in range(len(model.natural_frequency))
     )
     return DataTable(
         "Identified modes with one standard deviation; gain and phase of the Kalman "
         "stage at each mode.",
-        ("mode", "frequency [Hz]", "damping ratio [%]", *STAGE_COLUMNS),
+        ("mode", "frequency [Hz]", "damping ratio [%]", *STAGE_COLUMNS, "chosen by"),
         rows,
     )
 
