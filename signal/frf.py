@@ -20,6 +20,7 @@ from jointbench.acquisition.errors import ShapeError
 from jointbench.acquisition.records import Provenance, Quantity, Recording, Step, step
 from jointbench.signal.frf_estimators import Estimator, bias_bound, estimate_pair
 from jointbench.signal.hits import accepted_hits, find_hits
+from jointbench.signal.innovation_noise import innovation_noise
 from jointbench.signal.spectra import (
     HitSpectra,
     hit_spectra,
@@ -73,6 +74,8 @@ class Frf:
         averages: smallest number of hits behind a column; 0 if unknown.
         provenance: how it came about.
         usable_band: (lowest, highest) frequency that was really excited [Hz], or None.
+        innovation_noise: variance that the noise seen by the Kalman stage explains
+            [unit of response squared], same shape, or None: good for weights only.
     """
 
     frequency: FloatArray
@@ -86,6 +89,7 @@ class Frf:
     averages: int = 0
     provenance: Provenance = field(default=())
     usable_band: tuple[float, float] | None = None
+    innovation_noise: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -93,7 +97,8 @@ class Frf:
         require_finite("frequency", self.frequency)
         require_shape("response", self.response, (None, None, self.frequency.size))
         require_finite("response", self.response)
-        for name, array in (("coherence", self.coherence), ("variance", self.variance)):
+        for name in ("coherence", "variance", "innovation_noise"):
+            array = getattr(self, name)
             if array is not None:
                 require_shape(name, array, self.response.shape)
         n_outputs, n_inputs, _ = self.response.shape
@@ -106,7 +111,14 @@ class Frf:
                 object.__setattr__(self, name, numbered)
             elif len(labels) != size:
                 raise ShapeError(f"{len(labels)} labels for {size} {name}")
-        freeze(self, "frequency", "response", "coherence", "variance")
+        freeze(
+            self,
+            "frequency",
+            "response",
+            "coherence",
+            "variance",
+            "innovation_noise",
+        )
 
 
 def estimate_frf(
@@ -160,18 +172,21 @@ def estimate_frf(
     averages = min(pair.hits.size for pair in pairs)
     coherence = _stack([a.coherence for a in averaged], shape, averages)
     done = _record(spectra, window, averages, estimator, coherence)
+    inherited, decay = _inherited(judged), window.decay_rate or 0.0
+    noise = innovation_noise(spectra, outputs, pairs, inherited, decay)
     return Frf(
         frequency=spectra.frequency,
         response=np.array([a.response for a in averaged]).reshape(shape),
         kind=KIND_OF_RESPONSE[spectra.quantity],
         coherence=coherence,
         variance=_stack([a.variance for a in averaged], shape, averages),
-        added_decay_rate=window.decay_rate or 0.0,
+        added_decay_rate=decay,
         outputs=outputs,
         inputs=inputs,
         averages=averages,
-        provenance=(*_inherited(judged), done),
+        provenance=(*inherited, done),
         usable_band=excited_band(spectra),
+        innovation_noise=None if noise is None else noise.reshape(shape),
     )
 
 

@@ -32,8 +32,6 @@ from jointbench.signal.matrix_roots import inverse_roots
 _GAP = 0.05
 # Keeps the normal equations definite where clean data leave them singular.
 _RIDGE = 1e-14
-# No line counts more than the median one by more than this.
-_MOST_WEIGHT = 30.0
 # Spectra transformed in one go: fast, and small beside the FRF itself.
 _SERIES_AT_ONCE = 128
 _TINY = float(np.finfo(float).tiny)
@@ -149,29 +147,6 @@ def fit_poles(
         pole = circle.pole(roots[kept]) + added_decay_rate
         found.append(OrderPoles(order, pole, _unit(shape)))
     return tuple(found)
-
-
-def line_weights(response: ComplexArray, variance: FloatArray) -> FloatArray:
-    """Return how much each line counts in `fit_poles`, from the noise of the FRFs.
-
-    All outputs must share one weight a line, or orders no longer nest: it is the
-    reciprocal of their mean noise, each over its own power. Bounded, so that a few
-    lines on which hits happened to agree do not rule the fit.
-
-    Args:
-        response: FRF, shape (n_outputs, n_inputs, n_lines).
-        variance: E|error|^2, same shape.
-
-    Returns:
-        Weights [-], median 1, shape (n_lines,).
-    """
-    power = np.mean(np.abs(response) ** 2, axis=2, keepdims=True)
-    noise = np.mean(variance / np.where(power > 0.0, power, 1.0), axis=(0, 1))
-    middle = float(np.median(noise))
-    if middle <= 0.0:
-        return np.ones_like(noise)
-    least = middle / _MOST_WEIGHT
-    return np.asarray(middle / np.maximum(noise, least))
 
 
 def _modes_among(pole: ComplexArray, band: tuple[float, float]) -> IntArray:

@@ -13,6 +13,7 @@ from jointbench.signal.choices import Choices, overrule
 from jointbench.signal.frf import Frf
 from jointbench.signal.kalman import stage_gain_of
 from jointbench.signal.kalman_model import StageGain
+from jointbench.signal.line_weights import weights_of
 from jointbench.signal.lscf import fit_poles
 from jointbench.signal.lsfd import Lines, lines_of
 from jointbench.signal.modal_model import ModalModel, build_model
@@ -109,14 +110,7 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
     settings = settings or ModalSettings()
     _require_alive(frf)
     keep, reason = choose_band(frf, settings.band)
-    orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
-    poles = fit_poles(
-        frf.frequency[keep],
-        frf.response[:, :, keep],
-        orders,
-        added_decay_rate=frf.added_decay_rate,
-    )
-    table = stabilise(poles, settings.stability)
+    table, weighed = _stabilisation(frf, keep, settings)
     found = candidates(table, settings.stability)
     found = overrule(found, table, settings.choices)
     lines = lines_of(frf, keep)
@@ -131,9 +125,10 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
     if fitted.chosen.size == 0:
         raise NoModeFound(
             f"none of {start.size} stable poles rises above the noise, orders "
-            f"{orders[0]} to {orders[-1]}, {reason}; give another band or more hits"
+            f"{table.orders[0]} to {table.orders[-1]}, {reason}; give another band or "
+            "more hits"
         )
-    done = _record(reason, orders, start.size, fitted, settings.choices)
+    done = _record(reason, weighed, table, start.size, fitted, settings.choices)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
     return ModalResult(
         model=model,
@@ -144,6 +139,22 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
         band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
         stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
     )
+
+
+def _stabilisation(
+    frf: Frf, keep: BoolArray, settings: ModalSettings
+) -> tuple[Stabilisation, str]:
+    """Return the poles of all orders, and what their lines were weighed by."""
+    orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
+    weight, source = weights_of(frf, keep)
+    poles = fit_poles(
+        frf.frequency[keep],
+        frf.response[:, :, keep],
+        orders,
+        weight=weight,
+        added_decay_rate=frf.added_decay_rate,
+    )
+    return stabilise(poles, settings.stability), source
 
 
 def orders_to_try(
@@ -192,7 +203,8 @@ def _require_alive(frf: Frf) -> None:
 
 def _record(
     band: str,
-    orders: tuple[int, ...],
+    weights: str,
+    table: Stabilisation,
     candidates_found: int,
     fitted: FittedModes,
     choices: Choices,
@@ -200,7 +212,8 @@ def _record(
     return step(
         "identify_modes",
         band=band,
-        highest_order=orders[-1],
+        line_weights=weights,
+        highest_order=int(table.orders[-1]),
         candidates=candidates_found,
         modes=fitted.chosen.size,
         model_error=fitted.model_error,
@@ -227,6 +240,7 @@ def _synthesis(frf: Frf, keep: BoolArray, fitted: FittedModes) -> Frf:
         frequency=frf.frequency[keep],
         response=fitted.fit.synthesis.reshape(shape),
         coherence=None,
+        innovation_noise=None,
         variance=fitted.variance.reshape(shape),
         provenance=(*frf.provenance, step("synthesis")),
     )

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from jointbench.signal.frf import Frf
-from jointbench.signal.lscf import fit_poles, line_weights
+from jointbench.signal.line_weights import line_weights
+from jointbench.signal.lscf import fit_poles
 
 BAND = np.arange(20.0, 1000.0, 0.5)
 
