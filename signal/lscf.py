@@ -17,7 +17,7 @@ Two choices differ from the textbook and matter:
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,6 +34,8 @@ _GAP = 0.05
 _RIDGE = 1e-14
 # Spectra transformed in one go: fast, and small beside the FRF itself.
 _SERIES_AT_ONCE = 128
+Progress = Callable[[str, float], None]
+"""Called with what is being done, and the share of it that is done [-]."""
 _TINY = float(np.finfo(float).tiny)
 
 
@@ -101,6 +103,7 @@ def fit_poles(
     weight: FloatArray | None = None,
     scalar: bool = False,
     added_decay_rate: float = 0.0,
+    progress: Progress | None = None,
 ) -> tuple[OrderPoles, ...]:
     """Fit poles of several orders at once.
 
@@ -114,6 +117,7 @@ def fit_poles(
             inputs, or inputs that were not measured together. Close modes then share
             the order with all others, and shapes have n_outputs n_inputs components.
         added_decay_rate: of the exponential window [1/s], taken off the poles.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         For each order the poles inside the band with positive damping.
@@ -135,6 +139,7 @@ def fit_poles(
         np.where(scale > 0.0, scale, 1.0),
         line_weight,
         largest,
+        progress,
     )
     band = (float(frequency[0]), float(frequency[-1]))
     found, inverse = [], None
@@ -146,6 +151,8 @@ def fit_poles(
         shape = _shapes(reduced, denominator, roots[kept]) * scale.ravel()
         pole = circle.pole(roots[kept]) + added_decay_rate
         found.append(OrderPoles(order, pole, _unit(shape)))
+        if progress is not None:
+            progress("finding poles", (order / largest) ** 2)
     return tuple(found)
 
 
@@ -170,6 +177,7 @@ def _normal_equations(
     scale: FloatArray,
     weight: FloatArray,
     order: int,
+    progress: Progress | None,
 ) -> _Reduced:
     """Fill R, S and T, a few outputs at a time, and eliminate R."""
     n_outputs, n_inputs, n_lines = response.shape
@@ -189,6 +197,8 @@ def _normal_equations(
             factor, blocks.reshape(size, -1), lower=True
         )
         cross[:, first : first + chunk] = solved.reshape(size, -1, size * n_inputs)
+        if progress is not None:
+            progress("adding up FRFs", min(1.0, (first + chunk) / n_outputs))
     moments = _moments(angle, (inner * weight).reshape(-1, n_lines), order)
     square = np.array([_block(m, size) for m in moments])
     square = square.reshape(n_inputs, n_inputs, size, size).transpose(2, 0, 3, 1)

@@ -14,7 +14,7 @@ from jointbench.signal.frf import Frf
 from jointbench.signal.kalman import stage_gain_of
 from jointbench.signal.kalman_model import StageGain
 from jointbench.signal.line_weights import weights_of
-from jointbench.signal.lscf import fit_poles
+from jointbench.signal.lscf import Progress, fit_poles
 from jointbench.signal.lsfd import Lines, lines_of
 from jointbench.signal.modal_model import ModalModel, build_model
 from jointbench.signal.selection import FittedModes, fit_modes
@@ -82,7 +82,12 @@ class ModalResult:
         freeze(self, "synthesis_error")
 
 
-def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResult:
+def identify_modes(
+    frf: Frf,
+    settings: ModalSettings | None = None,
+    *,
+    progress: Progress | None = None,
+) -> ModalResult:
     """Identify the modes of an FRF without being told where they are.
 
     Poles of all orders (LSCF), those that keep still (stabilisation), those that the
@@ -98,6 +103,7 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
     Args:
         frf: any kind, any number of outputs and inputs.
         settings: see `ModalSettings`; None for the defaults.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         The modal model with the evidence for it.
@@ -110,7 +116,7 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
     settings = settings or ModalSettings()
     _require_alive(frf)
     keep, reason = choose_band(frf, settings.band)
-    table, weighed = _stabilisation(frf, keep, settings)
+    table, weighed = _stabilisation(frf, keep, settings, progress)
     found = candidates(table, settings.stability)
     found = overrule(found, table, settings.choices)
     lines = lines_of(frf, keep)
@@ -121,6 +127,7 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
         _scatter(frf, keep),
         held=np.array([c.by_hand for c in found], bool),
         refine=settings.refine,
+        progress=progress,
     )
     if fitted.chosen.size == 0:
         raise NoModeFound(
@@ -142,7 +149,7 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
 
 
 def _stabilisation(
-    frf: Frf, keep: BoolArray, settings: ModalSettings
+    frf: Frf, keep: BoolArray, settings: ModalSettings, progress: Progress | None
 ) -> tuple[Stabilisation, str]:
     """Return the poles of all orders, and what their lines were weighed by."""
     orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
@@ -153,6 +160,7 @@ def _stabilisation(
         orders,
         weight=weight,
         added_decay_rate=frf.added_decay_rate,
+        progress=progress,
     )
     return stabilise(poles, settings.stability), source
 

@@ -19,6 +19,7 @@ from jointbench.signal.line_noise import (
     local_misfit,
     model_error,
 )
+from jointbench.signal.lscf import Progress
 from jointbench.signal.lsfd import LinearFit, Lines, fit_residues, measured_width
 from jointbench.signal.misfit import misfit_around
 from jointbench.signal.refine import RefinedPoles, refine_poles, unresolved
@@ -64,6 +65,7 @@ def fit_modes(
     *,
     held: BoolArray | None = None,
     refine: bool = True,
+    progress: Progress | None = None,
 ) -> FittedModes:
     """Refine candidate poles and keep those that the FRF needs.
 
@@ -77,6 +79,7 @@ def fit_modes(
         held: True for candidates that stay whatever the FRF says, shape
             (n_candidates,), or None.
         refine: False keeps the poles where LSCF put them.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         The modes, possibly none.
@@ -85,7 +88,10 @@ def fit_modes(
     variance = noise + _FIRST_MODEL_ERROR**2 * level
     steps = _STEPS if refine else 0
     held = np.zeros(candidates.size, bool) if held is None else held
+    tell = progress or _nobody
+    tell("refining modes", 0.0)
     chosen, poles = _first_fit(lines, candidates, held, noise, variance, steps)
+    tell("refining modes", 0.4)
     # The response itself is rough where it resonates; what a fit leaves is not.
     noise = line_noise(lines.response, scatter, poles.residual)
     beyond = poles.beyond
@@ -99,6 +105,7 @@ def fit_modes(
     error = model_error(residual, noise, lines.response)
     variance = noise + error**2 * level
     kept = _needed(lines, poles.pole, held[chosen], noise, variance, beyond)
+    tell("refining modes", 0.7)
     while True:
         chosen = chosen[kept]
         poles = refine_poles(
@@ -116,6 +123,7 @@ def fit_modes(
         aside = unresolved(lines, poles.pole) & ~held[chosen]
         bad = (_vague(lines, poles, significance) & ~held[chosen]) | aside
         if not bad.any():
+            tell("refining modes", 1.0)
             return FittedModes(
                 chosen,
                 poles,
@@ -127,6 +135,10 @@ def fit_modes(
             )
         beyond = np.append(beyond, poles.pole[aside])
         kept = np.flatnonzero(~bad)
+
+
+def _nobody(what: str, share: float) -> None:
+    """Tell no one."""
 
 
 def _first_fit(

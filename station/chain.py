@@ -9,6 +9,7 @@ from jointbench.signal.frf import Frf, estimate_frf
 from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.hits import HitCriteria, find_hits
 from jointbench.signal.kalman import KalmanSettings, smooth_recording
+from jointbench.signal.lscf import Progress
 from jointbench.signal.modes import ModalResult, ModalSettings, identify_modes
 from jointbench.signal.oscillator_bank import repair_dropouts
 
@@ -61,7 +62,10 @@ def judge_hits(
 
 
 def run_chain(
-    recordings: Sequence[Recording], settings: ChainSettings | None = None
+    recordings: Sequence[Recording],
+    settings: ChainSettings | None = None,
+    *,
+    progress: Progress | None = None,
 ) -> ModalChain:
     """Take recordings to modes.
 
@@ -72,6 +76,7 @@ def run_chain(
     Args:
         recordings: force and responses; hits that are already judged are kept.
         settings: None for the defaults.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         The whole chain, so that every stage can be shown.
@@ -81,7 +86,7 @@ def run_chain(
     """
     settings = settings or ChainSettings()
     judged = judge_hits(recordings, settings)
-    frf, result = _modes(judged, settings)
+    frf, result = _modes(judged, settings, progress)
     whole: Sequence[Recording] = judged
     for _ in range(_REPAIRS):
         model = result.model
@@ -92,17 +97,17 @@ def run_chain(
         if all(new is old for new, old in zip(repaired, judged, strict=True)):
             break
         whole = repaired
-        frf, result = _modes(whole, settings)
+        frf, result = _modes(whole, settings, progress)
     return ModalChain(tuple(whole), frf, result, result.model.provenance)
 
 
 def _modes(
-    judged: Sequence[Recording], settings: ChainSettings
+    judged: Sequence[Recording], settings: ChainSettings, progress: Progress | None
 ) -> tuple[Frf, ModalResult]:
     """Return the FRF of judged recordings and its modes."""
     smoothed = [_smoothed(recording, settings) for recording in judged]
     frf = estimate_frf(smoothed, estimator=settings.estimator)
-    return frf, identify_modes(frf, settings.modal)
+    return frf, identify_modes(frf, settings.modal, progress=progress)
 
 
 def _smoothed(recording: Recording, settings: ChainSettings) -> Recording:

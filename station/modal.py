@@ -14,7 +14,7 @@ from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.modes import ModalSettings
 from jointbench.station.chain import ChainSettings, ModalChain, run_chain
 from jointbench.station.inputs import is_session_name, read_recordings
-from jointbench.station.output import console, table, with_sd, working, write_json
+from jointbench.station.output import console, progress_bar, table, with_sd, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.results_file import results_path, write_results
 from jointbench.station.universal_file import write_universal
@@ -68,8 +68,8 @@ def run_modal(
     target = out or _beside(files)
     check_outputs(files, [target, universal, json_target])
     recordings = read_recordings(files, columns=columns, point=point)
-    with working("judging hits, estimating FRFs, fitting modes"):
-        chain = run_chain(recordings, settings)
+    with progress_bar("judging hits, estimating FRFs") as progress:
+        chain = run_chain(recordings, settings, progress=progress)
     if target is not None:
         write_results(target, chain, files)
     if universal is not None:

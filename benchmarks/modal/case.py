@@ -5,6 +5,7 @@ Two more modes stand beyond the band. Noise is complex and white, of an rms that
 share of the rms of each FRF over the lines.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,14 +61,16 @@ class Case:
         )
 
 
-def benchmark_case(n_outputs: int = 40, n_lines: int = 4096) -> Case:
-    """Return the case; other numbers of outputs and lines for cost curves."""
+def benchmark_case(
+    n_outputs: int = 40, n_lines: int = 4096, inputs: Sequence[int] = DRIVES
+) -> Case:
+    """Return the case; other numbers of outputs, lines and inputs for cost curves."""
     place = np.linspace(0.02, 1.0, n_outputs)[:, None]
     mode = np.arange(FREQUENCY.size)
     shape = np.sin((mode + 0.5) * np.pi * 0.97 * place + 0.3 * mode)
     phase = np.random.default_rng(_PHASE_SEED).normal(0.0, _PHASE_SD, shape.shape)
     shape = shape * np.exp(1j * phase)
-    drives = shape[[min(d, n_outputs - 1) for d in DRIVES]]
+    drives = shape[[min(d, n_outputs - 1) for d in inputs]]
     omega = 2.0 * np.pi * FREQUENCY
     residue = shape[:, None] * drives / (2j * omega)
     pole = omega * (-DAMPING + 1j * np.sqrt(1.0 - DAMPING**2))

@@ -7,7 +7,8 @@ Hits on a structure with modes at 48.7, 166.5 and 310.7 Hz (1.2, 1.0 and 0.9 % d
 white noise on force and response with peaks 10, 100 and 1000 times its rms; the level
 and slope smoother with its default cutoff, a quarter of the sample rate (512 Hz), and
 with one below two of the modes (113 Hz), on both channels alike, on the response alone,
-and left out. Only fits that found all three modes are used. Biases are means over hits, each with the sd of that mean.
+and left out. Only fits that found all three modes are used. Biases are means over hits,
+each with the sd of that mean.
 """
 
 import argparse
@@ -129,7 +130,8 @@ def bias_table(hits: int) -> list[str]:
     """Return the lines of the table."""
     gain = stage_gain(STAGE, FREQUENCY, RATE)
     lines = [
-        f"|W| of the 113 Hz stage at the modes: {', '.join(f'{g:.3f}' for g in gain.gain)}; phase "
+        "|W| of the 113 Hz stage at the modes: "
+        f"{', '.join(f'{g:.3f}' for g in gain.gain)}; phase "
         f"{', '.join(f'{np.degrees(p):.1f}' for p in gain.phase)} deg.\n",
         "| peak over noise | stage on | hits used | bias of f [%] | bias of zeta [%] |",
         "|---|---|---|---|---|",

@@ -1,18 +1,25 @@
 # SPDX-License-Identifier: MIT
 """Time, memory and accuracy on the benchmark case, beside the peers that are there.
 
-Usage: OMP_NUM_THREADS=1 python benchmarks/modal/speed.py [--decibel 40] [--repeats 5]
+Usage: python benchmarks/modal/speed.py [--decibel 40] [--repeats 3] [--page PAGE.md]
 
-Peers are the optional extra `benchmark-peers`; those that cannot be imported are left
-out and named. Times are CPU seconds, the least of the repeats, after one warm-up; peak
-memory is that of Python's allocations during one run. Errors are rms over the eight
-modes, each against the nearest pole of the highest order, as a person would pick it.
+Peers are the optional extra `benchmarks`; those that cannot be imported are left out
+and named. Each runs in a process of its own with one thread. Times are CPU seconds, the
+least of the repeats after one warm-up; memory is what the peak of the process grew by
+over what it held before the first run. Errors are rms over the eight modes, each
+against the nearest pole of the highest order, as a person would pick it. For the cost
+tables every case is run once, after a warm-up of our own compiled loops.
 """
 
 import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
 import time
-import tracemalloc
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 from case import Case, benchmark_case
@@ -21,31 +28,42 @@ from jointbench.acquisition.arrays import ComplexArray
 from jointbench.signal.frf import Frf
 from jointbench.signal.lscf import fit_poles
 from jointbench.signal.matrix_roots import companion_roots, inverse_roots
-from jointbench.signal.modes import identify_modes
+from jointbench.signal.modes import ModalSettings, identify_modes
 
 HIGHEST = 60
-_SCALAR_ORDER = 120
+# pyOMA2 takes seconds an order; its cost grows with them.
+_FEW_ORDERS = 3
+_ONE_THREAD = {
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "NUMBA_NUM_THREADS": "1",
+    "QT_QPA_PLATFORM": "offscreen",
+    "PYTHONWARNINGS": "ignore",
+}
+_KIB = 1024.0
 
-Run = Callable[[], ComplexArray]
+Run = Callable[[Frf, int], ComplexArray]
+Found = dict[str, float]
 
 
-def ours_lscf(frf: Frf) -> ComplexArray:
+def ours_lscf(frf: Frf, order: int) -> ComplexArray:
     """Poly-reference LSCF, orders 2 to 60."""
-    return fit_poles(frf.frequency, frf.response, range(2, HIGHEST + 1))[-1].pole
+    return fit_poles(frf.frequency, frf.response, range(2, order + 1))[-1].pole
 
 
-def ours_scalar(frf: Frf) -> ComplexArray:
+def ours_scalar(frf: Frf, order: int) -> ComplexArray:
     """Scalar LSCF, orders 2 to 60: one pole a mode, where peers take two."""
-    orders = range(2, HIGHEST + 1)
+    orders = range(2, order + 1)
     return fit_poles(frf.frequency, frf.response, orders, scalar=True)[-1].pole
 
 
-def ours_all(frf: Frf) -> ComplexArray:
+def ours_all(frf: Frf, order: int) -> ComplexArray:
     """LSCF, selection, maximum likelihood and covariance."""
-    return identify_modes(frf).model.poles
+    return identify_modes(frf, ModalSettings(highest_order=order)).model.poles
 
 
-def sdypy(frf: Frf) -> ComplexArray:
+def sdypy(frf: Frf, order: int) -> ComplexArray:
     """sdypy-EMA, scalar LSCF, order to 120; it overwrites its input."""
     from sdypy import EMA
 
@@ -55,14 +73,14 @@ def sdypy(frf: Frf) -> ComplexArray:
         freq=np.array(frf.frequency),
         lower=1.0,
         upper=1000.0,
-        pol_order_high=_SCALAR_ORDER,
+        pol_order_high=2 * order,
         frf_type="accelerance",
     )
     model.get_poles(method="lscf", show_progress=False)
     return np.asarray(model.all_poles[-1], np.complex128)
 
 
-def sdynpy(frf: Frf) -> ComplexArray:
+def sdynpy(frf: Frf, order: int) -> ComplexArray:
     """SDynPy PolyPy, orders 2 to 60; it changes its FRFs in place."""
     import sdynpy as sdp
 
@@ -75,20 +93,46 @@ def sdynpy(frf: Frf) -> ComplexArray:
         np.array(frf.response),
         pairs,
     )
-    fit = sdp.modal.PolyPy(data, list(range(2, HIGHEST + 1)))
-    fit.compute_poles()
+    fit = sdp.modal.PolyPy(data)
+    fit.compute_poles(np.arange(2, order + 1))
     found = fit.pole_list[-1]
     omega, ratio = found["omega"], found["zeta"]
     return np.asarray(omega * (-ratio + 1j * np.sqrt(1.0 - ratio**2)))
 
 
-PEERS = {
+def pyoma(frf: Frf, order: int) -> ComplexArray:
+    """PyOMA2 pLSCF, meant for spectra of responses, fed with the FRFs; three orders."""
+    from pyoma2.functions import plscf
+
+    step = 0.5 / float(frf.frequency[-1])
+    few = min(order, _FEW_ORDERS)
+    denominator, numerator = plscf.pLSCF(np.array(frf.response), step, few)
+    poles = plscf.pLSCF_poles(denominator, numerator, step, "per", 2)[3][:, -1]
+    return np.asarray(poles[np.isfinite(poles)], np.complex128)
+
+
+OURS = {
     "jointbench LSCF": ours_lscf,
     "jointbench scalar LSCF": ours_scalar,
     "jointbench LSCF + ML + covariance": ours_all,
+}
+PEERS: dict[str, Run] = OURS | {
     "sdypy-EMA": sdypy,
     "SDynPy PolyPy": sdynpy,
+    "pyOMA2 pLSCF, 3 orders": pyoma,
 }
+# Outputs, lines, order: one changes at a time.
+COSTS = (
+    (10, 4096, 60),
+    (40, 4096, 60),
+    (160, 4096, 60),
+    (40, 1024, 60),
+    (40, 16384, 60),
+    (40, 4096, 30),
+    (40, 4096, 100),
+)
+# Peers are run only where it takes them no longer than on the benchmark case.
+_PEER_COSTS = ((10, 4096, 60), (40, 1024, 60), (40, 4096, 30))
 
 
 def errors(case: Case, poles: ComplexArray) -> tuple[float, float]:
@@ -99,6 +143,8 @@ def errors(case: Case, poles: ComplexArray) -> tuple[float, float]:
     frequency, ratio = frequency[likely], ratio[likely]
     away = np.abs(frequency[:, None] / case.natural_frequency - 1.0)
     away = away + 0.01 * np.abs(np.log(ratio[:, None] / case.damping_ratio))
+    if frequency.size == 0:
+        return float("nan"), float("nan")
     near = np.argmin(away, axis=0)
     parts = (
         frequency[near] / case.natural_frequency - 1.0,
@@ -108,26 +154,82 @@ def errors(case: Case, poles: ComplexArray) -> tuple[float, float]:
     return rms[0], rms[1]
 
 
-def measure(name: str, run: Run, case: Case, repeats: int) -> str:
-    """Return one line of the table."""
-    try:
-        poles = run()
-    except ImportError as missing:
-        return f"{name:36s} not here ({missing.name})"
-    took = []
-    for _ in range(repeats):
+def child(name: str, case: Case, decibel: float, order: int, repeats: int) -> Found:
+    """Run one of them in this process."""
+    if name in OURS:
+        PEERS[name](benchmark_case(4, 1024).noisy(decibel, 0), 20)
+    frf = case.noisy(decibel, 0)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    took, poles = [], np.empty(0, complex)
+    for _ in range(repeats + (repeats > 1)):
         start = time.process_time()
-        run()
+        poles = PEERS[name](frf, order)
         took.append(time.process_time() - start)
-    tracemalloc.start()
-    run()
-    peak = tracemalloc.get_traced_memory()[1] / 2**20
-    tracemalloc.stop()
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
     frequency, damping = errors(case, poles)
-    return (
-        f"{name:36s} {min(took):8.3f} s CPU {peak:8.0f} MiB   "
-        f"f {frequency:.2g} %   zeta {damping:.2g} %"
+    return {
+        "cpu": min(took),
+        "mib": peak / _KIB,
+        "frequency": frequency,
+        "damping": damping,
+    }
+
+
+def measure(name: str, size: tuple[int, int, int], more: list[str]) -> Found | None:
+    """Run one in a process of its own; None where it cannot be imported."""
+    outputs, lines, order = (str(n) for n in size)
+    command = [sys.executable, __file__, "--child", name, "--outputs", outputs]
+    command += ["--lines", lines, "--order", order, *more]
+    done = subprocess.run(
+        command,
+        env=os.environ | _ONE_THREAD,
+        capture_output=True,
+        text=True,
+        check=False,
     )
+    if done.returncode:
+        if "ImportError" in done.stderr or "ModuleNotFoundError" in done.stderr:
+            return None
+        raise RuntimeError(done.stderr)
+    found: Found = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def compare(decibel: float, repeats: int) -> list[str]:
+    """Return the table of the benchmark case with ratios to our own."""
+    size, more = (40, 4096, HIGHEST), ["--decibel", str(decibel)]
+    more += ["--repeats", str(repeats)]
+    found = {name: measure(name, size, more) for name in PEERS}
+    base = found["jointbench LSCF"]
+    lines = [
+        f"{decibel:g} dB, one thread, {repeats} repeats.\n",
+        "| | CPU s | over our LSCF | memory MiB | rms f error | rms zeta error |",
+        "|---|---|---|---|---|---|",
+    ]
+    for name, row in found.items():
+        if row is None or base is None:
+            lines.append(f"| {name} | not installed | | | | |")
+            continue
+        lines.append(
+            f"| {name} | {row['cpu']:.3f} | {row['cpu'] / base['cpu']:.1f} | "
+            f"{row['mib']:.0f} | {row['frequency']:.2g} % | {row['damping']:.2g} % |"
+        )
+    return lines
+
+
+def costs() -> list[str]:
+    """Return CPU seconds against outputs, lines and order."""
+    names = [name for name in PEERS if "pyOMA2" not in name]
+    lines = ["\n| outputs | lines | order | " + " | ".join(names) + " |"]
+    lines.append("|---" * (3 + len(names)) + "|")
+    for size in COSTS:
+        cells = []
+        for name in names:
+            asked = name in OURS or size in _PEER_COSTS
+            row = measure(name, size, ["--repeats", "1"]) if asked else None
+            cells.append("-" if row is None else f"{row['cpu']:.3f}")
+        lines.append(f"| {' | '.join(map(str, size))} | {' | '.join(cells)} |")
+    return lines
 
 
 def root_error() -> float:
@@ -142,22 +244,35 @@ def root_error() -> float:
 
 
 def main() -> None:
-    """Run the benchmark."""
+    """Run the benchmark and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--decibel", type=float, default=40.0)
-    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--lines", type=int, default=4096)
     parser.add_argument("--outputs", type=int, default=40)
-    parser.add_argument("--only", default="", help="part of a name")
+    parser.add_argument("--order", type=int, default=HIGHEST)
+    parser.add_argument("--child", default="", help="run this one here, print JSON")
+    parser.add_argument("--page", type=Path)
     given = parser.parse_args()
-    case = benchmark_case(given.outputs, given.lines)
-    frf = case.noisy(given.decibel, 0)
-    print(f"roots against LAPACK: {root_error():.1e}")
-    for name, run in PEERS.items():
-        if given.only in name:
-            print(
-                measure(name, lambda run=run: run(frf), case, given.repeats), flush=True
-            )
+    if given.child:
+        case = benchmark_case(given.outputs, given.lines)
+        found = child(given.child, case, given.decibel, given.order, given.repeats)
+        print(json.dumps(found))
+        return
+    lines = [
+        "# Time, memory and accuracy beside the peers\n",
+        "Generated by benchmarks/modal/speed.py; its first lines say what is measured."
+        "\nsdypy-EMA fits orders to 120 (two poles a mode), SDynPy 2 to 60, each as in"
+        " its own examples.\n",
+        *compare(given.decibel, given.repeats),
+        "\nCPU seconds against outputs, lines and order, two inputs:",
+        *costs(),
+        f"\nWarm-started roots against LAPACK's `eigvals`, largest relative distance: "
+        f"{root_error():.1e}.",
+    ]
+    if given.page is not None:
+        given.page.write_text("\n".join(lines) + "\n")
+    print("\n".join(lines))
 
 
 if __name__ == "__main__":
