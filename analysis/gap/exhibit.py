@@ -28,10 +28,9 @@ from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import TAIL, LumpedBench
 from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import (
-    FRICTION_ERROR,
-    MODEL_ERROR,
     PULL_LIMIT,
     WIDENED,
+    model_error,
 )
 
 UNITS = {
@@ -106,9 +105,7 @@ def _excess(bench: LumpedBench, fit: Fit) -> float:
 
 def _limits(bench: LumpedBench, base: Fit, outcome: Outcome) -> Limits:
     """Repeat the limits of the gate, whose threshold hardly moves with the fit."""
-    friction = any(c.effect.family == "friction" for c in outcome.best.candidates)
-    share = FRICTION_ERROR if friction else MODEL_ERROR
-    room = share * max(_excess(bench, base), 0.0) * bench.blocks.dof
+    room = model_error(outcome.best) * max(_excess(bench, base), 0.0) * bench.blocks.dof
     return Limits(
         chi2_per_dof=1.0 + outcome.gate.excess,
         chi2_allowed=1.0 + outcome.gate.allowed,

@@ -13,8 +13,8 @@ from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import Progress, finish, race, score
 from jointbench.analysis.gap.screening import Screening, screen
 
-REFINEMENTS = 8
-SETTLED = 3.0
+REFINEMENTS = 12
+SETTLED = 0.5
 """Change of the cost below which noise, scatter and fit agree with each other."""
 REJUDGED = 3
 MOST_EFFECTS = 3

@@ -36,7 +36,11 @@ LOST = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
 SETTLING_REACH = 3.0
 """Scatter sd beyond which a settling is no scatter but a missing effect."""
-SCATTER_STEP = 1e-4
+STILL = 0.3
+"""Move of the settling, over its scatter, below which its ways are taken anew."""
+SCATTER_STEP = 1e-6
+"""Difference step of the ways to scatter: at 1e-4 the late record has already bent a
+hundredth away from its slope, and a trend hides in that hundredth."""
 TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""
 WINDOW_REACH = 5.0
@@ -225,6 +229,15 @@ class LumpedBench:
         known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
         reach = SETTLING_REACH * scatter[1]
         settling = np.clip(-coefficients[:, 1] * known, -reach, reach)
+        before = self.excitation.conditions.settling
+        still = before is not None and (
+            np.abs(settling - before).max() < STILL * scatter[1]
+        )
+        if still:
+            there = _settle(self, settling, ways)
+            moved = there.response(base, terms)
+            ways = _scatter_ways(there, base, terms, moved, sigma)
+            refined = _with_noise(self, noise, columns, ways)
         return _settle(refined, settling, ways)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
@@ -356,7 +369,12 @@ def _harder(
 def _settle(
     bench: LumpedBench, settling: FloatArray | None, ways: FloatArray
 ) -> LumpedBench:
-    """Return the bench with its model expanded about a settling of the joint."""
+    """Return the bench with its model expanded about a settling of the joint.
+
+    The ways are those at the settling known before, until the two come together: to
+    take the new ones at once overshoots. Then they are taken there, so that what is
+    taken off is the very direction that whitening blurs, and nothing leaks past it.
+    """
     conditions = replace(bench.excitation.conditions, settling=settling)
     settled = np.zeros((1, 1, 1))
     if settling is not None:

@@ -95,7 +95,9 @@ def _blocks(campaign: Campaign) -> Blocks:
     )
     seen = samples - TAIL - campaign.lead
     white = campaign.repeatability is None
-    return Blocks(group, labels, records * channels * seen, white)
+    return Blocks(
+        group, labels, records * channels * seen, campaign.response.shape, white
+    )
 
 
 def _scales(bench: LumpedBench) -> dict[str, float]:
