@@ -146,7 +146,8 @@ def fit_poles(
     for order, matrix in _nested(reduced, orders):
         denominator = _denominator(matrix, reduced.n_inputs)
         inverse = inverse_roots(denominator, inverse)
-        roots = 1.0 / np.where(np.abs(inverse) > _TINY, inverse, _TINY)
+        finite = np.where(np.abs(inverse) > _TINY, inverse, _TINY)
+        roots = np.asarray(1.0 / finite, np.complex128)
         kept = _modes_among(circle.pole(roots) + added_decay_rate, band)
         shape = _shapes(reduced, denominator, roots[kept]) * scale.ravel()
         pole = circle.pole(roots[kept]) + added_decay_rate
@@ -199,7 +200,9 @@ def _normal_equations(
         cross[:, first : first + chunk] = solved.reshape(size, -1, size * n_inputs)
         if progress is not None:
             progress("adding up FRFs", min(1.0, (first + chunk) / n_outputs))
-    moments = _moments(angle, (inner * weight).reshape(-1, n_lines), order)
+    moments = _moments(
+        angle, np.asarray(inner * weight, np.complex128).reshape(-1, n_lines), order
+    )
     square = np.array([_block(m, size) for m in moments])
     square = square.reshape(n_inputs, n_inputs, size, size).transpose(2, 0, 3, 1)
     return _Reduced(

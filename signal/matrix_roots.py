@@ -75,7 +75,7 @@ def _grown(start: ComplexArray, size: int) -> ComplexArray:
     return np.array(roots, np.complex128)
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _polish(
     denominator: ComplexArray, roots: ComplexArray, small: float, sweeps: int
 ) -> bool:
@@ -109,7 +109,7 @@ def _polish(
     return False
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _slope(denominator: ComplexArray, root: complex) -> complex:
     """Return d/du log det B(u), B(u) = u^n I + A_1 u^(n - 1) + ... + A_n.
 
@@ -130,10 +130,10 @@ def _slope(denominator: ComplexArray, root: complex) -> complex:
     trace = _log_slope(value, slope)
     if inside:
         return trace
-    return point * (order * width - point * trace)
+    return complex(point * (order * width - point * trace))
 
 
-@numba.njit(cache=True, error_model="numpy")  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, error_model="numpy")
 def _log_slope(value: ComplexArray, slope: ComplexArray) -> complex:
     """Return trace(value^-1 slope) by elimination; both are used up."""
     width = value.shape[0]

@@ -98,7 +98,7 @@ def draw_shapes(
     return DrawnShapes(
         names,
         place,
-        motion / np.where(largest > 0.0, largest, 1.0),
+        np.asarray(motion / np.where(largest > 0.0, largest, 1.0), np.complex128),
         lines,
         geometry is not None,
     )

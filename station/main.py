@@ -135,10 +135,15 @@ def modal_command(
     Example: jointbench modal session.h5 --json modes.json
     """
     if output_only:
+        from jointbench.station.modal import parse_band
         from jointbench.station.output_only import run_output_only
 
         run_output_only(
-            files, columns=columns, band=band, order=order, json_target=json
+            files,
+            columns=columns,
+            band=parse_band(band),
+            order=order,
+            json_target=json,
         )
         return
     from jointbench.station.modal import modal_settings, run_modal

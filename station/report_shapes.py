@@ -86,7 +86,9 @@ def _drawing(chain: ModalChain, drawn: DrawnShapes) -> Plot:
 
 def _moved(drawn: DrawnShapes, mode: int, frame: int, extent: float) -> FloatArray:
     turn = np.exp(2j * np.pi * frame / _FRAMES)
-    return drawn.place + _AMPLITUDE * extent * (drawn.motion[mode] * turn).real
+    return np.asarray(
+        drawn.place + _AMPLITUDE * extent * (drawn.motion[mode] * turn).real
+    )
 
 
 def _coordinates(drawn: DrawnShapes, place: FloatArray) -> dict[str, object]:
