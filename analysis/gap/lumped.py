@@ -36,8 +36,6 @@ LOST = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
 SETTLING_REACH = 3.0
 """Scatter sd beyond which a settling is no scatter but a missing effect."""
-STILL = 0.3
-"""Move of the settling, over its scatter, below which its ways are taken anew."""
 SCATTER_STEP = 1e-6
 """Difference step of the ways to scatter: at 1e-4 the late record has already bent a
 hundredth away from its slope, and a trend hides in that hundredth."""
@@ -45,6 +43,24 @@ TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""
 WINDOW_REACH = 5.0
 """Decay times after which a windowed record is cut."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Settled:
+    """An expansion of the model about the joint's stiffness as it was in each hit.
+
+    The data know that stiffness far better than its mean, so the mean must move
+    without it: the response is taken at the stiffness of each hit, and mean and
+    scatter about it enter by the slope. A record of a hundred radians bends within
+    the scatter; what does not bend cannot leave the base stuck.
+
+    Attributes:
+        anchor: log(stiffness / nominal) to which the settling was added.
+        slope: change of the response with it, shape of the response.
+    """
+
+    anchor: float
+    slope: FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,9 +79,7 @@ class LumpedBench:
         scales: words to values.
         blocks: records as groups.
         short: the same bench with fewer samples, by length.
-        settled: first-order change of the response by what is known of the settling
-            of the joint, shape of the response: taken off the residual again, so
-            that settling counts as scatter about its mean, to second order.
+        settled: where the model is expanded about the settling of each hit, or None.
     """
 
     campaign: Campaign
@@ -79,7 +93,7 @@ class LumpedBench:
     scales: dict[str, float]
     blocks: Blocks
     short: dict[int, "LumpedBench"]
-    settled: FloatArray
+    settled: "Settled | None"
 
     @property
     def base_names(self) -> tuple[str, ...]:
@@ -136,10 +150,35 @@ class LumpedBench:
         """Return model minus measurement, whitened, shape (n_rows,)."""
         if stage.window is not None and not self.campaign.continuous:
             return self._windowed(base, terms, stage)
-        r = self.response(base, terms, stage.oversampling)
-        r -= self.campaign.response
-        r -= self.settled
+        r = self.misfit(base, terms, stage.oversampling)
         return self.residual_of(r)
+
+    def misfit(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int
+    ) -> FloatArray:
+        """Return model minus measurement, shape of the response.
+
+        The settling of each hit counts as scatter: its share is left in the misfit.
+        """
+        settling = self.excitation.conditions.settling
+        if self.settled is None or settling is None:
+            r = self.response(base, terms, oversampling)
+            r -= self.campaign.response
+            return r
+        moved = base.copy()
+        moved[self.joint_at] = self.settled.anchor
+        r = self.response(moved, terms, oversampling)
+        r -= self.campaign.response
+        share = base[self.joint_at] - self.settled.anchor - settling
+        r += share[:, None, None] * self.settled.slope
+        return r
+
+    @property
+    def joint_at(self) -> int:
+        """Place of the first joint's stiffness among the base coordinates."""
+        links = self.campaign.model.links
+        first = next((i for i, link in enumerate(links) if link.joint), 0)
+        return len(self.campaign.model.bodies) + first
 
     def residual_of(self, misfit: FloatArray) -> FloatArray:
         """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
@@ -189,56 +228,89 @@ class LumpedBench:
 
     def refine(self, base: FloatArray, terms: Sequence[Term]) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
-        model = self.response(base, terms)
+        at = self._centred(base)
+        model = at.response(base, terms)
         residual = model - self.campaign.response
         self.mask(residual)
-        peak = np.abs(model).max(axis=2)
-        seen = residual[:, :, self.campaign.lead : -TAIL]
-        sigma = channel_sigma(seen, peak)
-        if self.campaign.repeatability is not None:
-            sigma = np.hypot(sigma, self.campaign.repeatability * peak)
-        noise = replace(self.noise, sigma=sigma)
+        sigma = at.channel_noise(model, residual)
         columns = _force_columns(self, base, sigma)
-        ways = _scatter_ways(self, base, terms, model, sigma)
+        ways = _scatter_ways(at, base, terms, model, sigma)
+        noise = replace(self.noise, sigma=sigma)
         none = tuple(0.0 for _ in range(ways.shape[1]))
-        bare = _with_noise(self, replace(noise, scatter=none), columns, ways)
-        at_mean = residual - self.settled
-        self.mask(at_mean)
+        bare = _with_noise(at, replace(noise, scatter=none), columns, ways)
         coefficients, variances = regress(
-            (at_mean / sigma[:, :, None]).reshape(len(sigma), -1),
+            (residual / sigma[:, :, None]).reshape(len(sigma), -1),
             ways,
             bare.basis,
             bare.shrink,
         )
+        known = at.excitation.conditions.settling
+        if known is not None:
+            coefficients[:, 1] -= known
+        scatter, groups = at.scatter_of(coefficients, variances)
+        noise = replace(noise, scatter=scatter, scatter_known=groups)
+        refined = _with_noise(at, noise, columns, ways)
+        lost = np.linalg.norm(residual) > LOST * np.linalg.norm(model)
+        if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
+            return _settle(refined, None)
+        share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
+        reach = SETTLING_REACH * scatter[1]
+        settling = np.clip(-coefficients[:, 1] * share, -reach, reach)
+        return refined.expanded(settling, base, terms, columns)
+
+    def _centred(self, base: FloatArray) -> "LumpedBench":
+        """Return the bench with each hit's stiffness kept, about the base's mean."""
+        settling = self.excitation.conditions.settling
+        if self.settled is None or settling is None:
+            return self
+        return _settle(self, settling + self.settled.anchor - base[self.joint_at])
+
+    def channel_noise(self, model: FloatArray, residual: FloatArray) -> FloatArray:
+        """Return the noise of each record and channel, (n_records, n_channels)."""
+        peak = np.abs(model).max(axis=2)
+        sigma = channel_sigma(residual[:, :, self.campaign.lead : -TAIL], peak)
+        if self.campaign.repeatability is not None:
+            sigma = np.hypot(sigma, self.campaign.repeatability * peak)
+        return sigma
+
+    def scatter_of(
+        self, coefficients: FloatArray, variances: FloatArray
+    ) -> tuple[tuple[float, ...], bool]:
+        """Return the scatter along each way, and whether repeats bound it."""
         campaign = self.campaign
         groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
+        count = coefficients.shape[1]
+        if campaign.repeatability is not None:
+            return (0.0,) * count, bool(groups)
         patterns = _patterns(self.excitation.conditions)
         scatter = tuple(
             gain_scatter(
                 without_trend(coefficients[:, i], patterns), variances[:, i], groups
             )
-            for i in range(ways.shape[1])
+            for i in range(count)
         )
-        if self.campaign.repeatability is not None:
-            scatter = none
-        noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
-        refined = _with_noise(self, noise, columns, ways)
-        lost = np.linalg.norm(residual) > LOST * np.linalg.norm(model)
-        if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
-            return _settle(refined, None, ways)
-        known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
-        reach = SETTLING_REACH * scatter[1]
-        settling = np.clip(-coefficients[:, 1] * known, -reach, reach)
-        before = self.excitation.conditions.settling
-        still = before is not None and (
-            np.abs(settling - before).max() < STILL * scatter[1]
-        )
-        if still:
-            there = _settle(self, settling, ways)
-            moved = there.response(base, terms)
-            ways = _scatter_ways(there, base, terms, moved, sigma)
-            refined = _with_noise(self, noise, columns, ways)
-        return _settle(refined, settling, ways)
+        return scatter, bool(groups)
+
+    def expanded(
+        self,
+        settling: FloatArray,
+        base: FloatArray,
+        terms: Sequence[Term],
+        columns: list[FloatArray],
+    ) -> "LumpedBench":
+        """Return the bench expanded about a settling, with its scatter whitened there.
+
+        What is taken by the slope is then the very direction that whitening blurs,
+        and nothing of the settling leaks past it.
+        """
+        there = _settle(self, settling)
+        sigma = self.noise.sigma
+        moved = there.response(base, terms)
+        ways = _scatter_ways(there, base, terms, moved, sigma)
+        slope = ways[:, 1].reshape(*sigma.shape, -1) * sigma[:, :, None]
+        whitened = _with_noise(there, self.noise, columns, ways)
+        settled = Settled(float(base[self.joint_at]), slope)
+        return replace(whitened, settled=settled)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""
@@ -366,27 +438,11 @@ def _harder(
     return (pushed.response(base, terms) - model) / SCATTER_STEP
 
 
-def _settle(
-    bench: LumpedBench, settling: FloatArray | None, ways: FloatArray
-) -> LumpedBench:
-    """Return the bench with its model expanded about a settling of the joint.
-
-    The ways are those at the settling known before, until the two come together: to
-    take the new ones at once overshoots. Then they are taken there, so that what is
-    taken off is the very direction that whitening blurs, and nothing leaks past it.
-    """
+def _settle(bench: LumpedBench, settling: FloatArray | None) -> LumpedBench:
+    """Return the bench with its model taken at a settling of the joint."""
     conditions = replace(bench.excitation.conditions, settling=settling)
-    settled = np.zeros((1, 1, 1))
-    if settling is not None:
-        sigma = bench.noise.sigma
-        change = settling[:, None] * ways[:, 1]
-        settled = change.reshape(*sigma.shape, -1) * sigma[:, :, None]
-    return replace(
-        bench,
-        excitation=replace(bench.excitation, conditions=conditions),
-        settled=settled,
-        short={},
-    )
+    excitation = replace(bench.excitation, conditions=conditions)
+    return replace(bench, excitation=excitation, settled=None, short={})
 
 
 def _with_noise(

@@ -58,7 +58,7 @@ def make_bench(
         scales={},
         blocks=_blocks(campaign),
         short={},
-        settled=np.zeros((1, 1, 1)),
+        settled=None,
     )
     return replace(bench, scales=_scales(bench))
 
