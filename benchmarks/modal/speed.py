@@ -95,7 +95,7 @@ def sdynpy(frf: Frf, order: int) -> ComplexArray:
     )
     fit = sdp.modal.PolyPy(data)
     fit.compute_poles(np.arange(2, order + 1))
-    found = fit.pole_list[-1]
+    found = fit.pole_list[0]  # from the highest order down
     omega, ratio = found["omega"], found["zeta"]
     return np.asarray(omega * (-ratio + 1j * np.sqrt(1.0 - ratio**2)))
 
