@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.exhibit_level import recurrences
 from jointbench.analysis.gap.exhibit_records import (
     Curves,
@@ -25,7 +26,7 @@ from jointbench.analysis.gap.exhibit_where import (
 from jointbench.analysis.gap.exhibit_words import advise, describe
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import Outcome
-from jointbench.analysis.gap.lumped import TAIL, LumpedBench
+from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import (
     PULL_LIMIT,
