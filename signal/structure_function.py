@@ -20,9 +20,10 @@ from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Provenance, step
 from jointbench.acquisition.surfaces import Profile, Surface
 from jointbench.signal.lay import stretch_across
+from jointbench.signal.height_step import height_step
 from jointbench.signal.preparation import SurfaceTooSmall, level
 
-LAG_COUNT = 45
+LAG_COUNT = 55
 """Logarithmic lags asked for by default; equal integers fall together [-]."""
 LARGEST_LAG_SHARE = 1 / 3
 """Largest default lag as a share of the length of a profile [-]."""
@@ -73,6 +74,7 @@ class StructureFunction:
         kurtosis: fourth moment of the differences over S squared, same shape [-];
             3 where the heights are Gaussian.
         faces: how each contributing face was sampled.
+        quantum: step in which the heights were read [m]; 0 for none.
         provenance: how the values came about.
     """
 
@@ -81,6 +83,7 @@ class StructureFunction:
     value: FloatArray
     kurtosis: FloatArray
     faces: tuple[Sampling, ...]
+    quantum: float = 0.0
     provenance: Provenance = field(default=())
 
     def __post_init__(self) -> None:
@@ -181,6 +184,7 @@ def structure_function(
         value=value,
         kurtosis=fourths.sum(axis=0) / pairs.sum(axis=0) / safe**2,
         faces=(face,),
+        quantum=height_step(surface.heights[surface.valid]),
         provenance=(
             *levelled.provenance,
             step("structure_function", direction=direction, lags=int(lag.size)),
@@ -226,6 +230,7 @@ def combine(a: StructureFunction, b: StructureFunction) -> StructureFunction:
         # Fourth moments of a sum of independent differences with S_a and S_b.
         kurtosis=3 + (a.kurtosis - 3) * part**2 + (b.kurtosis - 3) * (1 - part) ** 2,
         faces=(*_shared(a, share), *_shared(b, 1 - share)),
+        quantum=max(a.quantum, b.quantum),
         provenance=(
             *a.provenance,
             *b.provenance,
