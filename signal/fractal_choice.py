@@ -21,10 +21,13 @@ ACCEPT_PROBABILITY = 0.01
 """A model is accepted if a true one would fit worse at least this often [-]."""
 HOPELESS_PROBABILITY = 1e-6
 """Where the richest model fits with a smaller chance, simpler ones need no trial."""
-ONE_MORE = 6.63
-"""Gain of chi2 by one more parameter that chance brings in 1 % at the most [-]."""
-TWO_MORE = 9.21
-"""The same for two more parameters [-]."""
+ONE_MORE = 7.88
+"""Gain of chi2 by one more parameter that chance brings in half a percent [-], so that
+all tests together take a larger model by chance in 1 % at the most."""
+TWO_MORE = 11.4
+"""The same for two more parameters, in a third of a percent [-]."""
+LEAST_GAIN = 1.0
+"""Gain of chi2 a parameter from which a larger model casts doubt on D [-]."""
 DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
 CLEAR_CORNER = 9.0
@@ -45,7 +48,7 @@ class Choice:
         fit: of the smallest model that the data support, by its own covariance.
         law: s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`,
             shape (2,).
-        covariance: of `law`; on a map no less than the scatter of its strips, shape
+        covariance: of `law`, with what an unproven instrument would move it; on a map no less than the scatter of its strips, shape
             (2, 2).
         problem: what was fitted.
     """
@@ -140,40 +143,50 @@ def choose(problem: FractalProblem) -> Choice:
         only where that is clearly likelier.
 
     Source:
-        Likelihood-ratio test at 1 %; as noise and point spread cannot fall below zero,
-        chance brings the gain in about half of that: Self and Liang, J. Am. Stat.
-        Assoc. 82 (1987) 605.
+        Likelihood-ratio tests, 1 % together; as noise and point spread cannot fall
+        below zero, chance brings a gain in about half of what chi-squared says: Self
+        and Liang, J. Am. Stat. Assoc. 82 (1987) 605.
     """
-    endless = _choose_instrument(problem, rolls_off=False)
+    endless, doubt = _choose_instrument(problem, rolls_off=False)
     nearest = Model(endless.model.instrument, rolls_off=True)
-    glance = fit_model(problem, nearest, weigh(problem, endless.seen))
-    if endless.chi2 - glance.chi2 < CLEAR_CORNER:
-        return _chosen(problem, endless)
-    cornered = _chosen(problem, _choose_instrument(problem, rolls_off=True))
+    own = weigh(problem, endless.seen)
+    same = fit_model(problem, endless.model, own, start=endless.parameters)
+    if same.chi2 - fit_model(problem, nearest, own).chi2 < CLEAR_CORNER:
+        return _chosen(problem, endless, doubt)
+    cornered = _chosen(problem, *_choose_instrument(problem, rolls_off=True))
     gain = endless.likelihood_criterion - cornered.fit.likelihood_criterion
     if gain > CLEAR_CORNER and cornered.ends_early:
         return cornered
-    return _chosen(problem, endless)
+    return _chosen(problem, endless, doubt)
 
 
 def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
     """Fit a straight line, without instrument or corner; it may be unacceptable."""
-    return _chosen(problem, fit_model(problem, Model(), weights))
+    return _chosen(problem, fit_model(problem, Model(), weights), np.zeros(2))
 
 
-def _choose_instrument(problem: FractalProblem, *, rolls_off: bool) -> GlsFit:
-    """Take the smallest instrument model that no larger one clearly beats."""
+def _choose_instrument(
+    problem: FractalProblem, *, rolls_off: bool
+) -> tuple[GlsFit, FloatArray]:
+    """Take the smallest instrument model that no larger one clearly beats.
+
+    Returns:
+        The fit, and how far the power law of a larger model lies from its own where
+        that one gains without proof, shape (2,).
+    """
     kinds = InstrumentModel
     plain = settle(problem, Model(kinds.NONE, rolls_off), problem.straight())
     own = weigh(problem, plain.seen)
+    # Where the model is far off its weights never settle; all three share the last.
+    plain = fit_model(problem, plain.model, own, start=plain.parameters)
     noisy = fit_model(problem, Model(kinds.NOISE, rolls_off), own)
     both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
     gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
     if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
-        return plain
+        return plain, _doubt(plain, noisy if gains[0] > LEAST_GAIN else both)
     richest = settle(problem, both.model, both.seen)
     if richest.probability < HOPELESS_PROBABILITY:
-        return richest
+        return richest, np.zeros(2)
     single = [
         settle(problem, Model(kind, rolls_off), start.seen)
         for kind, start in (
@@ -182,28 +195,49 @@ def _choose_instrument(problem: FractalProblem, *, rolls_off: bool) -> GlsFit:
             (kinds.PSF, richest),
         )
     ]
-    stands = [fit for fit in single if _stands(problem, fit, richest)]
-    return min(stands or [richest], key=lambda fit: fit.likelihood_criterion)
+    best, doubt = richest, np.zeros(2)
+    for fit in single:
+        small, rival = _with_rival(problem, fit, richest)
+        more = richest.parameters.size - fit.parameters.size
+        stands = small.chi2 - rival.chi2 < (ONE_MORE if more == 1 else TWO_MORE)
+        better = fit.likelihood_criterion < best.likelihood_criterion
+        accepted = fit.probability >= ACCEPT_PROBABILITY
+        if stands and accepted and (better or best is richest):
+            best, doubt = fit, _doubt(small, rival)
+    return best, doubt
 
 
-def _stands(problem: FractalProblem, small: GlsFit, large: GlsFit) -> bool:
-    """Return whether a model is accepted, and the largest gains little over it."""
-    if small.probability < ACCEPT_PROBABILITY:
-        return False
-    rival = fit_model(
-        problem, large.model, weigh(problem, small.seen), start=large.parameters
+def _with_rival(
+    problem: FractalProblem, small: GlsFit, large: GlsFit
+) -> tuple[GlsFit, GlsFit]:
+    """Fit a model and a larger one, both with the weights of the smaller."""
+    own = weigh(problem, small.seen)
+    return (
+        fit_model(problem, small.model, own, start=small.parameters),
+        fit_model(problem, large.model, own, start=large.parameters),
     )
+
+
+def _doubt(small: GlsFit, large: GlsFit) -> FloatArray:
+    """Return how far apart the power laws are, where the larger model gains at all.
+
+    A noise too small to be proven still moves D: the shift counts as uncertainty.
+    """
     more = large.parameters.size - small.parameters.size
-    return small.chi2 - rival.chi2 < (ONE_MORE if more == 1 else TWO_MORE)
+    if small.chi2 - large.chi2 < LEAST_GAIN * more:
+        return np.zeros(2)
+    shift: FloatArray = large.parameters[:2] - small.parameters[:2]
+    return shift
 
 
-def _chosen(problem: FractalProblem, fit: GlsFit) -> Choice:
+def _chosen(problem: FractalProblem, fit: GlsFit, doubt: FloatArray) -> Choice:
     """Return a fit as a choice; on a map with no less scatter than its strips show."""
+    covariance = fit.covariance[:2, :2] + np.outer(doubt, doubt)
     strips = _strip_scatter(problem, fit) / fit.dimension_sd
     return Choice(
         fit=fit,
         law=fit.parameters[:2],
-        covariance=fit.covariance[:2, :2] * max(1.0, strips**2),
+        covariance=covariance * max(1.0, strips**2),
         problem=problem,
     )
 

@@ -112,7 +112,7 @@ def rounded(value: FloatArray, quantum: float) -> FloatArray:
         Widrow and Kollar, Quantization Noise (2008), sec. 4 (characteristic function
         of a quantised Gaussian).
     """
-    share = value / quantum**2
+    share = np.maximum(value, 0.0) / quantum**2
     order = np.arange(1.0, _ROUNDING_TERMS + 1)
     decay = np.exp(-2 * np.pi**2 * np.multiply.outer(share, order**2))
     fraction = 1 / 6 - np.sum(decay / (np.pi * order) ** 2, axis=-1)
