@@ -13,7 +13,8 @@ from jointbench.acquisition.text_files import named
 from jointbench.acquisition.units import to_si
 
 # The labels are translated, their order and the signs around them are not.
-_LINE = re.compile(r"#\s*[^:：=]{1,40}[:：=]\s*(\S.*?)\s*")
+# Japanese exports have a full-width colon.
+_LINE = re.compile("#\\s*[^:\uff1a=]{1,40}[:\uff1a=]\\s*(\\S.*?)\\s*")
 _HEADER_LINES = 4
 
 

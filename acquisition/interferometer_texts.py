@@ -84,7 +84,7 @@ def _wyko(
     lines: Sequence[str], path: Path
 ) -> tuple[FloatArray, tuple[float, float], str]:
     """Read blocks of name, type, length and value down to RAW_DATA."""
-    flags = lines[0].split()[-3:] + [""]
+    flags = [*lines[0].split()[-3:], ""]
     header: dict[str, str] = {}
     start = None
     for i, text in enumerate(lines[1:_HEADER_LINES], start=1):
@@ -128,8 +128,8 @@ def _zygo_header(lines: Sequence[str], path: Path) -> tuple[tuple[int, int], flo
     place, optics = lines[3].split(), lines[7].split()
     if len(place) < 4 or len(optics) < 7:
         raise FormatError(
-            f"{named(path)}: lines 4 and 8 hold {len(place)} and {len(optics)} entries, "
-            "at least 4 and 7 are needed; export it again"
+            f"{named(path)}: lines 4 and 8 hold {len(place)} and {len(optics)} "
+            "entries, at least 4 and 7 are needed; export it again"
         )
     columns = count_of(place[2], "the width in line 4", path)
     rows = count_of(place[3], "the height in line 4", path)

@@ -100,7 +100,9 @@ def _csv_rows(
     text: str, path: Path, language: Language
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield the line number and the cells of each row."""
-    reader = csv.reader(io.StringIO(text), delimiter=_delimiter(text, language), strict=True)
+    reader = csv.reader(
+        io.StringIO(text), delimiter=_delimiter(text, language), strict=True
+    )
     try:
         for row in reader:
             yield reader.line_num, row
@@ -152,7 +154,8 @@ def _read_geometry(header: _Header, path: Path) -> tuple[int, int, float, float]
     kind = header.text("output")
     if kind != header.language.height:
         raise FormatError(
-            f"{named(path)} holds {shown(kind)}, not {header.language.height!r}; export the heights"
+            f"{named(path)} holds {shown(kind)}, not {header.language.height!r}; "
+            "export the heights"
         )
     width = _number(header, "columns", path)
     height = _number(header, "rows", path)

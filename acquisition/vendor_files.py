@@ -82,7 +82,7 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
 def _open(path: Path) -> tuple[Any, str]:
     """Return the default channel of a file and the name of its format."""
     try:
-        import SurfaceTopography.IO  # noqa: PLC0415 - an optional extra
+        import SurfaceTopography.IO
     except ImportError as error:
         raise FormatError(
             f"{named(path)} looks like a maker's own format, which the extra "
@@ -92,18 +92,23 @@ def _open(path: Path) -> tuple[Any, str]:
         warnings.simplefilter("ignore")
         try:
             reader = SurfaceTopography.IO.open_topography(str(path))
-            grid = reader.channels[0].nb_grid_pts if reader.channels else (0,)
-            if int(np.prod([float(n) for n in grid])) > MAX_CELLS:
-                raise HostileFile(f"{named(path)} declares {grid} points; cut it")
+            _require_sane_grid(reader, path)
             return reader.topography(), type(reader).__name__.removesuffix("Reader")
         except HostileFile:
             raise
-        except Exception as error:  # noqa: BLE001 - 40 readers raise what they like
+        except Exception as error:
             raise FormatError(
                 f"{named(path)} is read by no reader of SurfaceTopography "
                 f"({shown(str(error).strip() or type(error).__name__)}); export it as "
                 "text or X3P"
             ) from error
+
+
+def _require_sane_grid(reader: Any, path: Path) -> None:
+    """Refuse what declares more points than any map before it is read."""
+    grid = reader.channels[0].nb_grid_pts if reader.channels else (0,)
+    if np.prod([float(n) for n in grid]) > MAX_CELLS:
+        raise HostileFile(f"{named(path)} declares {grid} points; cut it")
 
 
 def _surface(

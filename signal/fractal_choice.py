@@ -48,8 +48,8 @@ class Choice:
         fit: of the smallest model that the data support, by its own covariance.
         law: s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`,
             shape (2,).
-        covariance: of `law`, with what an unproven instrument would move it; on a map no less than the scatter of its strips, shape
-            (2, 2).
+        covariance: of `law`, with what an unproven instrument would move it; on a map
+            no less than the scatter of its strips, shape (2, 2).
         problem: what was fitted.
     """
 

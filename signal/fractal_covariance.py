@@ -137,6 +137,9 @@ def _plan(lag: FloatArray, face: Sampling) -> _Plan:
     a, b = np.repeat(steps[first], counts), np.repeat(steps[second], counts)
     distance, places = _distinct(np.abs(np.stack([d - a, d + b, d, d + b - a])))
     rows, row_weight = _rows(face.profiles)
+    row_distance = face.row_distance
+    if np.isinf(row_distance):  # unrelated profiles: each agrees with itself only
+        rows, row_weight, row_distance = rows[:1], row_weight[:1], 0.0
     return _Plan(
         first=first,
         second=second,
@@ -144,7 +147,7 @@ def _plan(lag: FloatArray, face: Sampling) -> _Plan:
         places=places,
         weight=np.concatenate(weights),
         starts=np.concatenate([[0], np.cumsum(counts)[:-1]]),
-        row_distance=rows * face.row_distance / face.spacing,
+        row_distance=rows * row_distance / face.spacing,
         row_weight=row_weight,
     )
 

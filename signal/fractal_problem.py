@@ -57,7 +57,7 @@ class FractalProblem:
         to lose.
         """
         points = float(self.estimate.points)
-        part = 1.0 if self.estimate.profiles == 1 else PLANE_LOSS
+        part = 1.0 if self.estimate.separate else PLANE_LOSS
         unit = levelling_loss(self.lag / points, seen.exponent)
         power = seen.amplitude * points**seen.exponent
         if np.isfinite(seen.corner):
@@ -95,7 +95,7 @@ class FractalProblem:
         and a surface may lack waves longer than the profile, which bends S likewise.
         The loss of a self-affine profile is known exactly.
         """
-        if self.tolerance == 0 and self.estimate.profiles == 1:
+        if self.tolerance == 0 and self.estimate.separate:
             return np.zeros((self.lag.size, self.lag.size))
         loss = self.loss(seen) / seen.seen(self.lag)
         misfit: FloatArray = self.tolerance**2 * np.eye(loss.size)

@@ -417,7 +417,7 @@ def test_a_public_reader_that_is_wrong_by_a_million_is_not_believed():
 
 @shared
 def test_a_dektak_trace_has_even_steps_and_its_stylus():
-    """x is printed to 0.1 um; 1499.8 um over 9599 steps."""
+    """X is printed to 0.1 um; 1499.8 um over 9599 steps."""
     surface = read_surface(SURFACES / "various" / "dektak-1.csv")
     assert isinstance(surface, Profile)
     assert surface.spacing == pytest.approx(0.15625e-6, rel=2e-5)

@@ -96,14 +96,16 @@ def test_a_profile_reads_back(tmp_path, kind):
 
 def zygo(phase, *, xyz=False):
     """Return a Zygo text with 2 columns and 2 rows, pixel 1.5 um."""
-    head = ["Zygo XYZ Data File - Format 1" if xyz else "Zygo ASCII Data File - Format 2"]
-    head += ["0 0 0 0 \"date\"", "0 0 0 0 0 0", "0 0 2 2", '""', '""', '""']
+    head = [
+        "Zygo XYZ Data File - Format 1" if xyz else "Zygo ASCII Data File - Format 2"
+    ]
+    head += ['0 0 0 0 "date"', "0 0 0 0 0 0", "0 0 2 2", '""', '""', '""']
     head += ["0 0.5 6.328e-07 0 1 0 1.5e-06 0", "0 0 0 0 0 0", "0 0", "1 1 20", "0 0"]
     return "\n".join([*head, "1 0", '""', "#", *phase, "#"]) + "\n"
 
 
 def test_zygo_phases_become_heights(tmp_path):
-    """scale x wavelength x obliquity / 32768 of a count; invalid ones are gaps."""
+    """Scale x wavelength x obliquity / 32768 of a count; invalid ones are gaps."""
     path = tmp_path / "z.asc"
     path.write_text(zygo(["#", "32768 0 -32768", "2147483640"]))
     found = read_surface(path)
