@@ -13,9 +13,12 @@ from jointbench.simulators.rough_surface import rough_profile
 from jointbench.simulators.weierstrass import weierstrass_map, weierstrass_profile
 
 
-@pytest.mark.parametrize("dimension", [1.3, 1.7])
-def test_the_spectrum_agrees_with_the_structure_function(dimension):
-    """Both within 4 bounds of the truth, and of each other."""
+@pytest.mark.parametrize(("dimension", "bound"), [(1.3, 0.00732), (1.7, 0.00626)])
+def test_the_spectrum_agrees_with_the_structure_function(dimension, bound):
+    """Both within 4 bounds of the truth, and of each other.
+
+    The bound is Whittle's of 20,000 points, sqrt(2.5) times larger.
+    """
     profile = rough_profile(
         8000, spacing=1e-7, dimension=dimension, roughness=1e-10, seed=6
     )
@@ -25,7 +28,7 @@ def test_the_spectrum_agrees_with_the_structure_function(dimension):
     assert abs(checked.dimension - dimension) < 4 * checked.dimension_sd
     assert abs(checked.dimension - fitted) < 4 * checked.dimension_sd
     assert abs(checked.spectral_dimension - dimension) < 0.1
-    assert checked.dimension_sd == pytest.approx(0.0071, rel=0.1)
+    assert checked.dimension_sd == pytest.approx(bound, rel=0.03)
 
 
 def test_the_recipe_averages_lines_at_all_lags():
