@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.surfaces import Areal, all_valid
-from jointbench.simulators.profilometer import write_keyence_csv
+from jointbench.simulators.surface_files import write_keyence_csv
 from jointbench.station.import_files import run_import
 from jointbench.station.modal import run_modal
 from jointbench.station.surface import run_surface
