@@ -26,8 +26,12 @@ ONE_MORE = 7.88
 all tests together take a larger model by chance in 1 % at the most."""
 TWO_MORE = 11.4
 """The same for two more parameters, in a third of a percent [-]."""
-LEAST_GAIN = 2.0
-"""Gain of chi2 a parameter from which a larger model casts doubt on D [-]."""
+CAST_DOUBT = {1: 0.8, 2: 5.0}
+"""Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
+limits cover more of the noise that cannot be proven, and widen more clean profiles."""
+EVEN = {1: 6.0, 2: 12.0}
+"""Gain by so many more parameters at which both models weigh alike in D [-]. With
+Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
 DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
 CLEAR_CORNER = 9.0
@@ -47,9 +51,9 @@ class Choice:
 
     Attributes:
         fit: of the smallest model that the data support, by its own covariance.
-        law: s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`,
-            shape (2,).
-        covariance: of `law`, with what an unproven instrument would move it; on a map
+        law: s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`, averaged
+            with those of a larger model that gains without proof, shape (2,).
+        covariance: of `law`, with what the unproven instrument would move it; on a map
             no less than the scatter of its strips, shape (2, 2).
         problem: what was fitted.
     """
@@ -110,6 +114,19 @@ class Choice:
         return " and ".join(words) or "the instrument"
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Doubt:
+    """What a larger model that is not proven does to the power law of the chosen one.
+
+    Attributes:
+        shift: of the power law, shape (2,).
+        covariance: that it adds, shape (2, 2).
+    """
+
+    shift: FloatArray
+    covariance: FloatArray
+
+
 def spans_decade(band: tuple[float, float] | None) -> bool:
     """Return whether a band of lags spans a decade."""
     return band is not None and band[1] >= DECADE * band[0] * (1 - 1e-9)
@@ -164,17 +181,16 @@ def choose(problem: FractalProblem) -> Choice:
 
 def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
     """Fit a straight line, without instrument or corner; it may be unacceptable."""
-    return _chosen(problem, fit_model(problem, Model(), weights), np.zeros(2))
+    return _chosen(problem, fit_model(problem, Model(), weights), _no_doubt())
 
 
 def _choose_instrument(
     problem: FractalProblem, *, rolls_off: bool
-) -> tuple[GlsFit, FloatArray]:
+) -> tuple[GlsFit, _Doubt]:
     """Take the smallest instrument model that no larger one clearly beats.
 
     Returns:
-        The fit, and how far the power law of a larger model lies from its own where
-        that one gains without proof, shape (2,).
+        The fit, and what a larger model that gains without proof does to its law.
     """
     kinds = InstrumentModel
     plain = settle(problem, Model(kinds.NONE, rolls_off), problem.straight())
@@ -185,10 +201,10 @@ def _choose_instrument(
     both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
     gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
     if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
-        return plain, _doubt(plain, noisy if gains[0] > LEAST_GAIN else both)
+        return plain, _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
     richest = settle(problem, both.model, both.seen)
     if richest.probability < HOPELESS_PROBABILITY:
-        return richest, np.zeros(2)
+        return richest, _no_doubt()
     single = [
         settle(problem, Model(kind, rolls_off), start.seen)
         for kind, start in (
@@ -197,7 +213,7 @@ def _choose_instrument(
             (kinds.PSF, richest),
         )
     ]
-    best, doubt = richest, np.zeros(2)
+    best, doubt = richest, _no_doubt()
     for fit in single:
         small, rival = _with_rival(problem, fit, richest)
         more = richest.parameters.size - fit.parameters.size
@@ -220,25 +236,40 @@ def _with_rival(
     )
 
 
-def _doubt(small: GlsFit, large: GlsFit) -> FloatArray:
-    """Return how far apart the power laws are, where the larger model gains at all.
+def _no_doubt() -> _Doubt:
+    """Return what no larger model does."""
+    return _Doubt(np.zeros(2), np.zeros((2, 2)))
 
-    A noise too small to be proven still moves D: the shift counts as uncertainty.
+
+def _doubt(small: GlsFit, large: GlsFit) -> _Doubt:
+    """Return what a larger model does to the power law where it gains at all.
+
+    A noise too small to be proven still moves D. The larger model holds in any case,
+    so its whole distance from the average counts as uncertainty, not only the share
+    that its weight would leave of it.
+
+    Source:
+        Weights by likelihood and the variance within the models: Burnham and Anderson,
+        Model Selection and Multimodel Inference (2002), eq. (4.9).
     """
     more = large.parameters.size - small.parameters.size
-    if small.chi2 - large.chi2 < LEAST_GAIN * more:
-        return np.zeros(2)
-    shift: FloatArray = large.parameters[:2] - small.parameters[:2]
-    return shift
+    gain = small.chi2 - large.chi2
+    if gain < CAST_DOUBT[more]:
+        return _no_doubt()
+    weight = float(1 / (1 + np.exp((EVEN[more] - gain) / 2)))
+    apart = large.parameters[:2] - small.parameters[:2]
+    widened = large.covariance[:2, :2] - small.covariance[:2, :2]
+    left = (1 - weight) * apart
+    return _Doubt(weight * apart, weight * widened + np.outer(left, left))
 
 
-def _chosen(problem: FractalProblem, fit: GlsFit, doubt: FloatArray) -> Choice:
+def _chosen(problem: FractalProblem, fit: GlsFit, doubt: _Doubt) -> Choice:
     """Return a fit as a choice; on a map with no less scatter than its strips show."""
-    covariance = fit.covariance[:2, :2] + np.outer(doubt, doubt)
+    covariance = fit.covariance[:2, :2] + doubt.covariance
     strips = _strip_scatter(problem, fit) / fit.dimension_sd
     return Choice(
         fit=fit,
-        law=fit.parameters[:2],
+        law=fit.parameters[:2] + doubt.shift,
         covariance=covariance * max(1.0, strips**2),
         problem=problem,
     )

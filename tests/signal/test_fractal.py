@@ -80,7 +80,7 @@ def test_a_long_profile_gives_its_dimension_to_a_hundredth(dimension: float):
 def test_the_stated_interval_covers_the_truth():
     """Ten noisy profiles, D 1.3 to 1.7: two standard deviations miss at most 2.
 
-    Noise of a whole step, which the likelihood ratio finds in each.
+    Noise of 0.3 steps, which the likelihood ratio proves in some of them only.
 
     The chance of more at 95 % coverage is 1 %. The errors are no smaller than half of
     what is stated either.
@@ -88,7 +88,7 @@ def test_the_stated_interval_covers_the_truth():
     errors, stated = [], []
     for seed in range(10):
         dimension = 1.3 + 0.4 * seed / 9
-        heights = brownian(4000, dimension, seed) + noise(4000, STEP, seed)
+        heights = brownian(4000, dimension, seed) + noise(4000, 0.3 * STEP, seed)
         value, sd = known(fit(heights))
         errors.append(value - dimension)
         stated.append(sd)
