@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""What one hammer stroke makes of force and accelerations, at any sample asked for.
+
+The specimen is linear: after the pulse it rings in its poles, which can be evaluated at
+any sample on its own. So a stretch of signal depends on its sample indices alone, never
+on how the stream was cut into blocks.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
+from jointbench.simulators.hammer import Pulse, pulse_force
+from jointbench.simulators.plates import Poles
+
+_FINE = 64  # steps per sample in which a pulse is integrated
+_RINGING = 4.0  # [s] after which nothing is heard of a stroke
+_PASS_BAND = 0.45  # of the sample rate: the converter's filter takes off what is above
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stroke:
+    """One stroke, ready to be sampled.
+
+    Attributes:
+        first: index of the first sample that it touches.
+        head: force, then accelerations, while the pulse lasts, shape (1 + n_out, n).
+        poles: [1/s], shape (n_modes,).
+        tail: accelerations after the pulse, each mode at its first sample [m/s^2],
+            shape (n_modes, n_out).
+        last: index one past the last sample at which it is heard.
+    """
+
+    first: int
+    head: FloatArray
+    poles: ComplexArray
+    tail: ComplexArray
+    last: int
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "head", "poles", "tail")
+
+
+def stroke(poles: Poles, pulses: Sequence[Pulse], *, sample_rate: float) -> Stroke:
+    """Work out a stroke of one or more pulses.
+
+    Args:
+        poles: of the specimen, for the point that is struck.
+        pulses: in order of time; a gap between them is part of the head.
+        sample_rate: [Hz].
+    """
+    audible = np.abs(poles.poles) < 2 * np.pi * _PASS_BAND * sample_rate
+    values, gains = poles.poles[audible], poles.gains[audible]
+    first = int(np.floor(pulses[0].start * sample_rate))
+    past = int(np.ceil((pulses[-1].start + pulses[-1].width) * sample_rate)) + 1
+    count = past - first + 1
+    step = 1 / (sample_rate * _FINE)
+    fine = step * np.arange((count - 1) * _FINE + 1)
+    force = pulse_force(pulses, first / sample_rate + fine)
+    state = _running_integral(values, force, fine, step)[:, ::_FINE]
+    accelerations = poles.direct[:, None] * force[::_FINE] + 2 * (gains.T @ state).real
+    head = np.vstack((force[::_FINE], accelerations))
+    return Stroke(
+        first=first,
+        head=head[:, :-1],
+        poles=values,
+        tail=gains * state[:, -1:],
+        last=first + round(_RINGING * sample_rate),
+    )
+
+
+def add_stroke(
+    signal: FloatArray, stroke: Stroke, *, first: int, sample_rate: float
+) -> None:
+    """Add a stroke to a stretch of signal, in place.
+
+    Args:
+        signal: force, then accelerations, shape (1 + n_out, n).
+        stroke: to be added.
+        first: index of the first sample of `signal`.
+        sample_rate: [Hz].
+    """
+    past = first + signal.shape[1]
+    if stroke.first >= past or stroke.last <= first:
+        return
+    start, stop = stroke.first, stroke.first + stroke.head.shape[1]
+    low, high = max(start, first), min(stop, past)
+    if low < high:
+        signal[:, low - first : high - first] += stroke.head[:, low - start : high - start]
+    low, high = max(stop, first), min(stroke.last, past)
+    if low < high:
+        rise = np.exp(stroke.poles[:, None] * np.arange(high - low) / sample_rate)
+        begin = stroke.tail * np.exp(stroke.poles * (low - stop) / sample_rate)[:, None]
+        signal[1:, low - first : high - first] += 2 * (begin.T @ rise).real
+
+
+def _running_integral(
+    poles: ComplexArray, force: FloatArray, time: FloatArray, step: float
+) -> ComplexArray:
+    """Return the state of each mode under a force, shape (n_modes, n).
+
+    Note:
+        ``exp(p (t - s))`` is split into ``exp(p t) exp(-p s)``; a pulse with its bounce
+        lasts tens of milliseconds, over which the factors stay near one.
+    """
+    weights = np.exp(-poles[:, None] * time) * force
+    # Trapezoids: the force vanishes at both ends, and its kinks are resolved.
+    sums = np.cumsum(weights, axis=1) - 0.5 * weights - 0.5 * weights[:, :1]
+    return np.asarray(np.exp(poles[:, None] * time) * sums * step)
