@@ -136,6 +136,31 @@ def record_command(
     run_record(source, out, overwrite=force, json_target=json)
 
 
+@app.command(name="measure")
+def measure_command(
+    plan: Annotated[Path, typer.Argument(help="Plan of the measurement, TOML.")],
+    out: Annotated[Path, typer.Option(help="Session file to write.")],
+    source: Annotated[
+        str | None,
+        typer.Option(help="ni:, ni+grpc://host:port or sim:plates; else the plan's."),
+    ] = None,
+    force: Force = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Measure hammer hits by a plan: points x levels x torques, each repeated.
+
+    Example: jointbench measure plan.toml --out session.h5 --source
+    'sim:plates?seed=1'
+    """
+    from jointbench.station.measure import run_measure
+
+    measured = run_measure(
+        plan, out, source=source, overwrite=force, json_target=json
+    )
+    return 0 if measured.whole else EXIT_QUALITY
+
+
 @app.command(name="import")
 def import_command(
     files: Files,

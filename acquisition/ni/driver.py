@@ -260,6 +260,11 @@ class AnalogTask:
         with _named_errors(self._address):
             return int(self._task.in_stream.total_samp_per_chan_acquired)
 
+    def position(self) -> int:
+        """Return the next sample that a read returns, as the driver counts them."""
+        with _named_errors(self._address):
+            return int(self._task.in_stream.curr_read_pos)
+
     def resume_at(self, sample: int, count: int, *, timeout: float) -> FloatArray:
         """Read from a sample counted from the start, and go on from there.
 

@@ -3,6 +3,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from jointbench.acquisition.arrays import FloatArray
@@ -81,11 +82,18 @@ class Counters:
 
     Attributes:
         acquired: samples per channel made by the device, as its counter says.
+        unread: of those, still in its buffer when the counter was read.
         delivered: samples per channel read.
     """
 
     acquired: int = 0
+    unread: int = 0
     delivered: int = 0
+
+    @property
+    def lost(self) -> int:
+        """Samples per channel that were made, are not waiting, and were not read."""
+        return self.acquired - self.unread - self.delivered
 
 
 @dataclass(slots=True)
@@ -154,7 +162,14 @@ class NiStream:
     def count(self) -> None:
         """Bring the counters up to date with the device's own."""
         if self._task is not None:
-            self.counters.acquired = self._made_before + self._task.acquired()
+            acquired, position = self._task.acquired(), self._task.position()
+            self.counters.acquired = self._made_before + max(acquired, position)
+            self.counters.unread = max(0, acquired - position)
+
+    def count_if_there(self) -> None:
+        """Bring the counters up to date unless the device went away."""
+        with suppress(InstrumentError):
+            self.count()
 
     def close(self) -> None:
         """Stop the task, if it is still there."""

@@ -18,6 +18,8 @@ class FaultKind(StrEnum):
     """From a sample on, every read takes `value` seconds longer."""
     OPEN = "open"
     """From a sample on, the IEPE loop of input number `value` is open."""
+    CLOSE = "close"
+    """From a sample on, the IEPE loop of input number `value` is whole again."""
     REFUSE = "refuse"
     """From the start, input number `value` does not exist."""
     WRONG_TEDS = "wrong_teds"

@@ -108,6 +108,8 @@ class ReadingService(TaskService):
                 self._delay = fault.value
             elif fault.kind is FaultKind.OPEN:
                 self._open.add(int(fault.value))
+            elif fault.kind is FaultKind.CLOSE:
+                self._open.discard(int(fault.value))
             elif fault.kind is FaultKind.OVERRUN:
                 task.overwritten_to = task.position + int(fault.value)
                 task.skip_to(task.overwritten_to)
