@@ -95,10 +95,11 @@ def is_finished(content: LiveContent) -> bool:
 def _stretches(content: LiveContent) -> Iterator[_Stretch]:
     runs = [entry for entry in content.log if entry.get("kind") == "run"]
     waiting: list[LiveBlock] = []
-    current: dict[str, Any] = {}
+    before: dict[str, Any] = {"name": "quiet", "purpose": "noise of the hammer"}
+    current = before
     for block in content.blocks:
         begun = [run for run in runs if int(run["stored"]) <= block.stored]
-        run = begun[-1] if begun else {}
+        run = begun[-1] if begun else before
         if waiting and (run is not current or not _follows(waiting[-1], block)):
             yield _Stretch(current, tuple(waiting))
             waiting = []

@@ -15,10 +15,13 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
 from jointbench.simulators.hand import Fate, Hand, swing_once
 from jointbench.simulators.plates import POINTS, PlatesDesign, plates_poles
-from jointbench.simulators.plates_strike import Stroke, add_stroke, stroke
+from jointbench.simulators.plates_strike import Stroke, signal_piece, stroke
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
-_PIECE = 4096  # samples whose noise is drawn together
+# Samples made together, so that sample k is the same number however reads are cut. A
+# piece lasts less than the hand's reaction: no stroke comes to one that is made.
+_PIECE = 1024
+_KEPT = 64  # pieces
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +107,7 @@ class LivePlates:
         self._level: float | None = None
         self._rate, self._stream, self._free_at = 1.0, 0, 0.0
         self._strokes: list[Stroke] = []
-        self._noise: tuple[int, FloatArray] | None = None
+        self._made: dict[int, FloatArray] = {}
         self.history: list[PlannedStroke] = []
 
     def begin(self, sample_rate: float) -> None:
@@ -113,7 +116,7 @@ class LivePlates:
             self._rate = sample_rate
             self._stream += 1
             self._free_at = 0.0
-            self._strokes, self._noise = [], None
+            self._strokes, self._made = [], {}
 
     def place(
         self,
@@ -153,21 +156,14 @@ class LivePlates:
             inputs: numbers of the inputs.
         """
         with self._lock:
-            self._keep_striking(first + count)
-            self._strokes = [each for each in self._strokes if each.last > first]
-            physical = np.zeros((len(self._bench.sensors), count))
-            for each in self._strokes:
-                add_stroke(physical, each, first=first, sample_rate=self._rate)
-            noise = self._noise_at(first, count)
-        sensors = self._bench.sensors
-        rows = np.empty((len(inputs), count))
-        for row, number in zip(rows, inputs, strict=True):
-            plugged = number < len(sensors)
-            row[:] = noise[number % noise.shape[0]]
-            row *= sensors[number].noise if plugged else 1e-5
-            if plugged:
-                row += sensors[number].sensitivity * physical[number]
-        return rows
+            numbers = range(first // _PIECE, (first + count - 1) // _PIECE + 1)
+            made = np.hstack([self._piece(number) for number in numbers])
+        offset = first - numbers[0] * _PIECE
+        made = made[:, offset : offset + count]
+        open_input = self._bench.sensors[0].noise * made[-1]
+        return np.stack(
+            [made[n] if n < made.shape[0] - 1 else open_input for n in inputs]
+        )
 
     def _keep_striking(self, past: int) -> None:
         interval = self._bench.hand.interval
@@ -201,18 +197,26 @@ class LivePlates:
         self.history.append(planned)
         return planned
 
-    def _noise_at(self, first: int, count: int) -> FloatArray:
-        """Return unit noise of all sensors, drawn in pieces of fixed place."""
-        pieces = range(first // _PIECE, (first + count - 1) // _PIECE + 1)
-        drawn = np.hstack([self._piece(number) for number in pieces])
-        offset = first - pieces[0] * _PIECE
-        return drawn[:, offset : offset + count]
-
     def _piece(self, number: int) -> FloatArray:
-        if self._noise is None or self._noise[0] != number:
-            seed = [self._bench.seed, 13, self._stream, number]
-            drawn = np.random.default_rng(seed).standard_normal(
-                (len(self._bench.sensors), _PIECE)
+        """Return the volts of all sensors, and unit noise, over one piece."""
+        if number not in self._made:
+            self._keep_striking((number + 1) * _PIECE)
+            first = number * _PIECE
+            self._strokes = [s for s in self._strokes if s.last > first - _KEPT * _PIECE]
+            sensors = self._bench.sensors
+            physical = signal_piece(
+                self._strokes,
+                first=first,
+                count=_PIECE,
+                outputs=len(sensors) - 1,
+                rate=self._rate,
             )
-            self._noise = (number, drawn)
-        return self._noise[1]
+            seed = [self._bench.seed, 13, self._stream, number]
+            shape = (len(sensors) + 1, _PIECE)
+            noise = np.random.default_rng(seed).standard_normal(shape)
+            for row, sensor, own in zip(noise, sensors, physical, strict=False):
+                row *= sensor.noise
+                row += sensor.sensitivity * own
+            self._made[number] = noise
+            self._made.pop(number - _KEPT, None)
+        return self._made[number]

@@ -52,8 +52,9 @@ def stroke(poles: Poles, pulses: Sequence[Pulse], *, sample_rate: float) -> Stro
         pulses: in order of time; a gap between them is part of the head.
         sample_rate: [Hz].
     """
-    audible = np.abs(poles.poles) < 2 * np.pi * _PASS_BAND * sample_rate
-    values, gains = poles.poles[audible], poles.gains[audible]
+    values = poles.poles
+    audible = np.abs(values) < 2 * np.pi * _PASS_BAND * sample_rate
+    gains = poles.gains * audible[:, None]
     first = int(np.floor(pulses[0].start * sample_rate))
     past = int(np.ceil((pulses[-1].start + pulses[-1].width) * sample_rate)) + 1
     count = past - first + 1
@@ -72,29 +73,60 @@ def stroke(poles: Poles, pulses: Sequence[Pulse], *, sample_rate: float) -> Stro
     )
 
 
-def add_stroke(
-    signal: FloatArray, stroke: Stroke, *, first: int, sample_rate: float
-) -> None:
-    """Add a stroke to a stretch of signal, in place.
+def signal_piece(
+    strokes: Sequence[Stroke], *, first: int, count: int, outputs: int, rate: float
+) -> FloatArray:
+    """Return force and accelerations of some strokes over a stretch of samples.
 
     Args:
-        signal: force, then accelerations, shape (1 + n_out, n).
-        stroke: to be added.
-        first: index of the first sample of `signal`.
-        sample_rate: [Hz].
+        strokes: in any order.
+        first: index of the first sample.
+        count: of samples.
+        outputs: accelerations of every stroke.
+        rate: of the samples [Hz].
+
+    Returns:
+        Force [N], then accelerations [m/s^2], shape (1 + outputs, count).
     """
-    past = first + signal.shape[1]
-    if stroke.first >= past or stroke.last <= first:
-        return
-    start, stop = stroke.first, stroke.first + stroke.head.shape[1]
-    low, high = max(start, first), min(stop, past)
-    if low < high:
-        signal[:, low - first : high - first] += stroke.head[:, low - start : high - start]
-    low, high = max(stop, first), min(stroke.last, past)
-    if low < high:
-        rise = np.exp(stroke.poles[:, None] * np.arange(high - low) / sample_rate)
-        begin = stroke.tail * np.exp(stroke.poles * (low - stop) / sample_rate)[:, None]
-        signal[1:, low - first : high - first] += 2 * (begin.T @ rise).real
+    signal = np.zeros((1 + outputs, count))
+    past = first + count
+    ringing: dict[int, tuple[ComplexArray, ComplexArray]] = {}
+    for each in strokes:
+        stop = each.first + each.head.shape[1]
+        low, high = max(each.first, first), min(stop, past)
+        if low < high:
+            part = each.head[:, low - each.first : high - each.first]
+            signal[:, low - first : high - first] += part
+        low, high = max(stop, first), min(each.last, past)
+        if low < high:
+            start = each.tail * np.exp(each.poles * (low - stop) / rate)[:, None]
+            if (low, high) == (first, past):
+                # All that ring in the same poles ring on as one.
+                sums = ringing.setdefault(id(each.poles), (each.poles, 0 * start))
+                ringing[id(each.poles)] = (each.poles, sums[1] + start)
+            else:
+                ring = _ring(each.poles, start, high - low, rate)
+                signal[1:, low - first : high - first] += ring
+    for poles, start in ringing.values():
+        signal[1:] += _ring(poles, start, count, rate)
+    return signal
+
+
+def _ring(
+    poles: ComplexArray, start: ComplexArray, count: int, rate: float
+) -> FloatArray:
+    """Return what modes of a given start ring on to, shape (n_out, count)."""
+    step = np.exp(poles / rate)
+    rise = np.empty((poles.size, count), dtype=np.complex128)
+    rise[:, 0] = 1.0
+    # Doubling costs a few products where an exponential of every sample costs ten.
+    filled = 1
+    while filled < count:
+        more = min(filled, count - filled)
+        jump = (step**filled)[:, None]
+        rise[:, filled : filled + more] = rise[:, :more] * jump
+        filled += more
+    return np.asarray(2 * (start.T @ rise).real)
 
 
 def _running_integral(
