@@ -135,7 +135,9 @@ def _recording(
     preload = run.get("preload")
     return Recording(
         name=name,
-        samples=np.concatenate([b.samples for b in stretch.blocks], axis=1).astype(float),
+        samples=np.concatenate([b.samples for b in stretch.blocks], axis=1).astype(
+            float
+        ),
         sample_rate=rate,
         channels=tuple(_at(channel, point) for channel in channels),
         start_time=stretch.first / rate,

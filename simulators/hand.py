@@ -57,7 +57,9 @@ class Hand:
         if self.interval is not None and not self.interval > 0:
             raise UsageError(f"interval is {self.interval!r} s; give one above zero")
         if not self.fates:
-            raise UsageError("fates is empty; leave it out, or name one stroke at least")
+            raise UsageError(
+                "fates is empty; leave it out, or name one stroke at least"
+            )
 
 
 def swing_once(

@@ -202,7 +202,9 @@ class LivePlates:
         if number not in self._made:
             self._keep_striking((number + 1) * _PIECE)
             first = number * _PIECE
-            self._strokes = [s for s in self._strokes if s.last > first - _KEPT * _PIECE]
+            self._strokes = [
+                s for s in self._strokes if s.last > first - _KEPT * _PIECE
+            ]
             sensors = self._bench.sensors
             physical = signal_piece(
                 self._strokes,

@@ -62,7 +62,9 @@ def chassis_from_url(url: str) -> ChassisSetup:
         port=int(take("port", "0", int)),
     )
     if values:
-        raise UsageError(f"unknown key {next(iter(values))!r} in {url!r}; known: {_KEYS}")
+        raise UsageError(
+            f"unknown key {next(iter(values))!r} in {url!r}; known: {_KEYS}"
+        )
     return setup
 
 

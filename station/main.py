@@ -155,9 +155,7 @@ def measure_command(
     """
     from jointbench.station.measure import run_measure
 
-    measured = run_measure(
-        plan, out, source=source, overwrite=force, json_target=json
-    )
+    measured = run_measure(plan, out, source=source, overwrite=force, json_target=json)
     return 0 if measured.whole else EXIT_QUALITY
 
 
@@ -371,3 +369,53 @@ def inspect_command(
     from jointbench.station.inspect_file import run_inspect
 
     run_inspect(file, json_target=json)
+
+
+@app.command(name="verify")
+def verify_command(
+    file: Annotated[Path, typer.Argument(help="Session file.")],
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Read a session through, checksums and continuity included.
+
+    Example: jointbench verify session.h5
+    """
+    from jointbench.station.verify import run_verify
+
+    return 0 if run_verify(file, json_target=json) else EXIT_QUALITY
+
+
+@app.command(name="recover")
+def recover_command(
+    file: Annotated[Path, typer.Argument(help="File of a recording that was cut off.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Session file; *.recovered.h5 by default.")
+    ] = None,
+    force: Force = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Save what is left of a recording that was killed; the file itself stays.
+
+    Example: jointbench recover session.h5
+    """
+    from jointbench.station.verify import run_recover
+
+    run_recover(file, out=out, overwrite=force, json_target=json)
+
+
+@app.command(name="simulate")
+def simulate_command(
+    bench: Annotated[
+        str, typer.Argument(help="What stands on the bench.", metavar="URL")
+    ] = "sim:plates?speed=1&interval=2&port=31763",
+    debug: Debug = False,
+) -> None:
+    """Serve a simulated NI chassis for any program that uses nidaqmx over gRPC.
+
+    Example: jointbench simulate 'sim:plates?speed=1&interval=2&port=31763'
+    """
+    from jointbench.station.simulate import run_simulate
+
+    run_simulate(bench)

@@ -274,7 +274,12 @@ def _summary(measured: Measured) -> dict[str, object]:
         "unread_samples": counters.unread,
         "stored_samples": counters.delivered,
         "gaps": [
-            {"kind": g.kind, "samples": g.samples, "seconds": g.seconds, "words": g.words}
+            {
+                "kind": g.kind,
+                "samples": g.samples,
+                "seconds": g.seconds,
+                "words": g.words,
+            }
             for g in record.gaps
         ],
         "settings": {p.name: p.value for p in record.proposals},

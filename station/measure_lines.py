@@ -45,7 +45,9 @@ class Lines:
         coherence = ""
         if news.coherence is not None:
             coherence = f", coherence {news.coherence:.3f}"
-        count = "" if news.condition is None else f" {news.good}/{news.wanted}{coherence}"
+        count = (
+            "" if news.condition is None else f" {news.good}/{news.wanted}{coherence}"
+        )
         self._print(
             f"hit {news.number} {news.hit.verdict.value}{count}: {news.hit.reason}"
         )

@@ -323,7 +323,9 @@ class MeasureSession:
             self._finish_condition(frf)
         elif self._rejected >= hits.most_rejected:
             self.record.incomplete.append(self._condition.name)
-            self._watcher.say(f"{self._condition.name}: given up after too many bad hits")
+            self._watcher.say(
+                f"{self._condition.name}: given up after too many bad hits"
+            )
             self._finish_condition(frf)
         else:
             self._ask()

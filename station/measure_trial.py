@@ -97,7 +97,9 @@ def propose_settings(
             else "an exponential window to 1 %: the response outlasts the block",
         ),
         Proposal(
-            "band_hz", band, f"the force spectrum falls by {DROP_DB:g} dB at {band:.0f} Hz"
+            "band_hz",
+            band,
+            f"the force spectrum falls by {DROP_DB:g} dB at {band:.0f} Hz",
         ),
         *(
             _range(channel, max(float(np.abs(c.samples[i]).max()) for c in cuts))
@@ -148,7 +150,9 @@ def _range(channel: Channel, largest: float) -> Proposal:
     name = f"range_{channel.name}"
     wanted = HEADROOM * largest
     if channel.range is None or wanted <= channel.range:
-        verdict = f"{HEADROOM:g} x {largest:.4g}; the table's {channel.range:g} holds it"
+        verdict = (
+            f"{HEADROOM:g} x {largest:.4g}; the table's {channel.range:g} holds it"
+        )
     else:
         verdict = (
             f"{HEADROOM:g} x {largest:.4g} exceeds the table's {channel.range:g}: hit "

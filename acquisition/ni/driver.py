@@ -220,7 +220,13 @@ class AnalogTask:
             return rate
 
     def start_triggered(
-        self, sample_rate: float, *, samples: int, source: str, before: int, level: float
+        self,
+        sample_rate: float,
+        *,
+        samples: int,
+        source: str,
+        before: int,
+        level: float,
     ) -> float:
         """Start a finite block around a rising edge that the hardware looks for.
 

@@ -232,7 +232,9 @@ class Task:
         sign = 1 if trigger.rising else -1
         signal = sign * self._samples(first, past - first)[trigger.channel]
         level = sign * trigger.level
-        edges = np.flatnonzero((signal[:-1] < level) & (signal[1:] >= level)) + 1 + first
+        edges = (
+            np.flatnonzero((signal[:-1] < level) & (signal[1:] >= level)) + 1 + first
+        )
         edges = edges[edges >= trigger.before]
         if edges.size and self.finite is not None:
             begin = int(edges[0]) - trigger.before
