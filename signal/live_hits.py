@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Hammer hits in a stream that is still being recorded: the bench's software trigger."""
+"""Hammer hits in a stream still being recorded: the bench's software trigger."""
 
 from dataclasses import dataclass
 

@@ -48,7 +48,7 @@ class PlateModes:
     Attributes:
         design: the plate.
         omega: angular frequencies, rigid modes first [rad/s], shape (n_modes,).
-        shapes: coefficients of deflection and of the two slopes of the normal [1/kg^0.5],
+        shapes: coefficients of deflection and of the slopes of the normal [1/kg^0.5],
             shape (3, n_functions, n_modes).
     """
 

@@ -21,6 +21,7 @@
 A triaxial sensor lists ``axes``, each with its own input, direction and sensitivity.
 """
 
+import re
 from datetime import date
 from typing import Annotated, Any, Literal
 
@@ -132,16 +133,12 @@ class SensorTable(_Strict):
 
 
 def _amperes(text: str) -> float:
-    number, _, unit = text.strip().partition(" ")
-    factor = {"mA": 1e-3, "A": 1.0}.get(unit.strip())
-    try:
-        if factor is None:
-            raise ValueError(unit)
-        return float(number) * factor
-    except ValueError:
+    match = re.fullmatch(r"\s*(\d+\.?\d*)\s*(mA|A)\s*", text)
+    if match is None:
         raise UnitError(
             f"iepe is {text!r}; write the current with its unit, '4 mA', or '0 mA'"
-        ) from None
+        )
+    return float(match[1]) * (1e-3 if match[2] == "mA" else 1.0)
 
 
 class AcquisitionTable(_Strict):

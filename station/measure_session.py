@@ -367,7 +367,7 @@ class MeasureSession:
                 self._watcher.say(f"check {check.name}: {check.words}")
 
     def _gap(self, gap: Gap) -> None:
-        """Note what is missing; a hit that it cut short is late, and asked for again."""
+        """Note what is missing; a hit cut short by it is late, and asked for again."""
         self.record.gaps.append(gap)
         self._live.log(
             {

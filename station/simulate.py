@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench simulate``: a chassis without hardware for any program that uses NI's."""
+"""``jointbench simulate``: a chassis without hardware for any program of NI's."""
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.simulators.chassis.server import SimulatedChassis

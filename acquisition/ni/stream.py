@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Continuous acquisition that survives its cable: blocks, and what lies between them."""
+"""Continuous acquisition that survives its cable: blocks, and the gaps between."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -153,7 +153,7 @@ class NiStream:
                 yield self._reconnect(str(error))
 
     def open_loops(self) -> tuple[str, ...]:
-        """Return the channels whose cable or sensor is off, where the device can tell."""
+        """Return the channels whose cable or sensor is off, if the device can tell."""
         try:
             return () if self._task is None else self._task.open_loops()
         except InstrumentError:

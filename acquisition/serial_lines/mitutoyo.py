@@ -63,8 +63,8 @@ def ask(line: Line, field: str, data: str = "") -> str:
         return answer[2:]
     if answer.startswith("NG"):
         raise InstrumentError(
-            f"the Mitutoyo refuses {field!r} with code {answer[2:]!r}; its manual lists "
-            "the codes"
+            f"the Mitutoyo refuses {field!r} with code {answer[2:]!r}; its manual "
+            "lists the codes"
         )
     raise FormatError(
         f"the Mitutoyo answered {answer[:20]!r} where OK or NG is expected; check the "
@@ -136,20 +136,25 @@ def parse_heights(text: str, number: int) -> list[float]:
     """
     head, _, body = text.partition(";")
     try:
-        if int(head) != number:
-            raise ValueError(head)
+        found = int(head)
         parted = [word for word in re.split(r"[,;\s]+", body.strip()) if word]
         words = [
             word[i : i + _DIGITS]
             for word in parted
             for i in range(0, len(word), _DIGITS)
         ]
-        return [float(word) for word in words]
+        heights = [float(word) for word in words]
     except ValueError as error:
         raise FormatError(
             f"the Mitutoyo's profile file {number} begins {text[:20]!r}; heights of "
             "nine characters after its number are expected"
         ) from error
+    if found != number:
+        raise FormatError(
+            f"the Mitutoyo sent profile file {found} where {number} was asked for; ask "
+            "for the profile again"
+        )
+    return heights
 
 
 def _number_of_files(text: str) -> int:

@@ -99,7 +99,10 @@ def main() -> None:
     process.join()
     counters = stream.counters
     print(f"- {options.channels} channels x {options.rate:g} Hz for {wall:.1f} s")
-    print(f"- client and store: {100 * cpu / wall:.1f} % of one core")
+    print(
+        f"- client and store: {cpu:.2f} s of CPU for {options.seconds:g} s of signal, "
+        f"{100 * cpu / options.seconds:.1f} % of one core"
+    )
     print(
         f"- device counter {counters.acquired}, still in its buffer {counters.unread}, "
         f"read {counters.delivered}, in the file with a right checksum "

@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jointbench.acquisition.errors import BadData
 from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_file import read_session
 from jointbench.station.measure import measure
@@ -39,18 +40,20 @@ class Telling(Lines):
         self.parent, self.count = parent, 0
 
     def begin(self, channels: object, sample_rate: float) -> None:
+        """Tell that recording has begun."""
         self.parent.send(0)
 
     def say(self, line: str) -> None:
-        pass
+        """Say nothing."""
 
     def ask(self, condition: object, done: int, total: int) -> None:
-        pass
+        """Say nothing."""
 
     def hit(self, news: object) -> None:
-        pass
+        """Say nothing."""
 
     def block(self, samples: np.ndarray) -> None:
+        """Tell how many samples were handed over."""
         self.count += samples.shape[1]
         self.parent.send(self.count)
 
@@ -79,7 +82,7 @@ def stream(session: Session) -> np.ndarray:
 
 
 def one(plan: MeasurePlan, out: Path, stop_at: int | None, delay: float) -> int:
-    """Start a child, kill it at a count of samples and a delay; return the last count."""
+    """Start a child, kill it at a count and a delay; return the last count told."""
     here, there = multiprocessing.Pipe(duplex=False)
     process = multiprocessing.get_context("fork").Process(
         target=child, args=(plan, out, there)
@@ -132,7 +135,7 @@ def main() -> None:
             told = one(plan, out, stop, draw.uniform(0.0, 0.6 if late else 0.05))
             try:
                 session = read_session(out)
-            except Exception as error:
+            except BadData as error:
                 print(f"kill {number}: NOT OPENED: {error}")
                 continue
             opened += 1

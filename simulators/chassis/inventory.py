@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is in the simulated chassis: modules of four IEPE inputs, and what they can do."""
+"""What is in the simulated chassis: modules of four IEPE inputs, what they can do."""
 
 import math
 from dataclasses import dataclass

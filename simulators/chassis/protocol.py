@@ -62,5 +62,5 @@ def refuse(context: grpc.ServicerContext, refusal: Refusal) -> None:
 
 
 def attribute_of(request: Any) -> int:
-    """Return the attribute that a request names, whichever of its two fields it used."""
+    """Return the attribute that a request names, in whichever of two fields."""
     return int(request.attribute_raw or request.attribute)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""NI's device service, continued: reading, counters, events, and the scripted faults."""
+"""NI's device service, continued: reading, counters, events, scripted faults."""
 
 # The methods carry the names that the protocol gives them.
 # ruff: noqa: N802

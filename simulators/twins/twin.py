@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A serial instrument without hardware: on a pseudo-terminal, or a socket where none is.
+"""A serial instrument without hardware: on a pseudo-terminal or a socket.
 
 `unplug_after` breaks the line in the middle of what it sends, as a pulled plug does.
 """
@@ -19,7 +19,7 @@ _POLL = 0.05  # [s]
 
 
 class Twin:
-    """An instrument that answers on a line of its own; `name` is what pyserial opens."""
+    """An instrument on a line of its own; `name` is what pyserial opens."""
 
     def __init__(
         self,

@@ -66,7 +66,7 @@ def test_the_dh8_takes_traverse_and_cutoff_as_raw_bytes() -> None:
 
 
 def test_a_dh8_profile_is_framed_by_its_count_though_eot_and_ack_occur_in_it() -> None:
-    """Heights 4, 6 and -252 counts hold the codes of EOT and ACK; z = count / 128 um."""
+    """Heights 4, 6 and -252 counts hold the codes of EOT and ACK; z = n / 128 um."""
     body = b"\x04\x00\x06\x00\x04\xff"
     line = Dialogue(
         (b"\x1bU0\x03", b"\x06\x04"),
