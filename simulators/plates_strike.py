@@ -59,7 +59,7 @@ def stroke(poles: Poles, pulses: Sequence[Pulse], *, sample_rate: float) -> Stro
     past = int(np.ceil((pulses[-1].start + pulses[-1].width) * sample_rate)) + 1
     count = past - first + 1
     step = 1 / (sample_rate * _FINE)
-    fine = step * np.arange((count - 1) * _FINE + 1)
+    fine: FloatArray = step * np.arange((count - 1) * _FINE + 1, dtype=np.float64)
     force = pulse_force(pulses, first / sample_rate + fine)
     state = _running_integral(values, force, fine, step)[:, ::_FINE]
     accelerations = poles.direct[:, None] * force[::_FINE] + 2 * (gains.T @ state).real

@@ -139,7 +139,7 @@ class ReadingService(TaskService):
                 stock.UNKNOWN_ATTRIBUTE,
                 f"Specified property is not supported: {attribute:#x}",
             )
-        return counters[attribute]()
+        return int(counters[attribute]())
 
     @answered
     def GetReadAttributeBool(self, request: Any, context: Any) -> Any:
