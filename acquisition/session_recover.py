@@ -60,7 +60,9 @@ def session_from_live(content: LiveContent) -> Session:
     try:
         channels = tuple(_channel(row) for row in meta["channels"])
         rate = float(meta["sample_rate"])
-        texts: dict[str, Any] = {name: str(meta.get(name, "")) for name in _SESSION_TEXTS}
+        texts: dict[str, Any] = {
+            name: str(meta.get(name, "")) for name in _SESSION_TEXTS
+        }
         simulated = bool(meta["simulated"])
     except (KeyError, TypeError, ValueError) as error:
         raise FormatError(f"the head of the recording is damaged ({error})") from error

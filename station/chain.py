@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from jointbench.acquisition.errors import NoHitFound
 from jointbench.acquisition.records import Provenance, Recording
 from jointbench.signal.frf import Frf, estimate_frf
 from jointbench.signal.hits import HitCriteria, find_hits
@@ -46,11 +47,25 @@ class ModalChain:
 def judge_hits(
     recordings: Sequence[Recording], settings: ChainSettings
 ) -> tuple[Recording, ...]:
-    """Find and judge the hits of recordings that carry none yet."""
-    return tuple(
-        recording if recording.hits else find_hits(recording, settings.hits)
-        for recording in recordings
-    )
+    """Find and judge the hits of recordings that carry none yet.
+
+    Where others were judged as they were recorded, one without a hit is a quiet
+    stretch between them, and is left out.
+
+    Raises:
+        NoHitFound: there is no hit in a recording, and none was judged before.
+    """
+    some = any(recording.hits for recording in recordings)
+    found = []
+    for recording in recordings:
+        try:
+            judged = recording.hits or find_hits(recording, settings.hits).hits
+        except NoHitFound:
+            if not some:
+                raise
+            continue
+        found.append(replace(recording, hits=judged))
+    return tuple(found)
 
 
 def run_chain(

@@ -2,13 +2,14 @@
 """Checks while the part is still on the bench: driving points and reciprocity."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, ComplexArray
 from jointbench.acquisition.records import Channel, Quantity
 from jointbench.signal.frf import Frf
+from jointbench.station.measure_plan import Condition
 
 WRONG_SIGN_LIMIT = 0.05
 """Share of the imaginary part of a driving point that may have the wrong sign [-]."""
@@ -36,6 +37,34 @@ class Check:
     def passed(self) -> bool:
         """Whether the value is within its limit."""
         return self.value <= self.limit
+
+
+@dataclass(slots=True)
+class CheckBook:
+    """The averages so far, and the checks that each new one makes possible.
+
+    Attributes:
+        channels: of responses and hammer.
+    """
+
+    channels: tuple[Channel, ...]
+    _averages: dict[tuple[float | None, float | None, str], Frf] = field(
+        default_factory=dict
+    )
+
+    def enter(self, condition: Condition, frf: Frf) -> tuple[Check, ...]:
+        """Keep an average; check its driving point and every pair now complete."""
+        torque, level, point = condition.torque, condition.level, condition.point
+        self._averages[torque, level, point] = frf
+        same = {
+            struck: found
+            for (own_torque, own_level, struck), found in self._averages.items()
+            if (own_torque, own_level) == (torque, level)
+        }
+        pairs = reciprocity(same, self.channels)
+        new = [check for check in pairs if point in check.name.split()]
+        driving = driving_point(frf, self.channels, point)
+        return tuple(new) if driving is None else (driving, *new)
 
 
 def driving_point(frf: Frf, channels: tuple[Channel, ...], point: str) -> Check | None:

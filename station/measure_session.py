@@ -19,7 +19,15 @@ from jointbench.signal.frf import Frf
 from jointbench.signal.hit_verdicts import HitLimits
 from jointbench.signal.live_hits import CutHit, HitCutter, judge_cut
 from jointbench.station.measure_average import Accepted, average, mean_coherence, spoils
-from jointbench.station.measure_checks import Check, driving_point, reciprocity
+from jointbench.station.measure_checks import Check, CheckBook
+from jointbench.station.measure_log import (
+    check_entry,
+    gap_entry,
+    gap_words,
+    hit_entry,
+    run_entry,
+    setting_entry,
+)
 from jointbench.station.measure_plan import Condition, MeasurePlan, conditions
 from jointbench.station.measure_trial import (
     Proposal,
@@ -88,7 +96,7 @@ class MeasureSession:
         self._accepted: list[Accepted] = []
         self._last: Accepted | None = None
         self._rejected = 0
-        self._averages: dict[tuple[float | None, float | None, str], Frf] = {}
+        self._book = CheckBook(channels)
         self._silent = 0
         self._since_look = 0
         self._open: tuple[str, ...] = ()
@@ -155,16 +163,7 @@ class MeasureSession:
 
     def _begin_run(self) -> None:
         condition = self._condition
-        entry = {
-            "kind": "run",
-            "name": "trial" if self._trial is not None else condition.name,
-            "purpose": "trial" if self._trial is not None else "measurement",
-            "point": condition.point,
-            "torque": condition.torque,
-            "preload": condition.preload,
-            "level": condition.level,
-        }
-        self._live.log(entry)
+        self._live.log(run_entry(condition, trial=self._trial is not None))
         self._accepted, self._last, self._rejected = [], None, 0
         self._ask()
 
@@ -260,14 +259,7 @@ class MeasureSession:
             trigger=self._trigger,
         )
         for proposal in self.record.proposals:
-            self._live.log(
-                {
-                    "kind": "setting",
-                    "name": proposal.name,
-                    "value": proposal.value,
-                    "reason": proposal.reason,
-                }
-            )
+            self._live.log(setting_entry(proposal))
             self._watcher.say(
                 f"{proposal.name} {proposal.value:.4g}: {proposal.reason}"
             )
@@ -280,20 +272,7 @@ class MeasureSession:
     def _store(self, hit: Hit, *, number: int) -> None:
         """Log a hit, new or judged again."""
         new = number == len(self.record.hits)
-        self._live.log(
-            {
-                "kind": "hit" if new else "verdict",
-                "number": number,
-                "start": hit.start,
-                "trigger": hit.trigger,
-                "stop": hit.stop,
-                "point": hit.point,
-                "peak_force": hit.peak_force,
-                "verdict": hit.verdict.value,
-                "measure": hit.measure,
-                "reason": hit.reason,
-            }
-        )
+        self._live.log(hit_entry(hit, number=number, new=new))
         if new:
             self.record.hits.append(hit)
         else:
@@ -333,54 +312,20 @@ class MeasureSession:
     def _finish_condition(self, frf: Frf | None) -> None:
         condition = self._condition
         if frf is not None:
-            key = (condition.torque, condition.level, condition.point)
-            self._averages[key] = frf
-            self._check(condition, frf)
+            for check in self._book.enter(condition, frf):
+                self.record.checks.append(check)
+                self._live.log(check_entry(check))
+                if not check.passed:
+                    self._watcher.say(f"check {check.name}: {check.words}")
         self.record.done += 1
         if self.record.done < len(self._conditions):
             self._begin_run()
 
-    def _check(self, condition: Condition, frf: Frf) -> None:
-        """Check the driving point, and every pair that is now complete."""
-        new = [driving_point(frf, self._channels, condition.point)]
-        same = {
-            point: found
-            for (torque, level, point), found in self._averages.items()
-            if (torque, level) == (condition.torque, condition.level)
-        }
-        pairs = reciprocity(same, self._channels)
-        new += [check for check in pairs if condition.point in check.name.split()]
-        for check in new:
-            if check is None:
-                continue
-            self.record.checks.append(check)
-            self._live.log(
-                {
-                    "kind": "check",
-                    "name": check.name,
-                    "value": check.value,
-                    "limit": check.limit,
-                    "passed": check.passed,
-                }
-            )
-            if not check.passed:
-                self._watcher.say(f"check {check.name}: {check.words}")
-
     def _gap(self, gap: Gap) -> None:
         """Note what is missing; a hit cut short by it is late, and asked for again."""
         self.record.gaps.append(gap)
-        self._live.log(
-            {
-                "kind": "gap",
-                "what": gap.kind,
-                "segment": gap.segment,
-                "first_sample": gap.first,
-                "samples": gap.samples,
-                "seconds": round(gap.seconds, 3),
-                "words": gap.words,
-            }
-        )
-        self._watcher.say(_gap_words(gap))
+        self._live.log(gap_entry(gap))
+        self._watcher.say(gap_words(gap))
         cut = None if self._cutter is None else self._cutter.break_off()
         if cut is not None and self._trial is None:
             self._hit(cut)
@@ -430,11 +375,3 @@ class MeasureSession:
         if verdict is Verdict.OK:
             self._accepted.append(self._last)
         self._show_and_go_on(self._last)
-
-
-def _gap_words(gap: Gap) -> str:
-    if gap.kind == "lost":
-        return f"connection lost, waiting for it: {gap.words}"
-    if gap.kind == "back":
-        return f"connection is back after {gap.seconds:.2f} s; the gap is noted"
-    return f"overrun: {gap.samples} samples lost; the gap is noted"

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.records import Recording
+from jointbench.acquisition.records import Recording, Verdict
 from jointbench.signal.modes import ModalSettings
 from jointbench.station.chain import ChainSettings, ModalChain, run_chain
 from jointbench.station.inputs import is_session_name, read_recordings
@@ -27,20 +27,84 @@ def run_modal(
     out: Path | None,
     json_target: str | None,
 ) -> ModalChain:
-    """Identify the modes in `files`, show them and keep them beside the session."""
+    """Identify the modes in `files`, show them and keep them beside the session.
+
+    Recordings under different preloads are never averaged: each preload has modes, a
+    table and a results file of its own.
+
+    Returns:
+        What was found at the first preload.
+    """
     settings = ChainSettings(
         modal=ModalSettings(band=parse_band(band), highest_order=order)
     )
     target = out or _beside(files)
     check_outputs(files, [target, json_target])
     recordings = read_recordings(files, columns=columns, point=point)
-    with working("judging hits, estimating FRFs, fitting modes"):
-        chain = run_chain(recordings, settings)
-    if target is not None:
-        write_results(target, chain, files)
-    show_modal(chain, json_target)
-    write_json(json_target, modal_json(chain) | {"results": str(target or "")})
-    return chain
+    groups = by_preload(recordings)
+    chains = []
+    for preload, group in groups:
+        with working("judging hits, estimating FRFs, fitting modes"):
+            chain = run_chain(group, settings)
+        if len(groups) > 1:
+            console(json_target).print(f"\nPreload {preload:g} N")
+        if target is not None:
+            own = target if len(groups) == 1 else _of_preload(target, preload)
+            write_results(own, chain, files)
+        show_modal(chain, json_target)
+        chains.append(chain)
+    content = _all_json(groups, chains) | {"results": str(target or "")}
+    write_json(json_target, content)
+    return chains[0]
+
+
+def by_preload(
+    recordings: Sequence[Recording],
+) -> tuple[tuple[float | None, tuple[Recording, ...]], ...]:
+    """Part recordings by the preload of the joint: each has modes of its own.
+
+    Args:
+        recordings: of one session or of several files.
+
+    Returns:
+        Preload [N] and its recordings, in the order met. All in one where there are
+        not two preloads among those with an accepted hit; else recordings without a
+        preload or without an accepted hit are left out.
+    """
+    groups: dict[float | None, list[Recording]] = {}
+    for recording in recordings:
+        if any(hit.verdict is Verdict.OK for hit in recording.hits):
+            groups.setdefault(recording.preload, []).append(recording)
+    if len(groups) < 2:
+        return ((next(iter(groups), None), tuple(recordings)),)
+    return tuple((preload, tuple(group)) for preload, group in groups.items())
+
+
+def _of_preload(target: Path, preload: float | None) -> Path:
+    word = "no-preload" if preload is None else f"{preload:g}N"
+    stem = target.name.removesuffix(".results.h5").removesuffix(".h5")
+    return target.with_name(f"{stem}.{word}.results.h5")
+
+
+def _all_json(
+    groups: Sequence[tuple[float | None, tuple[Recording, ...]]],
+    chains: Sequence[ModalChain],
+) -> dict[str, object]:
+    """Return the JSON of one group, or of all with the modes of all in one list."""
+    pages = [modal_json(chain) for chain in chains]
+    if len(pages) == 1:
+        return pages[0]
+    preloads = [preload for preload, _ in groups]
+    modes: list[object] = []
+    for preload, page in zip(preloads, pages, strict=True):
+        own = page["modes"]
+        assert isinstance(own, list)
+        modes += [{**mode, "preload_n": preload} for mode in own]
+    preload_pages = [
+        {"preload_n": preload, **page}
+        for preload, page in zip(preloads, pages, strict=True)
+    ]
+    return pages[0] | {"modes": modes, "preloads": preload_pages}
 
 
 def parse_band(text: str | None) -> tuple[float, float] | None:

@@ -128,7 +128,7 @@ class ReadingService(TaskService):
 
     def _counter(self, request: Any) -> int:
         task, attribute = self.task(request), attribute_of(request)
-        counters = {
+        counters: dict[int, Callable[[], int]] = {
             _ACQUIRED: task.acquired,
             _AVAILABLE: lambda: max(0, task.acquired() - task.position),
             _POSITION: lambda: task.position,
@@ -139,7 +139,7 @@ class ReadingService(TaskService):
                 stock.UNKNOWN_ATTRIBUTE,
                 f"Specified property is not supported: {attribute:#x}",
             )
-        return int(counters[attribute]())
+        return counters[attribute]()
 
     @answered
     def GetReadAttributeBool(self, request: Any, context: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The file of a recording: what was flushed is there, and nothing else pretends to be."""
+"""The file of a recording: what was flushed is there, and nothing else is."""
 
 import os
 import subprocess
@@ -49,7 +49,9 @@ HIT = {
 
 def block(first: int, count: int = 100) -> np.ndarray:
     """Return samples that say their own index."""
-    return np.vstack((np.arange(first, first + count), -np.arange(first, first + count)))
+    return np.vstack(
+        (np.arange(first, first + count), -np.arange(first, first + count))
+    )
 
 
 def record(path: Path, *, end: bool = True) -> None:
