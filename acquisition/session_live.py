@@ -36,8 +36,6 @@ LIVE_SCHEMA = "jointbench-live/1"
 _SYNC_EVERY = 1.0  # [s]
 _LOG_CHUNK = 4096
 _BLOCKS_CHUNK = 256
-# Blocks that may wait for a slow disk: at 50 ms a block, half a minute.
-_MOST_WAITING = 600
 
 Entry = Mapping[str, object]
 
@@ -71,7 +69,7 @@ class LiveSession:
                 "choose another place"
             ) from error
         self._queue: queue.Queue[tuple[int, int, FloatArray] | bytes | None]
-        self._queue = queue.Queue(_MOST_WAITING)
+        self._queue = queue.Queue()
         self._failure: BaseException | None = None
         self._thread = threading.Thread(target=self._write_all, name="session writer")
         self._thread.daemon = True
@@ -105,6 +103,9 @@ class LiveSession:
         Raises:
             InstrumentError: the disk refused an earlier block.
         """
+        # No more than this one block is ever on its way: a slow disk holds up the
+        # reader, for whom the driver keeps seconds of samples.
+        self._queue.join()
         self._put((segment, first, samples))
         self.samples += samples.shape[1]
 
@@ -152,15 +153,17 @@ class LiveSession:
         with self.path.open("rb+") as handle:
             synced = time.monotonic()
             while (item := self._queue.get()) is not None:
-                if self._failure is not None:
-                    continue  # the caller learns of it at the next hand-over
                 try:
-                    self._write(item)
+                    # After a failure the caller learns of it at the next hand-over.
+                    if self._failure is None:
+                        self._write(item)
                     if time.monotonic() - synced > _SYNC_EVERY:
                         os.fsync(handle.fileno())
                         synced = time.monotonic()
                 except (OSError, RuntimeError) as error:
                     self._failure = error
+                finally:
+                    self._queue.task_done()
             if self._failure is None:
                 os.fsync(handle.fileno())
 

@@ -16,8 +16,8 @@ from jointbench.acquisition.records import Channel, Hit, Verdict
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.session_live import LiveSession
-from jointbench.station.measure_lines import Lines
 from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
+from jointbench.station.measure_screen import watching
 from jointbench.station.measure_session import MeasureSession, Record
 from jointbench.station.measure_source import OpenChassis, open_chassis
 from jointbench.station.measure_teds import teds_warnings
@@ -80,8 +80,8 @@ def run_measure(
         )
     _prepare_out(out, plan_file, overwrite=overwrite, json_target=json_target)
     screen = console(json_target)
-    with open_chassis(url) as opened:
-        measured = measure(plan, opened, out, _watcher(screen))
+    with open_chassis(url) as opened, watching(screen) as watcher:
+        measured = measure(plan, opened, out, watcher)
     _show(measured, screen)
     write_json(json_target, _summary(measured))
     return measured
@@ -224,10 +224,6 @@ def _prepare_out(
         check_outputs([plan_file], [out])
     elif out.is_file():
         out.unlink()
-
-
-def _watcher(screen: Console) -> Watcher:
-    return Lines(screen)
 
 
 def _show(measured: Measured, screen: Console) -> None:
