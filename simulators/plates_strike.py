@@ -8,6 +8,7 @@ on how the stream was cut into blocks.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -116,8 +117,14 @@ def _ring(
     poles: ComplexArray, start: ComplexArray, count: int, rate: float
 ) -> FloatArray:
     """Return what modes of a given start ring on to, shape (n_out, count)."""
-    step = np.exp(poles / rate)
-    rise = np.empty((poles.size, count), dtype=np.complex128)
+    return np.asarray(2 * (start.T @ _rise(poles.tobytes(), count, rate)).real)
+
+
+@lru_cache(maxsize=16)
+def _rise(poles: bytes, count: int, rate: float) -> ComplexArray:
+    """Return how modes of given poles, as bytes, go on from one, (n_modes, count)."""
+    step = np.exp(np.frombuffer(poles, dtype=np.complex128) / rate)
+    rise = np.empty((step.size, count), dtype=np.complex128)
     rise[:, 0] = 1.0
     # Doubling costs a few products where an exponential of every sample costs ten.
     filled = 1
@@ -126,7 +133,7 @@ def _ring(
         jump = (step**filled)[:, None]
         rise[:, filled : filled + more] = rise[:, :more] * jump
         filled += more
-    return np.asarray(2 * (start.T @ rise).real)
+    return rise
 
 
 def _running_integral(

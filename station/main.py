@@ -4,6 +4,7 @@
 Every command imports what it needs when it runs, so that ``--help`` stays instant.
 """
 
+import os
 import sys
 import warnings
 from collections.abc import Callable
@@ -153,6 +154,8 @@ def measure_command(
     Example: jointbench measure plan.toml --out session.h5 --source
     'sim:plates?seed=1'
     """
+    # gRPC writes of every lost connection to standard error; the session says it.
+    os.environ.setdefault("GRPC_VERBOSITY", "NONE")
     from jointbench.station.measure import run_measure
 
     measured = run_measure(plan, out, source=source, overwrite=force, json_target=json)
