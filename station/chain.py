@@ -59,12 +59,12 @@ def judge_hits(
     found = []
     for recording in recordings:
         try:
-            judged = recording.hits or find_hits(recording, settings.hits).hits
+            found.append(
+                recording if recording.hits else find_hits(recording, settings.hits)
+            )
         except NoHitFound:
             if not some:
                 raise
-            continue
-        found.append(replace(recording, hits=judged))
     return tuple(found)
 
 
