@@ -17,8 +17,9 @@ from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.session_live import LiveSession
 from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
+from jointbench.station.measure_record import Record
 from jointbench.station.measure_screen import watching
-from jointbench.station.measure_session import MeasureSession, Record
+from jointbench.station.measure_session import MeasureSession
 from jointbench.station.measure_source import OpenChassis, open_chassis
 from jointbench.station.measure_teds import teds_warnings
 from jointbench.station.measure_watch import Watcher

@@ -10,6 +10,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
 from jointbench.acquisition.records import Channel, Hit, Recording, Verdict
 from jointbench.signal.frf import Frf, estimate_frf
+from jointbench.signal.hit_verdicts import HitLimits
 from jointbench.signal.live_hits import CutHit
 
 _ENOUGH = 3  # hits from which one of them can be told to spoil the others
@@ -99,3 +100,17 @@ def spoils(
         f"coherence falls from {without:.3f} to {together:.3f} with this hit (limit "
         f"{wanted:g}); it struck another place or direction"
     )
+
+
+def weak_force(level: float | None, accepted: Sequence[Accepted]) -> float | None:
+    """Return the least useful peak [N]: a third of the level, or of the usual hit.
+
+    Args:
+        level: that was asked for [N], None for any.
+        accepted: hits of the condition so far.
+    """
+    share = HitLimits().weak_ratio
+    if level is not None:
+        return share * level
+    peaks = [each.hit.peak_force for each in accepted]
+    return share * float(np.median(peaks)) if peaks else None

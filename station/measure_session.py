@@ -6,7 +6,7 @@ what is asked for next. The engine never waits for the operator: a hit that fall
 somebody reads the screen counts like any other.
 """
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,8 +18,14 @@ from jointbench.acquisition.session_live import LiveSession
 from jointbench.signal.frf import Frf
 from jointbench.signal.hit_verdicts import HitLimits
 from jointbench.signal.live_hits import CutHit, HitCutter, judge_cut
-from jointbench.station.measure_average import Accepted, average, mean_coherence, spoils
-from jointbench.station.measure_checks import Check, CheckBook
+from jointbench.station.measure_average import (
+    Accepted,
+    average,
+    mean_coherence,
+    spoils,
+    weak_force,
+)
+from jointbench.station.measure_checks import CheckBook
 from jointbench.station.measure_log import (
     check_entry,
     gap_entry,
@@ -29,6 +35,7 @@ from jointbench.station.measure_log import (
     setting_entry,
 )
 from jointbench.station.measure_plan import Condition, MeasurePlan, conditions
+from jointbench.station.measure_record import Record
 from jointbench.station.measure_trial import (
     Proposal,
     propose_settings,
@@ -44,29 +51,6 @@ ASK_AGAIN = 4.0
 """Time without a hit after which the hand is asked again, beyond one block [s]."""
 LOOK_AT_CABLES = 1.0
 """Time between looks at the sensor loops [s]."""
-
-
-@dataclass(slots=True)
-class Record:
-    """What the session amounts to so far.
-
-    Attributes:
-        hits: all of them, with their latest verdict.
-        gaps: what was missing.
-        proposals: of the trial hits.
-        checks: driving points and reciprocity.
-        incomplete: names of the conditions that were given up.
-        done: conditions that are over.
-        interrupted: whether the operator ended it.
-    """
-
-    hits: list[Hit] = field(default_factory=list)
-    gaps: list[Gap] = field(default_factory=list)
-    proposals: tuple[Proposal, ...] = ()
-    checks: list[Check] = field(default_factory=list)
-    incomplete: list[str] = field(default_factory=list)
-    done: int = 0
-    interrupted: bool = False
 
 
 class MeasureSession:
@@ -191,7 +175,9 @@ class MeasureSession:
             sample_rate=self._stream.sample_rate,
             point=self._condition.point,
             needed=self._cutter.after,
-            limits=HitLimits(weak_force=self._weak_force()),
+            limits=HitLimits(
+                weak_force=weak_force(self._condition.level, self._accepted)
+            ),
         )
         trial = self._trial
         if trial is not None:
@@ -220,14 +206,6 @@ class MeasureSession:
         else:
             self._rejected += 1
         self._show_and_go_on(self._last)
-
-    def _weak_force(self) -> float | None:
-        """Return the least useful peak: a third of the level, or of the usual hit."""
-        share = HitLimits().weak_ratio
-        if self._condition.level is not None:
-            return share * self._condition.level
-        peaks = [each.hit.peak_force for each in self._accepted]
-        return share * float(np.median(peaks)) if peaks else None
 
     def _take_trial(self, trial: list[CutHit], cut: CutHit, hit: Hit) -> None:
         """Keep a trial hit if it is fit to propose from; it enters no average."""

@@ -7,7 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.ni.driver import Chassis, ConnectionLost
+from jointbench.acquisition.ni.answers import ConnectionLost
+from jointbench.acquisition.ni.driver import Chassis
 from jointbench.station.measure_plan import Condition
 from jointbench.station.measure_watch import Hand, OwnHand
 

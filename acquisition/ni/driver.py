@@ -7,7 +7,6 @@ simulated; only the channel behind them differs.
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from typing import Any
 
 import grpc
@@ -29,6 +28,12 @@ from nidaqmx.system import System
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import InstrumentError, UsageError
+from jointbench.acquisition.ni.answers import (
+    ConnectionLost,
+    Module,
+    Overrun,
+    Teds,
+)
 from jointbench.acquisition.ni.sensors import Axis, Sensor, channel_name
 from jointbench.acquisition.records import Quantity
 
@@ -46,48 +51,6 @@ _OPTIONS = (
     ("grpc.initial_reconnect_backoff_ms", 100),
     ("grpc.max_reconnect_backoff_ms", 1_000),
 )
-
-
-class ConnectionLost(InstrumentError):
-    """The server or the device went away; it may come back."""
-
-
-class Overrun(InstrumentError):
-    """Samples were overwritten in the buffer before they were read."""
-
-
-@dataclass(frozen=True, slots=True)
-class Module:
-    """One device of a chassis.
-
-    Attributes:
-        name: for example ``"cDAQ1Mod1"``.
-        product: for example ``"NI 9234"``.
-        simulated: True where no hardware is behind it.
-        analogue_trigger: whether it can trigger on a signal.
-        inputs: its analogue inputs.
-    """
-
-    name: str
-    product: str
-    simulated: bool
-    analogue_trigger: bool
-    inputs: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Teds:
-    """What a sensor says of itself.
-
-    Attributes:
-        manufacturer: number of the maker.
-        model: number of the model.
-        serial: serial number.
-    """
-
-    manufacturer: int
-    model: int
-    serial: int
 
 
 class Chassis:

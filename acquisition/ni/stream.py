@@ -8,12 +8,8 @@ from dataclasses import dataclass, field
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import InstrumentError
-from jointbench.acquisition.ni.driver import (
-    AnalogTask,
-    Chassis,
-    ConnectionLost,
-    Overrun,
-)
+from jointbench.acquisition.ni.answers import ConnectionLost, Overrun
+from jointbench.acquisition.ni.driver import AnalogTask, Chassis
 from jointbench.acquisition.ni.sensors import Sensor
 
 _RETRY = 0.2  # [s] between attempts to come back
