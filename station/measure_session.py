@@ -43,14 +43,10 @@ from jointbench.station.measure_trial import (
 )
 from jointbench.station.measure_watch import Command, Hand, HitNews, Watcher
 
-LISTEN = 0.3
-"""Quiet time in which the noise of the hammer is measured [s]."""
-TRIAL_LENGTH = 2.0
-"""Block of a trial hit where the plan names none [s]."""
-ASK_AGAIN = 4.0
-"""Time without a hit after which the hand is asked again, beyond one block [s]."""
-LOOK_AT_CABLES = 1.0
-"""Time between looks at the sensor loops [s]."""
+LISTEN = 0.3  # [s] quiet time in which the noise of the hammer is measured
+TRIAL_LENGTH = 2.0  # [s] block of a trial hit where the plan names none
+ASK_AGAIN = 4.0  # [s] beyond one block without a hit, the hand is asked again
+LOOK_AT_CABLES = 1.0  # [s] between looks at the sensor loops
 
 
 class MeasureSession:
@@ -179,9 +175,8 @@ class MeasureSession:
                 weak_force=weak_force(self._condition.level, self._accepted)
             ),
         )
-        trial = self._trial
-        if trial is not None:
-            self._take_trial(trial, cut, hit)
+        if self._trial is not None:
+            self._take_trial(self._trial, cut, hit)
             return
         accepted = Accepted(cut, hit)
         if hit.verdict is Verdict.OK:
