@@ -11,8 +11,8 @@ from jointbench.station.bench_model import BenchModel
 from jointbench.station.chain import ChainSettings, ModalChain, judge_hits, run_chain
 from jointbench.station.identify import identify_joint
 from jointbench.station.joint import ContactPrediction, predict_joint
-from jointbench.station.modal import by_preload
 from jointbench.station.output import working
+from jointbench.station.preloads import by_preload
 from jointbench.station.surface import SurfaceChain, analyse_surface
 
 

@@ -29,8 +29,8 @@ from jointbench.station.measure import Measured, measure
 from jointbench.station.measure_lines import Lines
 from jointbench.station.measure_plan import read_plan
 from jointbench.station.measure_source import OpenChassis, SimulatedHand, open_chassis
-from jointbench.station.modal import by_preload
 from jointbench.station.output import console
+from jointbench.station.preloads import by_preload
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plates.toml"
 VERDICTS = {

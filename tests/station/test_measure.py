@@ -12,10 +12,12 @@ from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.records import Verdict
 from jointbench.acquisition.session_file import read_session
+from jointbench.signal.modes import ModalSettings
 from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
 from jointbench.simulators.hand import Fate, Hand
 from jointbench.simulators.plates import PlatesDesign, natural_frequencies
 from jointbench.simulators.plates_bench import PlatesBench
+from jointbench.station.chain import ChainSettings
 from jointbench.station.main import app, exit_code
 from jointbench.station.measure import Measured, measure, run_measure
 from jointbench.station.measure_lines import Lines
@@ -192,11 +194,7 @@ def test_modes_of_each_torque_are_the_specimens_own(tmp_path: Path) -> None:
     )
     run_modal(
         [tmp_path / "s.h5"],
-        columns=None,
-        point="1",
-        band="200:2000",
-        order=None,
-        out=None,
+        ChainSettings(modal=ModalSettings(band=(200.0, 2000.0))),
         json_target=str(tmp_path / "m.json"),
     )
     pages = json.loads((tmp_path / "m.json").read_text())["preloads"]
