@@ -69,7 +69,7 @@ def assemble(mesh: Mesh, material: Material) -> tuple[Sparse, Sparse]:
     """
     form, kind_of = _distinct_elements(mesh)
     stiffness, mass = _element_matrices(mesh, form, material)
-    n_cells, n_nodes = mesh.cells.shape
+    n_nodes = mesh.cells.shape[1]
     rows = np.repeat(mesh.cells, n_nodes, axis=1).ravel()
     columns = np.tile(mesh.cells, (1, n_nodes)).ravel()
     total = mesh.nodes.shape[0]

@@ -6,6 +6,7 @@ every joint: as a preconditioner here, and for the error bound of a reduced mode
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -96,10 +97,7 @@ def body_modes(
 
 def _blocks(structure: Structure, matrix: Sparse) -> list[Sparse]:
     edges = structure.blocks.tolist()
-    return [
-        Sparse(matrix[low:high, low:high])
-        for low, high in zip(edges[:-1], edges[1:], strict=True)
-    ]
+    return [Sparse(matrix[low:high, low:high]) for low, high in pairwise(edges)]
 
 
 def orthonormalise(basis: FloatArray, mass: Sparse, new: FloatArray) -> FloatArray:

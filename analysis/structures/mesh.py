@@ -15,7 +15,7 @@ from jointbench.acquisition.arrays import (
     require_shape,
 )
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.analysis.structures.elements import ELEMENTS, HEX20, ElementKind
+from jointbench.analysis.structures.elements import ELEMENTS, ElementKind
 
 # Nodes nearer than this share of the size of the mesh are one.
 _SAME_NODE = 1e-7
