@@ -16,12 +16,11 @@ from jointbench.analysis.structures.assembly import Sparse
 from jointbench.analysis.structures.factor import Solve, Solver, factorise
 from jointbench.analysis.structures.full_modes import lowest_modes, shift_of
 from jointbench.analysis.structures.structure import Structure
+from jointbench.analysis.structures.subspace import orthonormalise
 
 # A residual norm this small means an error of frequency of about its square.
 _CONVERGED = 3e-4
 _MOST_STEPS = 30
-# What is left of a direction after taking out the others, below which it is dropped.
-_DEPENDENT = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,30 +97,6 @@ def body_modes(
 def _blocks(structure: Structure, matrix: Sparse) -> list[Sparse]:
     edges = structure.blocks.tolist()
     return [Sparse(matrix[low:high, low:high]) for low, high in pairwise(edges)]
-
-
-def orthonormalise(basis: FloatArray, mass: Sparse, new: FloatArray) -> FloatArray:
-    """Return the part of `new` outside of `basis`, orthonormal in M.
-
-    Args:
-        basis: orthonormal in M, shape (n, r).
-        mass: M.
-        new: directions, shape (n, k).
-
-    Returns:
-        Shape (n, at most k); directions that depend on others are dropped.
-    """
-    size = np.sqrt(np.einsum("nk,nk->k", new, mass @ new))
-    kept = new[:, size > 0] / size[size > 0]
-    limit = _DEPENDENT
-    for _ in range(2):
-        kept = kept - basis @ (basis.T @ (mass @ kept))
-        value, vector = np.linalg.eigh(kept.T @ (mass @ kept))
-        good = value > limit**2
-        kept = kept @ (vector[:, good] / np.sqrt(value[good]))
-        # The second pass only cleans up: what survived the first is of length one.
-        limit = 0.5
-    return np.asarray(kept)
 
 
 def solve_bodywise(

@@ -4,19 +4,18 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, eigsh
 
 from jointbench.acquisition.arrays import FloatArray, freeze
 from jointbench.acquisition.errors import BadData
 from jointbench.analysis.structures.assembly import Sparse
 from jointbench.analysis.structures.factor import Solver, factorise
 from jointbench.analysis.structures.structure import Structure
+from jointbench.analysis.structures.subspace import largest_of_inverse
 
 # The shift lies so far below the waves that fit once into the structure.
 _SHIFT_SHARE = 0.3
 # Modes below this share of the shift frequency move no material: rigid, or mechanisms.
 RIGID_SHARE = 0.01
-_TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,7 +74,8 @@ def solve_full(
         BadData: a stiffness is negative, or the matrices cannot be factored.
 
     Source:
-        Ericsson and Ruhe 1980, Math. Comp. 35, 1251-1268 (shift and invert).
+        Grimes, Lewis and Simon 1994, SIAM J. Matrix Anal. Appl. 15, 228-272 (block
+        Lanczos, shift and invert).
     """
     values = np.asarray(stiffness, float)
     if values.size and not values.min() >= 0:
@@ -88,23 +88,12 @@ def lowest_modes(
 ) -> StructureModes:
     """Find the lowest modes of sparse matrices; see `solve_full`."""
     size = stiffness.shape[0]
-    if count >= size - 1:
+    if not 0 < count < size - 1:
         raise BadData(f"{count} modes of {size} degrees of freedom; ask for fewer")
     shift = shift_of(stiffness, mass)
     solve = factorise(Sparse(stiffness + shift * mass), solver)
-    inverse = LinearOperator((size, size), matvec=solve, dtype=np.float64)
-    start = np.random.default_rng(0).standard_normal(size)
-    value, vector = eigsh(
-        stiffness,
-        count,
-        M=mass,
-        sigma=-shift,
-        OPinv=inverse,
-        tol=_TOLERANCE,
-        v0=start,
-    )
-    order = np.argsort(value)
-    value, vector = np.asarray(value[order]), np.asarray(vector[:, order])
+    inverse, vector = largest_of_inverse(solve, mass, count)
+    value = 1.0 / inverse - shift
     load = stiffness @ vector
     left = np.linalg.norm(load - mass @ vector * value, axis=0)
     scale = np.linalg.norm(load, axis=0) + shift * np.linalg.norm(mass @ vector, axis=0)

@@ -21,7 +21,10 @@ from jointbench.analysis.structures.joint_result import (
     StateFit,
     StructureIdentification,
 )
-from jointbench.analysis.structures.next_measurement import what_to_measure
+from jointbench.analysis.structures.next_measurement import (
+    what_separates,
+    what_to_measure,
+)
 from jointbench.analysis.structures.predict import (
     JointValues,
     damping_ratios,
@@ -133,9 +136,10 @@ def _parameters(
     for at, name in enumerate(problem.names):
         value, sd = float(np.exp(best.unknowns[at])), float(spread[at])
         unit = "N s/m" if problem.damping[at] else "N/m"
-        away = [float(np.exp(one.unknowns[at])) for one in rivals]
         limit = max(_RIVAL_LOG, _RIVAL_SD * min(sd, _LARGEST_LOG_SD))
-        others = [one for one in away if abs(np.log(one / value)) > limit]
+        others = [
+            one for one in rivals if abs(one.unknowns[at] - best.unknowns[at]) > limit
+        ]
         reason = ""
         if not sd < _LARGEST_LOG_SD:
             reason = (
@@ -143,9 +147,10 @@ def _parameters(
                 + what_to_measure(problem, best, at)
             )
         elif others:
-            listed = " or ".join(f"{one:.3g}" for one in [value, *others[:_LISTED]])
-            reason = f"not identifiable: {listed} {unit} fit alike; " + what_to_measure(
-                problem, best, at
+            logs = [best.unknowns[at], *(one.unknowns[at] for one in others[:_LISTED])]
+            listed = " or ".join(f"{np.exp(log):.3g}" for log in logs)
+            reason = f"not identifiable: {listed} {unit} fit alike; " + what_separates(
+                problem, best, others[0]
             )
         shown = value * sd if sd < _NO_LOG_SD else None
         found.append(JointParameter(name, value, shown, unit, not reason, reason))

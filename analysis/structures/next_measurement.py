@@ -12,6 +12,8 @@ _FREQUENCY_SD = 0.002
 _DAMPING_SD = 0.05
 # A measurement helps if it brings the standard deviation below this in ln.
 _HELPS = 0.5
+# Frequencies of two solutions differ if they do so by more than this, relative.
+_TELLS_APART = 0.003
 
 
 def what_to_measure(problem: Problem, best: Optimum, at: int) -> str:
@@ -50,6 +52,35 @@ def what_to_measure(problem: Problem, best: Optimum, at: int) -> str:
         "no single mode tells; measure FRFs or mode shapes at sensors on both sides of "
         f"the joint, up to {frequency[problem.model.modes - 1]:.0f} Hz"
     )
+
+
+def what_separates(problem: Problem, best: Optimum, rival: Optimum) -> str:
+    """Name the mode whose frequency differs most between two solutions.
+
+    Args:
+        problem: what is sought.
+        best: solution.
+        rival: another one that fits alike.
+
+    Returns:
+        One clause that says what to measure.
+    """
+    found = []
+    for row in range(len(problem.evidence)):
+        both = [
+            modal_state(problem.model, values_of(problem, one.unknowns, row).stiffness)
+            for one in (best, rival)
+        ]
+        rigid = max(state.rigid for state in both)
+        level = [state.eigenvalue[rigid : problem.model.modes] for state in both]
+        ratio = np.exp(0.5 * np.abs(np.log(level[0] / level[1]))) - 1.0
+        at = int(np.argmax(ratio))
+        frequency = [np.sqrt(one[at]) / (2 * np.pi) for one in level]
+        found.append((float(ratio[at]), at + 1, frequency))
+    ratio_of, number, (first, second) = max(found)
+    if ratio_of < _TELLS_APART:
+        return "no frequency separates them; measure FRFs or mode shapes on both sides"
+    return f"mode {number} separates them: {first:.0f} Hz or {second:.0f} Hz"
 
 
 def _sd_with(information: FloatArray, slope: FloatArray, at: int) -> float:

@@ -13,12 +13,12 @@ from jointbench.analysis.structures.bodywise import (
     BodyFactors,
     body_modes,
     factor_bodies,
-    orthonormalise,
     solve_bodywise,
 )
 from jointbench.analysis.structures.factor import Solver
 from jointbench.analysis.structures.reduced import ReducedModel, frequency_bound
 from jointbench.analysis.structures.structure import Structure
+from jointbench.analysis.structures.subspace import orthonormalise
 
 DEFAULT_BOX = (1e6, 1e11)
 """Total stiffnesses that machine joints have [N/m]."""
