@@ -21,6 +21,8 @@ Solve = Callable[[FloatArray], FloatArray]
 
 # The residual of a solve relative to the size of matrix times solution.
 _LARGEST_RESIDUAL = 1e-8
+# Below this size SuperLU is faster: a call of Pardiso has a cost of its own.
+_PARDISO_FROM = 12_000
 
 
 class Solver(StrEnum):
@@ -36,7 +38,8 @@ def factorise(matrix: Sparse, solver: Solver = Solver.AUTO) -> Solve:
 
     Args:
         matrix: shape (n, n).
-        solver: AUTO takes Pardiso if pypardiso is installed, else SuperLU.
+        solver: AUTO takes Pardiso for large matrices if pypardiso is installed, else
+            SuperLU.
 
     Returns:
         A function from right-hand sides, shape (n,) or (n, k), to solutions.
@@ -51,7 +54,8 @@ def factorise(matrix: Sparse, solver: Solver = Solver.AUTO) -> Solve:
             "solver 'pardiso' needs pypardiso; pip install 'jointbench[pardiso]', or "
             "take 'superlu'"
         )
-    fast = installed and solver is not Solver.SUPERLU
+    large = matrix.shape[0] > _PARDISO_FROM
+    fast = solver is Solver.PARDISO or (installed and large and solver is Solver.AUTO)
     solve = _pardiso(matrix) if fast else _superlu(matrix)
     size = abs(matrix).max()
 

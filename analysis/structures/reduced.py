@@ -156,18 +156,18 @@ def _inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:
     """Return how much each eigenvalue of A^-1 M may exceed its Ritz value."""
     slack = inverse * error
     best = slack.copy()
-    count = inverse.size
-    for at in range(count):
-        for width in _GROUPS:
-            group = np.abs(inverse - inverse[at]) <= width * inverse[at]
-            low, high = np.flatnonzero(group)[[0, -1]]
-            if high == count - 1:
-                break  # nothing beyond is known
-            gap = inverse[high] - inverse[high + 1] - slack[high + 1]
-            if low > 0:
-                above = inverse[low - 1] - slack[low - 1] - inverse[low]
-                gap = min(gap, above)
-            if gap > 0:
-                whole = float(np.sum(slack[low : high + 1] ** 2))
-                best[at] = min(best[at], whole / gap)
+    last = inverse.size - 1
+    squares = np.concatenate([[0.0], np.cumsum(slack**2)])
+    for width in _GROUPS:
+        # Inverses fall from the first mode to the last.
+        low = np.searchsorted(-inverse, -inverse * (1 + width), "left")
+        high = np.searchsorted(-inverse, -inverse * (1 - width), "right") - 1
+        below = np.minimum(high + 1, last)
+        above = np.maximum(low - 1, 0)
+        gap = inverse[high] - inverse[below] - slack[below]
+        over = inverse[above] - slack[above] - inverse[low]
+        gap = np.where(low > 0, np.minimum(gap, over), gap)
+        known = (high < last) & (gap > 0)
+        whole = squares[high + 1] - squares[low]
+        best = np.where(known, np.minimum(best, whole / np.where(known, gap, 1)), best)
     return best

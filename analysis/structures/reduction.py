@@ -24,7 +24,9 @@ DEFAULT_BOX = (1e6, 1e11)
 """Total stiffnesses that machine joints have [N/m]."""
 
 # Trial points of the box, beside its lowest and highest corner.
-_TRIALS = 64
+_TRIALS = 128
+# So many are tried before the basis grows again.
+_AT_ONCE = 16
 _MOST_POINTS = 60
 # Directions of A^-1 this small relative to the largest are rounding.
 _RANK = 1e-15
@@ -90,21 +92,37 @@ def reduce_structure(
     trials = _trial_points(len(structure.spread), box)
     for _ in range(_MOST_POINTS):
         model = space.model(box, modes)
-        bounds = [_relative_bound(model, point) for point in trials]
-        at = int(np.argmax(bounds))
+        worst, trials = _open_points(model, trials, tolerance)
         if progress is not None:
-            progress(ReductionStep(bounds[at], model.size))
-        if bounds[at] <= tolerance:
+            progress(ReductionStep(worst, model.size))
+        if not trials:
             return model
-        shapes = solve_bodywise(structure, factors, trials[at], space.basis, modes + 2)
+        shapes = solve_bodywise(structure, factors, trials[0], space.basis, modes + 2)
         new = orthonormalise(space.basis, structure.mass, shapes)
         if not new.shape[1]:
             break
         space.add(new)
     raise BadData(
-        f"the reduced model's error bound stays at {max(bounds):.2g} of the frequency, "
+        f"the reduced model's error bound stays at {worst:.2g} of the frequency, "
         f"{tolerance:g} is allowed; reduce fewer modes or narrow the box"
     )
+
+
+def _open_points(
+    model: ReducedModel, points: list[FloatArray], tolerance: float
+) -> tuple[float, list[FloatArray]]:
+    """Return the worst bound met, and the points left, the worst first.
+
+    A basis that grows only becomes better: a point within tolerance stays so.
+    """
+    while points:
+        some, rest = points[:_AT_ONCE], points[_AT_ONCE:]
+        bounds = np.array([_relative_bound(model, point) for point in some])
+        order = [at for at in np.argsort(-bounds) if bounds[at] > tolerance]
+        points = [*(some[at] for at in order), *rest]
+        if order:
+            return float(bounds[order[0]]), points
+    return 0.0, points
 
 
 def _relative_bound(model: ReducedModel, point: FloatArray) -> float:
