@@ -1,64 +1,17 @@
 # SPDX-License-Identifier: MIT
 """What a jointed structure does: modes with damping, shapes at sensors, FRFs."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
-from jointbench.acquisition.errors import BadData
 from jointbench.analysis.structures.full_modes import frequency_of
 from jointbench.analysis.structures.reduced import ReducedModel
-from jointbench.analysis.structures.structure import Structure, pick
 
 # Modes that damping couples; above them it only damps each mode by itself.
 COUPLED = 60
-
-
-@dataclass(frozen=True, slots=True)
-class Sensor:
-    """A point and a direction: of an accelerometer, or of a hit.
-
-    Attributes:
-        name: of the channel or hit point.
-        body: that it sits on.
-        position: [m].
-        direction: along which it measures or strikes, of any length.
-    """
-
-    name: str
-    body: str
-    position: tuple[float, float, float]
-    direction: tuple[float, float, float]
-
-
-def readout(
-    structure: Structure, model: ReducedModel, sensors: Sequence[Sensor]
-) -> FloatArray:
-    """Return the rows that turn reduced motion into that of sensors.
-
-    Args:
-        structure: that was reduced.
-        model: the reduced structure.
-        sensors: points and directions.
-
-    Returns:
-        Shape (n_sensors, r) [-].
-
-    Raises:
-        BadData: a sensor does not lie on its body, or has no direction.
-    """
-    rows = []
-    for sensor in sensors:
-        direction = np.asarray(sensor.direction, float)
-        length = float(np.linalg.norm(direction))
-        if not length > 0:
-            raise BadData(f"sensor {sensor.name!r} has no direction; write e.g. 0,0,1")
-        motion = pick(structure, sensor.body, sensor.position)
-        rows.append((direction / length) @ (motion @ model.basis))
-    return np.array(rows).reshape(-1, model.size)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -51,6 +51,7 @@ def reduce_structure(
     modes: int,
     box: tuple[float, float] = DEFAULT_BOX,
     tolerance: float = 5e-5,
+    loads: FloatArray | None = None,
     solver: Solver = Solver.AUTO,
     progress: Callable[[ReductionStep], None] | None = None,
 ) -> ReducedModel:
@@ -65,6 +66,8 @@ def reduce_structure(
         modes: how many modes, rigid ones included, are to be right.
         box: smallest and largest total stiffness of any joint and direction [N/m].
         tolerance: of the bound, relative frequency [-].
+        loads: rows of `sensor_rows` where forces act or FRFs are read, shape
+            (n_points, n_free): how the bodies give way there joins the basis.
         solver: who factors.
         progress: is told after every point.
 
@@ -89,6 +92,8 @@ def reduce_structure(
     start = body_modes(structure, modes, solver)
     space = _Space.over(structure, factors, box[1])
     space.add(orthonormalise(empty, structure.mass, start))
+    if loads is not None:
+        space.add(_give_way(structure, factors, space.basis, loads))
     trials = _trial_points(len(structure.spread), box)
     for _ in range(_MOST_POINTS):
         model = space.model(box, modes)
@@ -105,6 +110,20 @@ def reduce_structure(
     raise BadData(
         f"the reduced model's error bound stays at {worst:.2g} of the frequency, "
         f"{tolerance:g} is allowed; reduce fewer modes or narrow the box"
+    )
+
+
+def _give_way(
+    structure: Structure, factors: BodyFactors, basis: FloatArray, loads: FloatArray
+) -> FloatArray:
+    """Return what point loads do to the bodies beside their modes.
+
+    The answer to each load at the shift, and the next term of its series.
+    """
+    first = factors.solve(np.ascontiguousarray(loads.T))
+    second = factors.solve(structure.mass @ first)
+    return orthonormalise(
+        basis, structure.mass, np.concatenate([first, second], axis=1)
     )
 
 

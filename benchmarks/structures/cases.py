@@ -7,7 +7,8 @@ import numpy as np
 
 from jointbench.analysis.structures.assembly import Material
 from jointbench.analysis.structures.mesh import box_mesh
-from jointbench.analysis.structures.predict import JointValues, Sensor
+from jointbench.analysis.structures.predict import JointValues
+from jointbench.analysis.structures.sensors import Sensor
 from jointbench.analysis.structures.structure import (
     Joint,
     PointMass,

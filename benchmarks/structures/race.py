@@ -9,8 +9,8 @@ import resource
 import time
 
 import numpy as np
-
 from cases import TRUTH, two_plates
+
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.measured_modes import MeasuredModes
 from jointbench.analysis.structures.evidence import Evidence
