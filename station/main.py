@@ -260,22 +260,35 @@ def contact_command(
 
 @app.command(name="identify")
 def identify_command(
-    model: Annotated[Path, typer.Argument(help="Bench model, TOML.")],
-    sessions: Annotated[list[Path], typer.Argument(help="Session files.")],
-    band: Annotated[
-        str | None, typer.Option(help="Band of the rigid-body modes, '50:900' [Hz].")
+    model: Annotated[Path, typer.Argument(help="Bench or structure model, TOML.")],
+    sessions: Annotated[
+        list[Path] | None, typer.Argument(help="Session files.", show_default=False)
     ] = None,
+    band: Annotated[
+        str | None, typer.Option(help="Band of the modes, '50:900' [Hz].")
+    ] = None,
+    cache: Annotated[
+        Path | None, typer.Option(help="Folder that keeps reduced structures.")
+    ] = None,
+    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Identify the links of a lumped bench from its measured modes.
+    """Identify joints: of a lumped bench [links], or of meshed bodies [joints].
 
     Example: jointbench identify bench.toml session.h5 --json joint.json
     """
-    from jointbench.station.identify import fits, run_identify
+    from jointbench.station.identify import identify_any
 
-    found = run_identify(model, sessions, band=band, json_target=json)
-    return 0 if fits(found) else EXIT_QUALITY
+    fits = identify_any(
+        model,
+        sessions or [],
+        band=band,
+        cache=cache,
+        report=report,
+        json_target=json,
+    )
+    return 0 if fits else EXIT_QUALITY
 
 
 @app.command(name="gap")
