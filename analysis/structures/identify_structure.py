@@ -66,7 +66,7 @@ def identify_structure(
     known: JointValues | None = None,
     sought: Sequence[str] | None = None,
     shared: Sequence[str] = (),
-    starts: int = 24,
+    starts: int = 48,
     seed: int = 0,
     profiles: bool = True,
     structure: Structure | None = None,

@@ -4,7 +4,7 @@
 The FRFs come from the full matrices, line by line, with the sensors' masses on them:
 nothing of the reduced model is in the data.
 
-python benchmarks/structures/coverage.py [--draws 200]
+python benchmarks/structures/coverage.py [--draws 200] [--cells 4 3 1] [--lines 61]
 """
 
 import argparse
@@ -30,17 +30,19 @@ from jointbench.signal.frf import Frf, FrfKind
 
 NOISE = 0.01
 HITS = (0, 5)
-FREQUENCY = np.linspace(200.0, 2600.0, 101)
+BAND = (200.0, 2600.0)
 
 
-def full_accelerance(structure: Structure, rows: FloatArray) -> ComplexArray:
+def full_accelerance(
+    structure: Structure, rows: FloatArray, frequency: FloatArray
+) -> ComplexArray:
     """Solve the damped full mesh line by line, shape (n_outputs, n_inputs, n_lines)."""
     stiffness = structure.with_joints(TRUTH.stiffness)
     damping = sum(
         c * spread for c, spread in zip(TRUTH.damping, structure.spread, strict=True)
     )
     answer = []
-    for omega in 2 * np.pi * FREQUENCY:
+    for omega in 2 * np.pi * frequency:
         dynamic = stiffness + 1j * omega * damping - omega**2 * structure.mass
         factor = splu(sparse.csc_array(dynamic), permc_spec="MMD_AT_PLUS_A")
         motion = factor.solve(rows[list(HITS)].T.astype(complex))
@@ -52,10 +54,13 @@ def main() -> None:
     """Draw noise, identify, count how often the truth lies within two sigma."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--draws", type=int, default=200)
+    parser.add_argument("--cells", type=int, nargs=3, default=(4, 3, 1))
+    parser.add_argument("--lines", type=int, default=61)
     options = parser.parse_args()
-    structure = two_plates(sensor_mass=SENSOR_MASS)
+    frequency = np.linspace(*BAND, options.lines)
+    structure = two_plates(options.cells, sensor_mass=SENSOR_MASS)
     rows = sensor_rows(structure, SENSORS)
-    exact = full_accelerance(structure, rows)
+    exact = full_accelerance(structure, rows, frequency)
     model = reduce_structure(structure, modes=20, loads=rows)
     outputs = readout(structure, model, SENSORS)
     sd = NOISE * np.sqrt((np.abs(exact) ** 2).mean(axis=2, keepdims=True))
@@ -64,7 +69,7 @@ def main() -> None:
 
     def evidence(response: ComplexArray) -> Evidence:
         frf = Frf(
-            frequency=FREQUENCY,
+            frequency=frequency,
             response=response,
             kind=FrfKind.ACCELERANCE,
             variance=variance,
@@ -85,7 +90,7 @@ def main() -> None:
             model, [evidence(exact + sd * (noise[0] + 1j * noise[1]))]
         )
         if draw == 0:
-            best = find_optima(problem, starts=8, seed=0)[0]
+            best = find_optima(problem, starts=4, seed=0)[0]
             start = best.unknowns
         else:
             best = descend(problem, start)
