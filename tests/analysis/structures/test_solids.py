@@ -9,7 +9,7 @@ from jointbench.analysis.structures.elements import ElementKind
 from jointbench.analysis.structures.full_modes import lowest_modes
 from jointbench.analysis.structures.mesh import Mesh, box_mesh, outer_faces
 
-# Own Python of data/oracle, case 1 and 2: same mesh, code that shares nothing with ours.
+# Own Python of data/oracle, cases 1 and 2: same mesh, another code.
 HEX_10_6_2 = (916.74224, 926.10685, 2014.33184, 2385.23716, 2467.68663, 2996.61286)
 TET_10_6_1 = (920.0758, 937.30393, 2051.56861, 2414.84548, 2489.32044, 3049.04989)
 
