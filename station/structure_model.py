@@ -20,17 +20,19 @@ from jointbench.analysis.structures.mesh_files import (
     read_matrix,
     read_mesh,
 )
-from jointbench.analysis.structures.polygons import Patch, disc, rectangle
-from jointbench.analysis.structures.sensors import Sensor
-from jointbench.analysis.structures.structure import (
+from jointbench.analysis.structures.parts import (
     Body,
     Joint,
     PointMass,
-    Structure,
     Support,
     SupportKind,
-    build_structure,
     solid_body,
+)
+from jointbench.analysis.structures.polygons import Patch, disc, rectangle
+from jointbench.analysis.structures.sensors import Sensor
+from jointbench.analysis.structures.structure import (
+    Structure,
+    build_structure,
 )
 
 

@@ -13,7 +13,9 @@ from jointbench.acquisition.errors import FormatError, UsageError
 from jointbench.analysis.structures.assembly import Sparse
 from jointbench.analysis.structures.elements import ElementKind
 from jointbench.analysis.structures.mesh import Mesh, merge_nodes
-from jointbench.analysis.structures.structure import Body
+from jointbench.analysis.structures.parts import (
+    Body,
+)
 
 _KINDS = {"hexahedron20": ElementKind.HEX20, "tetra10": ElementKind.TET10}
 _MOST_BYTES = 500_000_000

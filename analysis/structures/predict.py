@@ -11,7 +11,7 @@ from jointbench.analysis.structures.full_modes import frequency_of
 from jointbench.analysis.structures.reduced import ReducedModel
 
 # Modes that damping couples; above them it only damps each mode by itself.
-COUPLED = 60
+COUPLED = 80
 
 
 @dataclass(frozen=True, slots=True, eq=False)

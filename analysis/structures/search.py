@@ -24,6 +24,8 @@ _SAME = 0.02
 # Singular values below this mean a standard deviation of 1e6 in ln: not determined.
 _FLAT = 1e-6
 _MOST_STEPS = 100
+# Open parameters are held at these multiples of their best value.
+_HELD_AWAY = (0.03, 0.1, 0.3, 3.0, 10.0, 30.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -241,6 +243,7 @@ def find_optima(problem: Problem, *, starts: int, seed: int) -> tuple[Optimum, .
         Distinct ends.
     """
     found = [descend(problem, start) for start in _starts(problem, starts, seed)]
+    found += _open_ways(problem, min(found, key=lambda end: end.chi2))
     kept: list[Optimum] = []
     for one in sorted(found, key=lambda end: end.chi2):
         if not any(
@@ -248,6 +251,23 @@ def find_optima(problem: Problem, *, starts: int, seed: int) -> tuple[Optimum, .
         ):
             kept.append(one)
     return tuple(kept)
+
+
+def _open_ways(problem: Problem, best: Optimum) -> list[Optimum]:
+    """Return fits with what nothing decides held elsewhere: they show how open it is.
+
+    A descent along a valley stops wherever it begins, so that chance starts alone may
+    all end within a narrow part of it.
+    """
+    spread = np.sqrt(np.diag(best.covariance()))
+    ends = []
+    for at in np.flatnonzero(spread > 1.0):
+        for factor in _HELD_AWAY:
+            start = best.unknowns.copy()
+            start[at] += np.log(factor)
+            if problem.low[at] < start[at] < problem.high[at]:
+                ends.append(descend(problem, start, fixed=[int(at)]))
+    return ends
 
 
 def _starts(problem: Problem, count: int, seed: int) -> list[FloatArray]:

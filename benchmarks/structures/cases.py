@@ -7,14 +7,16 @@ import numpy as np
 
 from jointbench.analysis.structures.assembly import Material
 from jointbench.analysis.structures.mesh import box_mesh
+from jointbench.analysis.structures.parts import (
+    Joint,
+    PointMass,
+    solid_body,
+)
 from jointbench.analysis.structures.predict import JointValues
 from jointbench.analysis.structures.sensors import Sensor
 from jointbench.analysis.structures.structure import (
-    Joint,
-    PointMass,
     Structure,
     build_structure,
-    solid_body,
 )
 
 MARBLE = Material(youngs_modulus=55e9, poisson_ratio=0.25, density=2600.0)

@@ -5,15 +5,17 @@ import pytest
 
 from jointbench.analysis.structures.assembly import Material
 from jointbench.analysis.structures.mesh import box_mesh
+from jointbench.analysis.structures.parts import (
+    Joint,
+    solid_body,
+)
 from jointbench.analysis.structures.predict import JointValues
 from jointbench.analysis.structures.reduced import ReducedModel
 from jointbench.analysis.structures.reduction import reduce_structure
 from jointbench.analysis.structures.sensors import Sensor, readout, sensor_rows
 from jointbench.analysis.structures.structure import (
-    Joint,
     Structure,
     build_structure,
-    solid_body,
 )
 
 PLATE = (0.5, 0.3, 0.05)

@@ -8,16 +8,18 @@ from jointbench.analysis.structures.assembly import Material
 from jointbench.analysis.structures.elements import ElementKind
 from jointbench.analysis.structures.full_modes import solve_full
 from jointbench.analysis.structures.mesh import box_mesh
-from jointbench.analysis.structures.polygons import Patch, disc, rectangle
-from jointbench.analysis.structures.structure import (
+from jointbench.analysis.structures.parts import (
     GROUND,
     Body,
     Joint,
     PointMass,
     Support,
     SupportKind,
-    build_structure,
     solid_body,
+)
+from jointbench.analysis.structures.polygons import Patch, disc, rectangle
+from jointbench.analysis.structures.structure import (
+    build_structure,
 )
 
 PLATE = (0.5, 0.3, 0.05)

@@ -10,6 +10,10 @@ from jointbench.analysis.structures.assembly import Material
 from jointbench.analysis.structures.cache import cached, content_key
 from jointbench.analysis.structures.full_modes import solve_full
 from jointbench.analysis.structures.mesh import box_mesh
+from jointbench.analysis.structures.parts import (
+    Joint,
+    solid_body,
+)
 from jointbench.analysis.structures.reduced import (
     ReducedModel,
     frequency_bound,
@@ -17,10 +21,8 @@ from jointbench.analysis.structures.reduced import (
 )
 from jointbench.analysis.structures.reduction import reduce_structure
 from jointbench.analysis.structures.structure import (
-    Joint,
     Structure,
     build_structure,
-    solid_body,
 )
 
 ROUNDING = 1e-8
