@@ -24,7 +24,8 @@ def write_mesh(path: Path, mesh: Mesh, scale: float) -> None:
     """Write a mesh with meshio, in the unit that `scale` makes of metres."""
     meshio = pytest.importorskip("meshio")
     cells = [(MESHIO_TYPE[mesh.kind], mesh.cells)]
-    meshio.Mesh(mesh.nodes * scale, cells).write(path)
+    own_format = "gmsh" if path.suffix == ".msh" else None
+    meshio.Mesh(mesh.nodes * scale, cells).write(path, file_format=own_format)
 
 
 @pytest.mark.parametrize("kind", list(ElementKind))
