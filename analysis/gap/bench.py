@@ -40,6 +40,7 @@ class Blocks:
         group: group of each row (a record), shape (n_rows,), 0-based.
         labels: words of each group by view, for example ``{"level": "300 N"}``.
         dof: number of residual rows with any weight.
+        shape: records, channels and samples, whose product is the number of rows.
         white: False where sigma holds a repeatability from a sheet: then a residual
             below it may have any shape, and directed tests say nothing.
     """
@@ -47,6 +48,7 @@ class Blocks:
     group: IntArray
     labels: tuple[dict[str, str], ...]
     dof: int
+    shape: tuple[int, int, int]
     white: bool = True
 
 

@@ -17,6 +17,8 @@ MAX_RECORDS = 1024
 MAX_SAMPLES = 1 << 20
 MIN_SAMPLES = 512
 DEFAULT_PRELOAD = 4000.0
+TAIL = 64
+"""Last samples without weight: a channel's filter acts on a cut record there."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

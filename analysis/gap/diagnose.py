@@ -31,6 +31,8 @@ from jointbench.analysis.gap.records import (
 )
 
 FAR = 1e12
+MOST_RIVALS = 3
+"""Explanations that fit alike beyond which nothing is told apart."""
 
 
 def diagnose(
@@ -121,8 +123,10 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
             )
         odd = _odd_record(outcome, bench)
         return Finding.UNKNOWN, odd or f"no effect explains it: {outcome.gate.reason}"
+    names = " or ".join(_words(f.candidates) for f in outcome.level)
+    if len(outcome.level) > MOST_RIVALS:
+        return Finding.UNKNOWN, f"too many explanations fit alike: {names}"
     if len(outcome.level) > 1:
-        names = " or ".join(_words(f.candidates) for f in outcome.level)
         return Finding.AMBIGUOUS, f"{names}: their scores lie too close together"
     return (
         Finding.NAMED,

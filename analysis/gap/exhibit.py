@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.exhibit_level import recurrences
 from jointbench.analysis.gap.exhibit_records import (
     Curves,
@@ -25,13 +26,12 @@ from jointbench.analysis.gap.exhibit_where import (
 from jointbench.analysis.gap.exhibit_words import advise, describe
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import Outcome
-from jointbench.analysis.gap.lumped import TAIL, LumpedBench
+from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import (
-    FRICTION_ERROR,
-    MODEL_ERROR,
     PULL_LIMIT,
     WIDENED,
+    model_error,
 )
 
 UNITS = {
@@ -106,9 +106,7 @@ def _excess(bench: LumpedBench, fit: Fit) -> float:
 
 def _limits(bench: LumpedBench, base: Fit, outcome: Outcome) -> Limits:
     """Repeat the limits of the gate, whose threshold hardly moves with the fit."""
-    friction = any(c.effect.family == "friction" for c in outcome.best.candidates)
-    share = FRICTION_ERROR if friction else MODEL_ERROR
-    room = share * max(_excess(bench, base), 0.0) * bench.blocks.dof
+    room = model_error(outcome.best) * max(_excess(bench, base), 0.0) * bench.blocks.dof
     return Limits(
         chi2_per_dof=1.0 + outcome.gate.excess,
         chi2_allowed=1.0 + outcome.gate.allowed,

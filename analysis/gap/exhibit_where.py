@@ -11,9 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.exhibit_level import Recurrence, is_linear
 from jointbench.analysis.gap.fit import Fit
-from jointbench.analysis.gap.lumped import TAIL, LumpedBench
+from jointbench.analysis.gap.lumped import LumpedBench
 
 GROWS = 0.7
 """Size at the next lower level, over the hardest, below which a misfit grows."""

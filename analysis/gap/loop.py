@@ -13,10 +13,13 @@ from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import Progress, finish, race, score
 from jointbench.analysis.gap.screening import Screening, screen
 
-REFINEMENTS = 8
-SETTLED = 3.0
+REFINEMENTS = 12
+SETTLED = 0.5
 """Change of the cost below which noise, scatter and fit agree with each other."""
-REJUDGED = 3
+REJUDGED = 5
+AGREED = 2.0
+"""Change of a winner's cost below which it agrees with the noise estimated at it."""
+OVERTAKEN = 2
 MOST_EFFECTS = 3
 FIRSTS = 3
 HOPEFUL = 4.0
@@ -24,6 +27,8 @@ HOPEFUL = 4.0
 SECONDS = 4
 CLOSE = 1000.0
 """Score behind the winner up to which a rival is fitted again with the new noise."""
+CLOSE_FAILED = 100.0
+"""The same where the winner itself does not explain the records."""
 MIN_GAIN = 35.0
 """Chi2 that a further effect must take, beyond its charge."""
 
@@ -109,34 +114,39 @@ def judge(
     """Estimate the noise at the winner, refit the leaders there and judge.
 
     Noise, scatter and settling of the hits are known no better than the fit at which
-    they were estimated; where the winner fails, they are estimated again at its refit.
+    they were estimated, so they and the winner are brought to agree. Rivals are then
+    fitted with the same noise; one that overtakes is judged in its turn.
     """
     if not fits:
         return bench, [], gate(bench, base, base, None)
-    judged = _judge_once(bench, fits, base, progress)
-    for _ in range(REJUDGED):
-        if judged[2].passed:
+    ranked = list(fits)
+    for _ in range(OVERTAKEN):
+        bench, best = _settled(bench, ranked[0], progress)
+        left = screen(bench, best, _others(bench, best))
+        judged = gate(bench, best, base, left, ranked)
+        close = score(bench, ranked[0]) + (CLOSE if judged.passed else CLOSE_FAILED)
+        ranked = [best] + [
+            finish(bench, make_problem(bench, f.candidates), f.x, progress)
+            if score(bench, f) < close
+            else f
+            for f in ranked[1:]
+        ]
+        ranked.sort(key=lambda f: score(bench, f))
+        if ranked[0] is best:
             break
-        judged = _judge_once(judged[0], judged[1], base, progress)
-    return judged
+    return bench, ranked, gate(bench, ranked[0], base, left, ranked)
 
 
-def _judge_once(
-    bench: Bench, fits: Sequence[Fit], base: Fit, progress: Progress
-) -> tuple[Bench, list[Fit], Gate]:
-    best = fits[0]
-    refined = bench.refine(best.base, best.terms)
-    close = score(bench, best) + CLOSE
-    refit = [
-        finish(refined, make_problem(refined, f.candidates), f.x, progress)
-        if k == 0 or score(bench, f) < close
-        else f
-        for k, f in enumerate(fits)
-    ]
-    refit.sort(key=lambda f: score(refined, f))
-    best = refit[0]
-    left = screen(refined, best, _others(refined, best))
-    return refined, refit, gate(refined, best, base, left, refit)
+def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
+    """Bring a fit and the noise estimated at it to agree."""
+    for _ in range(REJUDGED):
+        before = fit.cost
+        bench = bench.refine(fit.base, fit.terms)
+        problem = make_problem(bench, fit.candidates)
+        fit = finish(bench, problem, fit.x, progress)
+        if abs(fit.cost - before) < AGREED:
+            break
+    return bench, fit
 
 
 def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:

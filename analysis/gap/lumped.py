@@ -10,35 +10,19 @@ import scipy.fft
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.assembly import Action
 from jointbench.analysis.gap.bench import Blocks, Stage, values_of
-from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import site_index
 from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.forward import Excitation, prepare_excitation, respond
-from jointbench.analysis.gap.noise import (
-    FORCE_SHAPES,
-    Noise,
-    channel_sigma,
-    gain_scatter,
-    regress,
-    repeat_groups,
-    whitening_basis,
-    without_trend,
-)
+from jointbench.analysis.gap.lumped_noise import Settled, refine_noise
+from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import Conditions, LumpedEffect
 from jointbench.analysis.gap.records import View
 from jointbench.analysis.gap.views import residual_peaks, slice_views
 
 PEAKED = ("hum", "hidden_mode")
 """Effects whose second parameter is a frequency at which the residual peaks."""
-SETTLING_SEEN = 1e-5
-LOST = 0.3
-"""Misfit over response above which a fit says nothing about the settling."""
-SETTLING_REACH = 3.0
-"""Scatter sd beyond which a settling is no scatter but a missing effect."""
-SCATTER_STEP = 1e-4
-TAIL = 64
-"""Last samples without weight: a channel's filter acts on a cut record there."""
 WINDOW_REACH = 5.0
 """Decay times after which a windowed record is cut."""
 
@@ -59,9 +43,7 @@ class LumpedBench:
         scales: words to values.
         blocks: records as groups.
         short: the same bench with fewer samples, by length.
-        settled: first-order change of the response by what is known of the settling
-            of the joint, shape of the response: taken off the residual again, so
-            that settling counts as scatter about its mean, to second order.
+        settled: where the model is expanded about the settling of each hit, or None.
     """
 
     campaign: Campaign
@@ -75,7 +57,7 @@ class LumpedBench:
     scales: dict[str, float]
     blocks: Blocks
     short: dict[int, "LumpedBench"]
-    settled: FloatArray
+    settled: "Settled | None"
 
     @property
     def base_names(self) -> tuple[str, ...]:
@@ -132,10 +114,35 @@ class LumpedBench:
         """Return model minus measurement, whitened, shape (n_rows,)."""
         if stage.window is not None and not self.campaign.continuous:
             return self._windowed(base, terms, stage)
-        r = self.response(base, terms, stage.oversampling)
-        r -= self.campaign.response
-        r -= self.settled
+        r = self.misfit(base, terms, stage.oversampling)
         return self.residual_of(r)
+
+    def misfit(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int
+    ) -> FloatArray:
+        """Return model minus measurement, shape of the response.
+
+        The settling of each hit counts as scatter: its share is left in the misfit.
+        """
+        settling = self.excitation.conditions.settling
+        if self.settled is None or settling is None:
+            r = self.response(base, terms, oversampling)
+            r -= self.campaign.response
+            return r
+        moved = base.copy()
+        moved[self.joint_at] = self.settled.anchor
+        r = self.response(moved, terms, oversampling)
+        r -= self.campaign.response
+        share = base[self.joint_at] - self.settled.anchor - settling
+        r += share[:, None, None] * self.settled.slope
+        return r
+
+    @property
+    def joint_at(self) -> int:
+        """Place of the first joint's stiffness among the base coordinates."""
+        links = self.campaign.model.links
+        first = next((i for i, link in enumerate(links) if link.joint), 0)
+        return len(self.campaign.model.bodies) + first
 
     def residual_of(self, misfit: FloatArray) -> FloatArray:
         """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
@@ -185,47 +192,7 @@ class LumpedBench:
 
     def refine(self, base: FloatArray, terms: Sequence[Term]) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
-        model = self.response(base, terms)
-        residual = model - self.campaign.response
-        self.mask(residual)
-        peak = np.abs(model).max(axis=2)
-        seen = residual[:, :, self.campaign.lead : -TAIL]
-        sigma = channel_sigma(seen, peak)
-        if self.campaign.repeatability is not None:
-            sigma = np.hypot(sigma, self.campaign.repeatability * peak)
-        noise = replace(self.noise, sigma=sigma)
-        columns = _force_columns(self, base, sigma)
-        ways = _scatter_ways(self, base, terms, model, sigma)
-        none = tuple(0.0 for _ in range(ways.shape[1]))
-        bare = _with_noise(self, replace(noise, scatter=none), columns, ways)
-        at_mean = residual - self.settled
-        self.mask(at_mean)
-        coefficients, variances = regress(
-            (at_mean / sigma[:, :, None]).reshape(len(sigma), -1),
-            ways,
-            bare.basis,
-            bare.shrink,
-        )
-        campaign = self.campaign
-        groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
-        patterns = _patterns(self.excitation.conditions)
-        scatter = tuple(
-            gain_scatter(
-                without_trend(coefficients[:, i], patterns), variances[:, i], groups
-            )
-            for i in range(ways.shape[1])
-        )
-        if self.campaign.repeatability is not None:
-            scatter = none
-        noise = replace(noise, scatter=scatter, scatter_known=bool(groups))
-        refined = _with_noise(self, noise, columns, ways)
-        lost = np.linalg.norm(residual) > LOST * np.linalg.norm(model)
-        if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
-            return _settle(refined, None, ways)
-        known = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
-        reach = SETTLING_REACH * scatter[1]
-        settling = np.clip(-coefficients[:, 1] * known, -reach, reach)
-        return _settle(refined, settling, ways)
+        return refine_noise(self, base, terms)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""
@@ -268,124 +235,10 @@ class LumpedBench:
         return int(records) * (int(channels) if candidate.site.name == "all" else 1)
 
 
-def _patterns(conditions: Conditions) -> FloatArray:
-    """Return what a joint could depend on from record to record, (2, n_records)."""
-    return np.stack([np.log(conditions.preload), conditions.progress])
-
-
 def _window(bench: LumpedBench, decay: float) -> FloatArray:
     n = bench.excitation.growth.size
     time = (np.arange(n) - bench.gate[0]) / bench.campaign.sample_rate
     return np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
-
-
-def _force_columns(
-    bench: LumpedBench, base: FloatArray, sigma: FloatArray
-) -> list[FloatArray]:
-    """Responses to the force's own noise, over sigma, one array for each record."""
-    first, last = bench.gate
-    n, records = bench.excitation.growth.size, sigma.shape[0]
-    if last - first >= n or bench.noise.force_sigma <= 0:
-        return [np.zeros((0, sigma.shape[1] * n))] * records
-    force = np.zeros((1, n))
-    force[0, first] = bench.noise.force_sigma
-    cases = {}
-    for hit in sorted(set(bench.campaign.hit.tolist())):
-        still = Conditions(np.ones(1), np.zeros(1))
-        rate = bench.campaign.sample_rate
-        shaken = prepare_excitation(force, np.array([hit]), rate, still)
-        y = respond(bench.campaign.model, bench.theta(base), shaken)[0]
-        cases[hit] = _shifted(y, last - first)
-        bench.mask(cases[hit])
-    return [
-        _leading((cases[int(h)] / s[:, None]).reshape(last - first, -1))
-        for h, s in zip(bench.campaign.hit, sigma, strict=True)
-    ]
-
-
-def _shifted(response: FloatArray, count: int) -> FloatArray:
-    """Return a response delayed by 0 to count - 1 samples, (count, *its shape)."""
-    out = np.zeros((count, *response.shape))
-    for k in range(count):
-        out[k, :, k:] = response[:, : response.shape[1] - k]
-    return out
-
-
-def _leading(rows: FloatArray) -> FloatArray:
-    """Return the few directions that hold most of unit noise in every row."""
-    _, vectors = np.linalg.eigh(rows @ rows.T)
-    return np.asarray(vectors[:, -FORCE_SHAPES:].T @ rows)
-
-
-def _scatter_ways(
-    bench: LumpedBench,
-    base: FloatArray,
-    terms: Sequence[Term],
-    model: FloatArray,
-    sigma: FloatArray,
-) -> FloatArray:
-    """Return how hits may scatter, over sigma, (n_records, n_ways, n_rows).
-
-    The hand: the force that acts is not quite the one measured. The joint: it settles
-    anew from hit to hit, a change of its stiffness.
-    """
-    ways = [_harder(bench, base, terms, model)]
-    n = len(bench.campaign.model.bodies)
-    for i, link in enumerate(bench.campaign.model.links):
-        if link.joint and not bench.campaign.continuous:
-            moved = base.copy()
-            moved[n + i] += SCATTER_STEP
-            ways.append((bench.response(moved, terms) - model) / SCATTER_STEP)
-    stacked = np.stack(ways, axis=1)
-    bench.mask(stacked)
-    stacked /= sigma[:, None, :, None]
-    return stacked.reshape(len(sigma), len(ways), -1)
-
-
-def _harder(
-    bench: LumpedBench, base: FloatArray, terms: Sequence[Term], model: FloatArray
-) -> FloatArray:
-    """Return the change of the response per relative change of the force."""
-    if not any(a.entry.law is not None for a in bench.actions(terms)):
-        return model.copy()
-    spectrum = bench.excitation.spectrum * (1.0 + SCATTER_STEP)
-    pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))
-    return (pushed.response(base, terms) - model) / SCATTER_STEP
-
-
-def _settle(
-    bench: LumpedBench, settling: FloatArray | None, ways: FloatArray
-) -> LumpedBench:
-    """Return the bench with its model expanded about a settling of the joint."""
-    conditions = replace(bench.excitation.conditions, settling=settling)
-    settled = np.zeros((1, 1, 1))
-    if settling is not None:
-        sigma = bench.noise.sigma
-        change = settling[:, None] * ways[:, 1]
-        settled = change.reshape(*sigma.shape, -1) * sigma[:, :, None]
-    return replace(
-        bench,
-        excitation=replace(bench.excitation, conditions=conditions),
-        settled=settled,
-        short={},
-    )
-
-
-def _with_noise(
-    bench: LumpedBench, noise: Noise, columns: list[FloatArray], ways: FloatArray
-) -> LumpedBench:
-    """Return the bench with the whitening of `noise`."""
-    parts = []
-    for own, way in zip(columns, ways, strict=True):
-        spread = [s * w[None, :] for s, w in zip(noise.scatter, way, strict=True) if s]
-        parts.append(whitening_basis(np.concatenate([own, *spread])))
-    kept = max(b.shape[0] for b, _ in parts)
-    basis = np.zeros((len(parts), kept, ways.shape[2]))
-    shrink = np.zeros((len(parts), kept, 1))
-    for k, (b, s) in enumerate(parts):
-        basis[k, : b.shape[0]] = b
-        shrink[k, : b.shape[0], 0] = s
-    return replace(bench, noise=noise, basis=basis, shrink=shrink, short={})
 
 
 def gated_excitation(

@@ -8,10 +8,10 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
 from jointbench.analysis.gap.bench import Blocks
-from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE, candidates_of, check_names
 from jointbench.analysis.gap.forward import motion
-from jointbench.analysis.gap.lumped import TAIL, LumpedBench, gated_excitation
+from jointbench.analysis.gap.lumped import LumpedBench, gated_excitation
 from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import LumpedEffect
 
@@ -58,7 +58,7 @@ def make_bench(
         scales={},
         blocks=_blocks(campaign),
         short={},
-        settled=np.zeros((1, 1, 1)),
+        settled=None,
     )
     return replace(bench, scales=_scales(bench))
 
@@ -95,7 +95,9 @@ def _blocks(campaign: Campaign) -> Blocks:
     )
     seen = samples - TAIL - campaign.lead
     white = campaign.repeatability is None
-    return Blocks(group, labels, records * channels * seen, white)
+    return Blocks(
+        group, labels, records * channels * seen, campaign.response.shape, white
+    )
 
 
 def _scales(bench: LumpedBench) -> dict[str, float]:

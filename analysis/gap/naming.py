@@ -8,6 +8,7 @@ import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.own_parameters import most_unlike
 from jointbench.analysis.gap.race import score
 from jointbench.analysis.gap.screening import Screening
 
@@ -21,21 +22,25 @@ EVERYWHERE = "all"
 AMPLITUDE_SD = 4.0
 PULL_LIMIT = 4.0
 GLOBAL_SD = 4.5
-RECORDS_SD = 4.5
+UNLIKE_CHANCE = 3e-4
+"""Chance below which parts of the records want parameters of their own."""
+UNLIKE_BASE_CHANCE = 3e-5
+"""The same before anything is named: a base that is complete must stay so."""
 NOISE_SHARE = 0.2
 """Share of the spectrum from which the noise is estimated."""
 WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
-MODEL_ERROR = 2e-5
-"""Share of the base's excess chi2 that a right nonlinear law may leave: kinks between
-steps, the anti-alias filter."""
-BENT = {"stiffness", "contact"}
-"""Families of nonlinear laws without memory."""
-FRICTION_ERROR = 1e-4
-"""The same for sliders, whose distribution is never that of the model."""
-EXACT_ERROR = 1e-6
-"""The same for effects that are linear or act on a channel: they are exact, and would
-otherwise hide a second effect behind a great first one."""
+MODEL_ERROR = {
+    "friction": 1e-4,
+    "stiffness": 2e-5,
+    "contact": 2e-5,
+    "damping": 1e-6,
+}
+"""Share of the base's excess chi2 that a right law may leave, by its family: sliders
+are never quite those of the joint, and kinks fall between steps."""
+EXACT = 1e-9
+"""The same for what is linear or acts on a channel: it is as exact as the base, and
+any more would hide a second effect behind a great first one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +78,7 @@ def gate(
         left: directed tests of the fit; None to pass them over.
         others: what else was fitted, for what the fit would be without an effect.
     """
-    share = _model_error(fit)
+    share = model_error(fit)
     dof = bench.blocks.dof
     excess = fit.chi2 / dof - 1.0
     base_excess = max(base.chi2 / dof - 1.0, 0.0)
@@ -86,8 +91,8 @@ def gate(
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
     elif remaining > limit:
         reason = f"a further effect would take {remaining:.0f} units of chi2"
-    elif (odd := _unlike_records(bench, fit)) > RECORDS_SD + share * base_excess * dof:
-        reason = f"records want parameters of their own ({odd:.1f} sd beyond noise)"
+    elif unlike := _unlike(bench, fit, share * base_excess * dof):
+        reason = unlike
     elif np.abs(fit.pulls).max() > PULL_LIMIT:
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
     elif fit.candidates and weakest(fit, (base, *others)) < AMPLITUDE_SD:
@@ -96,11 +101,10 @@ def gate(
     return Gate(not reason, reason, excess, allowed, remaining)
 
 
-def _model_error(fit: Fit) -> float:
-    families = {c.effect.family for c in fit.candidates}
-    if "friction" in families:
-        return FRICTION_ERROR
-    return MODEL_ERROR if families & BENT else EXACT_ERROR
+def model_error(fit: Fit) -> float:
+    """Return the share of the base's excess chi2 that a right fit may leave [-]."""
+    families = [c.effect.family for c in fit.candidates]
+    return max((MODEL_ERROR.get(f, EXACT) for f in families), default=EXACT)
 
 
 def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]:
@@ -110,36 +114,26 @@ def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]
     are not those of the joint. Anywhere else nothing of it should be seen.
     """
     rubbed = {c.site for c in fit.candidates if c.effect.family == "friction"}
-    elsewhere = min(_model_error(fit), MODEL_ERROR)
+    elsewhere = min(model_error(fit), MODEL_ERROR["contact"])
     worst, at = (0.0, WIDENED * left.threshold), -np.inf
     for d in left.directions:
         if d.suggested:
             continue
-        share = FRICTION_ERROR if d.candidate.site in rubbed else elsewhere
+        share = MODEL_ERROR["friction"] if d.candidate.site in rubbed else elsewhere
         limit = WIDENED * left.threshold + share * base_excess
         if d.drop - limit > at:
             worst, at = (d.drop, limit), d.drop - limit
     return worst
 
 
-def _unlike_records(bench: Bench, fit: Fit) -> float:
-    """Return how much better every record could be fitted by itself, in sd of noise.
-
-    A law that imitates the true one leaves misfits that no effect of the catalogue
-    takes, but that differ from level to level: parameters that fit all records are
-    not the best of any.
-    """
-    if not bench.blocks.white or not fit.candidates:
-        return 0.0
-    size = np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
-    taken, free = 0.0, -fit.x.size
-    for group in np.unique(bench.blocks.group):
-        rows = bench.blocks.group == group
-        u, s, _ = np.linalg.svd(fit.jacobian[rows] / size, full_matrices=False)
-        u = u[:, s > 1e-6 * s[0]]
-        taken += float(np.sum((u.T @ fit.residual[rows]) ** 2))
-        free += u.shape[1]
-    return (taken - free) / float(np.sqrt(2.0 * max(free, 1)))
+def _unlike(bench: Bench, fit: Fit, allowed: float) -> str:
+    """Say which parts of the records the fit does not hold for alike, if any."""
+    if not bench.blocks.white:
+        return ""
+    worst = most_unlike(bench, fit, allowed)
+    if worst.chance > (UNLIKE_CHANCE if fit.candidates else UNLIKE_BASE_CHANCE):
+        return ""
+    return f"{worst.excess:.0f} units of chi2 are left by {worst.view}"
 
 
 def noise_sd(bench: Bench) -> float:

@@ -13,9 +13,12 @@ from jointbench.acquisition.arrays import FloatArray, IntArray
 HIGH_BAND = (0.30, 0.497)
 """Band of pure noise, over the sample rate: above any response to a hammer."""
 SCATTER_MAX = 0.004
+SCATTER_MIN = 2e-5
+"""No hand and no joint repeats to better than that: what seems to scatter by less is
+a small effect, or chance."""
 UNLIKELY = 0.0025
 """Chance of repeats as close as those seen, below which a scatter is ruled out."""
-TREND_CHANCE = 1e-4
+TREND_CHANCE = 3e-4
 """Chance of a pattern over the records, below which it is a trend and no scatter."""
 SMALLEST_SHARE = 0.03
 FORCE_SHAPES = 8
@@ -115,7 +118,7 @@ def gain_scatter(
     Returns:
         Standard deviation of the gain [-].
     """
-    grid = np.concatenate([[0.0], np.geomspace(1e-6, SCATTER_MAX, 120)]) ** 2
+    grid = np.concatenate([[0.0], np.geomspace(SCATTER_MIN, SCATTER_MAX, 240)]) ** 2
     everywhere = _deviance(gains, variances, grid)
     wide = float(grid[int(np.argmin(everywhere))])
     pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]

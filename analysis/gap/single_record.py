@@ -7,12 +7,12 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, freeze, require_shape
 from jointbench.acquisition.errors import BadData, SamplingError
-from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnose import conclude
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import investigate
-from jointbench.analysis.gap.lumped import TAIL, LumpedBench
+from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.race import Progress

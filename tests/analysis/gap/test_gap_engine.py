@@ -44,7 +44,7 @@ class Curve:
         """Eight groups of rows."""
         group = np.repeat(np.arange(GROUPS), ROWS // GROUPS)
         labels = tuple({"group": str(i)} for i in range(GROUPS))
-        return Blocks(group, labels, ROWS)
+        return Blocks(group, labels, ROWS, (GROUPS, 1, ROWS // GROUPS))
 
     def scale(self, word: str) -> float:
         """Everything is of order one."""

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: MIT
+"""What the noise of a lumped bench is, at a solution: channels, force, scatter."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.campaign import TAIL
+from jointbench.analysis.gap.effects import Term
+from jointbench.analysis.gap.forward import prepare_excitation, respond
+from jointbench.analysis.gap.noise import (
+    FORCE_SHAPES,
+    Noise,
+    channel_sigma,
+    gain_scatter,
+    regress,
+    repeat_groups,
+    whitening_basis,
+    without_trend,
+)
+from jointbench.analysis.gap.physics import Conditions
+
+if TYPE_CHECKING:
+    from jointbench.analysis.gap.lumped import LumpedBench
+
+SETTLING_SEEN = 1e-5
+LOST = 0.3
+"""Misfit over response above which a fit says nothing about the settling."""
+SETTLING_REACH = 3.0
+"""Scatter sd beyond which a settling is no scatter but a missing effect."""
+SCATTER_STEP = 1e-6
+"""Difference step of the ways to scatter: at 1e-4 the late record has already bent a
+hundredth away from its slope, and a trend hides in that hundredth."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Settled:
+    """An expansion of the model about the joint's stiffness as it was in each hit.
+
+    The data know that stiffness far better than its mean, so the mean must move
+    without it: the response is taken at the stiffness of each hit, and mean and
+    scatter about it enter by the slope. A record of a hundred radians bends within
+    the scatter; what does not bend cannot leave the base stuck.
+
+    Attributes:
+        anchor: log(stiffness / nominal) to which the settling was added.
+        slope: change of the response with it, shape of the response.
+    """
+
+    anchor: float
+    slope: FloatArray
+
+
+def refine_noise(
+    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
+) -> "LumpedBench":
+    """Return the bench with its noise estimated at a solution."""
+    at = _centred(bench, base)
+    model = at.response(base, terms)
+    residual = model - bench.campaign.response
+    bench.mask(residual)
+    sigma = _channel_noise(at, model, residual)
+    columns = _force_columns(bench, base, sigma)
+    ways = _scatter_ways(at, base, terms, model, sigma)
+    noise = replace(bench.noise, sigma=sigma)
+    none = tuple(0.0 for _ in range(ways.shape[1]))
+    bare = _with_noise(at, replace(noise, scatter=none), columns, ways)
+    coefficients, variances = regress(
+        (residual / sigma[:, :, None]).reshape(len(sigma), -1),
+        ways,
+        bare.basis,
+        bare.shrink,
+    )
+    known = at.excitation.conditions.settling
+    if known is not None:
+        coefficients[:, 1] -= known
+    scatter, groups = _scatter_of(at, coefficients, variances)
+    noise = replace(noise, scatter=scatter, scatter_known=groups)
+    refined = _with_noise(at, noise, columns, ways)
+    lost = np.linalg.norm(residual) > LOST * np.linalg.norm(model)
+    if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
+        return _settle(refined, None)
+    share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
+    reach = SETTLING_REACH * scatter[1]
+    settling = np.clip(-coefficients[:, 1] * share, -reach, reach)
+    return _expanded(refined, settling, base, terms, columns)
+
+
+def _centred(bench: "LumpedBench", base: FloatArray) -> "LumpedBench":
+    """Return the bench with each hit's stiffness kept, about the base's mean."""
+    settling = bench.excitation.conditions.settling
+    if bench.settled is None or settling is None:
+        return bench
+    return _settle(bench, settling + bench.settled.anchor - base[bench.joint_at])
+
+
+def _channel_noise(
+    bench: "LumpedBench", model: FloatArray, residual: FloatArray
+) -> FloatArray:
+    """Return the noise of each record and channel, (n_records, n_channels)."""
+    peak = np.abs(model).max(axis=2)
+    sigma = channel_sigma(residual[:, :, bench.campaign.lead : -TAIL], peak)
+    if bench.campaign.repeatability is not None:
+        sigma = np.hypot(sigma, bench.campaign.repeatability * peak)
+    return sigma
+
+
+def _scatter_of(
+    bench: "LumpedBench", coefficients: FloatArray, variances: FloatArray
+) -> tuple[tuple[float, ...], bool]:
+    """Return the scatter along each way, and whether repeats bound it."""
+    campaign = bench.campaign
+    groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
+    count = coefficients.shape[1]
+    if campaign.repeatability is not None:
+        return (0.0,) * count, bool(groups)
+    patterns = _patterns(bench.excitation.conditions)
+    scatter = tuple(
+        gain_scatter(
+            without_trend(coefficients[:, i], patterns), variances[:, i], groups
+        )
+        for i in range(count)
+    )
+    return scatter, bool(groups)
+
+
+def _expanded(
+    bench: "LumpedBench",
+    settling: FloatArray,
+    base: FloatArray,
+    terms: Sequence[Term],
+    columns: list[FloatArray],
+) -> "LumpedBench":
+    """Return the bench expanded about a settling, with its scatter whitened there.
+
+    What is taken by the slope is then the very direction that whitening blurs,
+    and nothing of the settling leaks past it.
+    """
+    there = _settle(bench, settling)
+    sigma = bench.noise.sigma
+    moved = there.response(base, terms)
+    ways = _scatter_ways(there, base, terms, moved, sigma)
+    slope = ways[:, 1].reshape(*sigma.shape, -1) * sigma[:, :, None]
+    whitened = _with_noise(there, bench.noise, columns, ways)
+    settled = Settled(float(base[bench.joint_at]), slope)
+    return replace(whitened, settled=settled)
+
+
+def _patterns(conditions: Conditions) -> FloatArray:
+    """Return what a joint could depend on from record to record, (2, n_records)."""
+    return np.stack([np.log(conditions.preload), conditions.progress])
+
+
+def _force_columns(
+    bench: "LumpedBench", base: FloatArray, sigma: FloatArray
+) -> list[FloatArray]:
+    """Responses to the force's own noise, over sigma, one array for each record."""
+    first, last = bench.gate
+    n, records = bench.excitation.growth.size, sigma.shape[0]
+    if last - first >= n or bench.noise.force_sigma <= 0:
+        return [np.zeros((0, sigma.shape[1] * n))] * records
+    force = np.zeros((1, n))
+    force[0, first] = bench.noise.force_sigma
+    cases = {}
+    for hit in sorted(set(bench.campaign.hit.tolist())):
+        still = Conditions(np.ones(1), np.zeros(1))
+        rate = bench.campaign.sample_rate
+        shaken = prepare_excitation(force, np.array([hit]), rate, still)
+        y = respond(bench.campaign.model, bench.theta(base), shaken)[0]
+        cases[hit] = _shifted(y, last - first)
+        bench.mask(cases[hit])
+    return [
+        _leading((cases[int(h)] / s[:, None]).reshape(last - first, -1))
+        for h, s in zip(bench.campaign.hit, sigma, strict=True)
+    ]
+
+
+def _shifted(response: FloatArray, count: int) -> FloatArray:
+    """Return a response delayed by 0 to count - 1 samples, (count, *its shape)."""
+    out = np.zeros((count, *response.shape))
+    for k in range(count):
+        out[k, :, k:] = response[:, : response.shape[1] - k]
+    return out
+
+
+def _leading(rows: FloatArray) -> FloatArray:
+    """Return the few directions that hold most of unit noise in every row."""
+    _, vectors = np.linalg.eigh(rows @ rows.T)
+    return np.asarray(vectors[:, -FORCE_SHAPES:].T @ rows)
+
+
+def _scatter_ways(
+    bench: "LumpedBench",
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+    sigma: FloatArray,
+) -> FloatArray:
+    """Return how hits may scatter, over sigma, (n_records, n_ways, n_rows).
+
+    The hand: the force that acts is not quite the one measured. The joint: it settles
+    anew from hit to hit, a change of its stiffness.
+    """
+    ways = [_harder(bench, base, terms, model)]
+    n = len(bench.campaign.model.bodies)
+    for i, link in enumerate(bench.campaign.model.links):
+        if link.joint and not bench.campaign.continuous:
+            moved = base.copy()
+            moved[n + i] += SCATTER_STEP
+            ways.append((bench.response(moved, terms) - model) / SCATTER_STEP)
+    stacked = np.stack(ways, axis=1)
+    bench.mask(stacked)
+    stacked /= sigma[:, None, :, None]
+    return stacked.reshape(len(sigma), len(ways), -1)
+
+
+def _harder(
+    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term], model: FloatArray
+) -> FloatArray:
+    """Return the change of the response per relative change of the force."""
+    if not any(a.entry.law is not None for a in bench.actions(terms)):
+        return model.copy()
+    spectrum = bench.excitation.spectrum * (1.0 + SCATTER_STEP)
+    pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))
+    return (pushed.response(base, terms) - model) / SCATTER_STEP
+
+
+def _settle(bench: "LumpedBench", settling: FloatArray | None) -> "LumpedBench":
+    """Return the bench with its model taken at a settling of the joint."""
+    conditions = replace(bench.excitation.conditions, settling=settling)
+    excitation = replace(bench.excitation, conditions=conditions)
+    return replace(bench, excitation=excitation, settled=None, short={})
+
+
+def _with_noise(
+    bench: "LumpedBench", noise: Noise, columns: list[FloatArray], ways: FloatArray
+) -> "LumpedBench":
+    """Return the bench with the whitening of `noise`."""
+    parts = []
+    for own, way in zip(columns, ways, strict=True):
+        spread = [s * w[None, :] for s, w in zip(noise.scatter, way, strict=True) if s]
+        parts.append(whitening_basis(np.concatenate([own, *spread])))
+    kept = max(b.shape[0] for b, _ in parts)
+    basis = np.zeros((len(parts), kept, ways.shape[2]))
+    shrink = np.zeros((len(parts), kept, 1))
+    for k, (b, s) in enumerate(parts):
+        basis[k, : b.shape[0]] = b
+        shrink[k, : b.shape[0], 0] = s
+    return replace(bench, noise=noise, basis=basis, shrink=shrink, short={})
