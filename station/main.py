@@ -35,9 +35,11 @@ Json = Annotated[
 ]
 Model = Annotated[Path | None, typer.Option(help="Bench model (TOML), with priors.")]
 Point = Annotated[str, typer.Option(help="Where the hammer struck.")]
-Preload = Annotated[
-    str | None, typer.Option(help="On the joint, '4 kN', where no session says.")
-]
+Preload = Annotated[str | None, typer.Option(help="'4 kN', where no session says.")]
+Page = Annotated[Path | None, typer.Option(help="HTML page to write.")]
+Cache = Annotated[Path | None, typer.Option(help="Folder of reduced structures.")]
+Sessions = Annotated[list[Path] | None, typer.Argument(help="Session files.")]
+Band = Annotated[str | None, typer.Option(help="Band of modes, '50:900' [Hz].")]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite existing output.")]
 
@@ -261,16 +263,10 @@ def contact_command(
 @app.command(name="identify")
 def identify_command(
     model: Annotated[Path, typer.Argument(help="Bench or structure model, TOML.")],
-    sessions: Annotated[
-        list[Path] | None, typer.Argument(help="Session files.", show_default=False)
-    ] = None,
-    band: Annotated[
-        str | None, typer.Option(help="Band of the modes, '50:900' [Hz].")
-    ] = None,
-    cache: Annotated[
-        Path | None, typer.Option(help="Folder that keeps reduced structures.")
-    ] = None,
-    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
+    sessions: Sessions = None,
+    band: Band = None,
+    cache: Cache = None,
+    report: Page = None,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
@@ -280,14 +276,8 @@ def identify_command(
     """
     from jointbench.station.identify import identify_any
 
-    fits = identify_any(
-        model,
-        sessions or [],
-        band=band,
-        cache=cache,
-        report=report,
-        json_target=json,
-    )
+    places = {"cache": cache, "report": report}
+    fits = identify_any(model, sessions or [], band=band, json_target=json, **places)
     return 0 if fits else EXIT_QUALITY
 
 
@@ -304,7 +294,7 @@ def gap_command(
         list[Path] | None,
         typer.Option(help="Python file of your own effects, which is run."),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
+    report: Page = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:

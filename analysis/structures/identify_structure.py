@@ -107,19 +107,15 @@ def identify_structure(
     covariance = scale * best.covariance()
     parameters = _parameters(problem, best, rivals, covariance)
     verdict, reasons = _judge(parameters, best, freedom, bool(rivals))
-    ordered = [(one, one.chi2 < limit) for one in optima[:_LISTED]]
-    checked = _full_checks(structure, problem, best) if structure is not None else ()
     return StructureIdentification(
         verdict=verdict,
         reasons=reasons,
         parameters=parameters,
         log_covariance=covariance,
-        solutions=tuple(_solution(problem, one, stands) for one, stands in ordered),
-        profiles=profile_likelihood(problem, best, covariance, scale)
-        if profiles
-        else {},
+        solutions=tuple(_solution(problem, one, limit) for one in optima[:_LISTED]),
+        profiles=profile_likelihood(problem, best, covariance, scale, profiles),
         states=tuple(_state_fit(problem, best, at) for at in range(len(evidence))),
-        full_check=checked,
+        full_check=_full_checks(structure, problem, best),
         degrees_of_freedom=freedom,
     )
 
@@ -183,10 +179,10 @@ def _judge(
     return IdentificationVerdict.PARTLY, tuple(reasons)
 
 
-def _solution(problem: Problem, optimum: Optimum, stands: bool) -> JointSolution:
+def _solution(problem: Problem, optimum: Optimum, limit: float) -> JointSolution:
     values = np.exp(optimum.unknowns).tolist()
     named = dict(zip(problem.names, values, strict=True))
-    return JointSolution(named, optimum.chi2, bool(stands))
+    return JointSolution(named, optimum.chi2, optimum.chi2 < limit)
 
 
 def _state_fit(problem: Problem, best: Optimum, row: int) -> StateFit:
@@ -213,9 +209,11 @@ def _state_fit(problem: Problem, best: Optimum, row: int) -> StateFit:
 
 
 def _full_checks(
-    structure: Structure, problem: Problem, best: Optimum
+    structure: Structure | None, problem: Problem, best: Optimum
 ) -> tuple[FullCheck, ...]:
-    """Solve the optimum of every state once with the whole mesh."""
+    """Solve the optimum of every state once with the whole mesh, if there is one."""
+    if structure is None:
+        return ()
     checks = []
     for row, evidence in enumerate(problem.evidence):
         stiffness = values_of(problem, best.unknowns, row).stiffness

@@ -82,11 +82,7 @@ def reduce_structure(
         Rozza, Huynh and Patera 2008, Arch. Comput. Methods Eng. 15, 229-275 (greedy
         choice by a residual bound).
     """
-    if not structure.spread or not 0 < box[0] < box[1]:
-        raise UsageError(
-            f"a reduction over joints from {box[0]:g} to {box[1]:g} N/m with "
-            f"{len(structure.spread)} joint directions; give joints, and low below high"
-        )
+    _require_box(structure, box)
     factors = factor_bodies(structure, solver)
     empty = np.zeros((structure.size, 0))
     start = body_modes(structure, modes, solver)
@@ -111,6 +107,14 @@ def reduce_structure(
         f"the reduced model's error bound stays at {worst:.2g} of the frequency, "
         f"{tolerance:g} is allowed; reduce fewer modes or narrow the box"
     )
+
+
+def _require_box(structure: Structure, box: tuple[float, float]) -> None:
+    if not structure.spread or not 0 < box[0] < box[1]:
+        raise UsageError(
+            f"a reduction over joints from {box[0]:g} to {box[1]:g} N/m with "
+            f"{len(structure.spread)} joint directions; give joints, and low below high"
+        )
 
 
 def _give_way(
