@@ -21,7 +21,6 @@ EXIT_BAD_DATA = 3
 EXIT_INSTRUMENT = 4
 EXIT_QUALITY = 5
 EXIT_INTERRUPTED = 130
-
 COLUMNS_HELP = (
     "Roles and units of a plain table's columns, for example "
     "'time:s,force:N,acceleration:m/s^2' or 'x:um,z:um'."

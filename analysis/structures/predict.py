@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a jointed structure does: modes with damping, shapes at sensors, FRFs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,9 @@ from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.structures.full_modes import frequency_of
 from jointbench.analysis.structures.reduced import ReducedModel
 
-# Modes that damping couples; above them it only damps each mode by itself.
-COUPLED = 80
+# Modes that damping couples at once; beyond them it is brought in by refinement.
+COUPLED = 60
+_REFINEMENTS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -207,30 +209,51 @@ def predict_frf(
 def _solve_lines(
     state: ModalState, damping: FloatArray, laplace: ComplexArray, load: FloatArray
 ) -> ComplexArray:
-    """Return Z^-1 load for every line, shape (n_lines, r, n_loads)."""
-    count = min(COUPLED, state.eigenvalue.size)
+    """Return Z^-1 load for every line, shape (n_lines, r, n_loads).
+
+    Low modes coupled and high ones each alone are a first answer, which the residual
+    of all modes together then refines; a line that it does not help is left.
+    """
     viscous = np.tensordot(damping, state.flex, 1)
-    rest = np.s_[count:]
-    alone = (
-        state.eigenvalue[rest]
-        + 1j * np.diag(state.loss)[rest]
-        + laplace[:, None] * np.diag(viscous)[rest]
-        + laplace[:, None] ** 2
+    own = state.eigenvalue + laplace[:, None] ** 2
+    rough = _rough_inverse(state, viscous, laplace, own)
+    wanted = np.broadcast_to(load.astype(complex), (laplace.size, *load.shape))
+
+    def missing(answer: ComplexArray) -> ComplexArray:
+        coupled = laplace[:, None, None] * (viscous @ answer) + 1j * (
+            state.loss @ answer
+        )
+        return np.asarray(wanted - own[:, :, None] * answer - coupled)
+
+    motion = rough(wanted)
+    left = missing(motion)
+    for _ in range(_REFINEMENTS if state.eigenvalue.size > COUPLED else 0):
+        better = motion + rough(left)
+        remains = missing(better)
+        helps = np.linalg.norm(remains, axis=(1, 2)) < np.linalg.norm(left, axis=(1, 2))
+        motion = np.where(helps[:, None, None], better, motion)
+        left = np.where(helps[:, None, None], remains, left)
+    return motion
+
+
+def _rough_inverse(
+    state: ModalState, viscous: FloatArray, laplace: ComplexArray, own: ComplexArray
+) -> Callable[[ComplexArray], ComplexArray]:
+    """Return an inverse of Z that couples the low modes only."""
+    count = min(COUPLED, state.eigenvalue.size)
+    whole = (
+        laplace[:, None, None] * viscous[:count, :count]
+        + 1j * (state.loss[:count, :count])
     )
-    high = load[None, rest] / alone[:, :, None]
-    fixed = np.diag(state.eigenvalue[:count]) + 1j * state.loss[:count, :count]
-    dynamic = (
-        fixed
-        + laplace[:, None, None] * viscous[:count, :count]
-        + laplace[:, None, None] ** 2 * np.eye(count)
-    )
-    low = np.linalg.solve(
-        dynamic,
-        np.broadcast_to(load[:count], (laplace.size, count, load.shape[1])).astype(
-            complex
-        ),
-    )
-    return np.concatenate([low, high], axis=1)
+    inverse = np.linalg.inv(whole + own[:, :count, None] * np.eye(count))
+    alone = own[:, count:] + 1j * np.diag(state.loss)[count:]
+    alone = alone + laplace[:, None] * np.diag(viscous)[count:]
+
+    def solve(load: ComplexArray) -> ComplexArray:
+        high = load[:, count:] / alone[:, :, None]
+        return np.concatenate([inverse @ load[:, :count], high], axis=1)
+
+    return solve
 
 
 def response_to_force(
