@@ -55,6 +55,7 @@ _RIVAL_SD = 3.0
 # ... if they differ by more than this in ln.
 _RIVAL_LOG = 0.02
 _LISTED = 12
+_NAMED = 3
 # Rounding of the full eigensolution, relative frequency.
 _ROUNDING = 1e-7
 
@@ -143,14 +144,21 @@ def _parameters(
                 + what_to_measure(problem, best, at)
             )
         elif others:
-            logs = [best.unknowns[at], *(one.unknowns[at] for one in others[:_LISTED])]
-            listed = " or ".join(f"{np.exp(log):.3g}" for log in logs)
-            reason = f"not identifiable: {listed} {unit} fit alike; " + what_separates(
-                problem, best, others[0]
+            logs = [float(one.unknowns[at]) for one in (best, *others)]
+            reason = (
+                f"not identifiable: {_listing(np.exp(np.sort(logs)), unit)} fit alike; "
+                + what_separates(problem, best, others[0])
             )
         shown = value * sd if sd < _NO_LOG_SD else None
         found.append(JointParameter(name, value, shown, unit, not reason, reason))
     return tuple(found)
+
+
+def _listing(values: FloatArray, unit: str) -> str:
+    """Name a few values, or say how many there are and how far they reach."""
+    if values.size <= _NAMED:
+        return " or ".join(f"{one:.3g}" for one in values) + f" {unit}"
+    return f"{values.size} values from {values[0]:.3g} to {values[-1]:.3g} {unit}"
 
 
 def _judge(

@@ -24,6 +24,8 @@ _SAME = 0.02
 # Singular values below this mean a standard deviation of 1e6 in ln: not determined.
 _FLAT = 1e-6
 _MOST_STEPS = 100
+# So many of the best ends are followed along what is open.
+_FOLLOWED = 3
 # Open parameters are held at these multiples of their best value.
 _HELD_AWAY = (0.03, 0.1, 0.3, 3.0, 10.0, 30.0)
 
@@ -243,7 +245,8 @@ def find_optima(problem: Problem, *, starts: int, seed: int) -> tuple[Optimum, .
         Distinct ends.
     """
     found = [descend(problem, start) for start in _starts(problem, starts, seed)]
-    found += _open_ways(problem, min(found, key=lambda end: end.chi2))
+    for one in sorted(found, key=lambda end: end.chi2)[:_FOLLOWED]:
+        found += _open_ways(problem, one)
     kept: list[Optimum] = []
     for one in sorted(found, key=lambda end: end.chi2):
         if not any(

@@ -1,5 +1,9 @@
 """Two small marble plates on each other, reduced once for all tests."""
 
+import json
+from collections.abc import Callable
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -25,6 +29,23 @@ PLATE = (0.5, 0.3, 0.05)
 def marble() -> Material:
     """Marble of the 2025 paper's Table 1."""
     return Material(youngs_modulus=55e9, poisson_ratio=0.25, density=2600.0)
+
+
+@pytest.fixture(scope="session")
+def oracle() -> Callable[[str, str], list[float]]:
+    """Frequencies of another code on the same mesh, by case and mesh [Hz]."""
+    place = Path(__file__).parents[4] / "shared" / "data" / "oracle" / "public.json"
+    if not place.is_file():
+        pytest.skip("the reference frequencies (data/oracle) are not beside the code")
+    cases = json.loads(place.read_text(encoding="utf-8"))["cases"]
+
+    def look_up(case: str, mesh: str) -> list[float]:
+        whole = next(one for one in cases if one["case"] == case)
+        row = next(one for one in whole["convergence"] if one["mesh"] == mesh)
+        found: list[float] = row["python_own_hz"]
+        return found
+
+    return look_up
 
 
 @pytest.fixture(scope="session")
