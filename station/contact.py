@@ -2,66 +2,103 @@
 """``jointbench contact``: a rough joint's stiffness from surface, material, preload."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from pathlib import Path
 
-from jointbench.acquisition.errors import UsageError
+import numpy as np
+
+from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.units import parse_value
-from jointbench.analysis.contact import ContactState, predict_contact
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_models import ContactModel, contact_model
-from jointbench.analysis.contact_spread import StiffnessInterval, predict_interval
-from jointbench.analysis.surface_spread import ContactSurface, contact_surface
+from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.curve import require_surface
+from jointbench.analysis.contact.damping import DampingChoice
+from jointbench.analysis.contact.inverse import preload_of
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import ContactModel, Mode
+from jointbench.analysis.contact.predict import (
+    ContactState,
+    ContactVerdict,
+    predict_contact,
+)
+from jointbench.analysis.contact.preload import Preload
+from jointbench.analysis.contact.spread import StiffnessInterval
+from jointbench.analysis.contact.surface import ContactSurface, contact_surface
+from jointbench.analysis.contact.uncertainty import (
+    JointUncertainty,
+    predict_uncertainty,
+)
 from jointbench.signal.fractal import fit_fractal
 from jointbench.signal.structure_function import StructureFunction, combine
+from jointbench.station.contact_request import ContactRequest
 from jointbench.station.inputs import read_surfaces
-from jointbench.station.output import console, table, write_json
-from jointbench.station.outputs import check_outputs
 from jointbench.station.surface import analyse_surface
 
 FACES = 2
-MODE = "corrected"
 
 
 @dataclass(frozen=True, slots=True)
 class ContactPoint:
-    """One model at one preload: what it predicts, and between which bounds."""
+    """One model at one preload: what it predicts, and between which bounds.
+
+    Attributes:
+        state: the prediction.
+        uncertainty: None where it rests on nothing: as printed, or without stiffness.
+    """
 
     state: ContactState
-    interval: StiffnessInterval
+    uncertainty: JointUncertainty | None
+
+    @property
+    def interval(self) -> StiffnessInterval:
+        """Bounds of the normal stiffness; the value itself where nothing widens it."""
+        if self.uncertainty is not None:
+            return self.uncertainty.stiffness.interval
+        value = self.state.normal_stiffness
+        return StiffnessInterval(value, value, value, 0.95, 0, 0.0)
 
 
-def run_contact(
-    models: Sequence[str],
-    *,
-    loads: Sequence[str],
-    modulus: str,
-    hardness: str,
-    poisson: float,
-    dimension: float | None,
-    roughness: str | None,
-    surfaces: Sequence[Path],
-    columns: str | None,
-    json_target: str | None,
+def predict_request(
+    request: ContactRequest, surface: ContactSurface
 ) -> tuple[ContactPoint, ...]:
-    """Predict every model at every load and show them."""
-    check_outputs(surfaces, [json_target])
-    chosen = [contact_model(name) for name in models]
-    material = ContactMaterial(
-        effective_modulus=parse_value(modulus, "pressure"),
-        hardness=parse_value(hardness, "pressure"),
-        poisson=poisson,
+    """Predict every model at every preload of a request."""
+    return tuple(
+        predict_point(
+            model,
+            surface,
+            request.material,
+            preload.value,
+            preload_sd=preload.sd,
+            hardness_sd=request.hardness_sd,
+            friction_factor_sd=request.friction_factor_sd,
+            damping=request.damping,
+            tangential_load=request.tangential_load,
+            friction=request.friction,
+            nominal_area=request.nominal_area,
+        )
+        for model in request.models
+        for preload in request.preloads or (_reaching(request, model, surface),)
     )
-    surface = _surface(dimension, roughness, surfaces, columns)
-    points = tuple(
-        predict_point(model, surface, material, parse_value(load, "force"))
-        for model in chosen
-        for load in loads
+
+
+def _reaching(
+    request: ContactRequest, model: ContactModel, surface: ContactSurface
+) -> Preload:
+    """Return the preload that gives a model the stiffness or real area asked for."""
+    fractal = FractalSurface(
+        np.array(surface.dimension_for(model)),
+        np.array(surface.roughness),
+        np.array(request.material.hardness),
     )
-    _show(points, surface, json_target)
-    write_json(json_target, contact_json(points, surface))
-    return points
+    require_surface(model, fractal)
+    value = preload_of(
+        model,
+        fractal,
+        request.material,
+        real_area=request.real_area,
+        stiffness=request.stiffness,
+    )
+    return Preload(float(value), 0.0)
 
 
 def predict_point(
@@ -69,8 +106,16 @@ def predict_point(
     surface: ContactSurface,
     material: ContactMaterial,
     preload: float,
+    *,
+    preload_sd: float = 0.0,
+    hardness_sd: float = 0.0,
+    friction_factor_sd: float = 0.0,
+    damping: DampingChoice | None = None,
+    tangential_load: float = 0.0,
+    friction: float = 0.3,
+    nominal_area: float | None = None,
 ) -> ContactPoint:
-    """Predict one model at one preload [N], with the interval the surface leaves."""
+    """Predict one model at one preload [N], with the interval the inputs leave."""
     dimension = surface.dimension_for(model)
     state = predict_contact(
         model,
@@ -78,16 +123,28 @@ def predict_point(
         roughness=surface.roughness,
         material=material,
         preload=preload,
+        damping=damping,
+        tangential_load=tangential_load,
+        friction=friction,
+        nominal_area=nominal_area,
     )
-    interval = predict_interval(
+    if model.mode is Mode.AS_PRINTED:
+        return ContactPoint(state, None)
+    uncertainty = predict_uncertainty(
         model,
         dimension=dimension,
         roughness=surface.roughness,
         material=material,
         preload=preload,
-        spread=surface.spread,
+        spread=replace(
+            surface.spread,
+            preload=preload_sd,
+            hardness=hardness_sd,
+            friction=friction_factor_sd,
+        ),
+        damping=damping if state.damping is not None else None,
     )
-    return ContactPoint(state, interval)
+    return ContactPoint(state, uncertainty)
 
 
 def equivalent_surface(structures: Sequence[StructureFunction]) -> ContactSurface:
@@ -95,12 +152,16 @@ def equivalent_surface(structures: Sequence[StructureFunction]) -> ContactSurfac
     return contact_surface(fit_fractal(reduce(combine, structures)))
 
 
-def _surface(
+def surface_of(
     dimension: float | None,
     roughness: str | None,
     files: Sequence[Path],
     columns: str | None,
+    *,
+    dimension_sd: float = 0.0,
+    roughness_sd: str = "0 %",
 ) -> ContactSurface:
+    """Return the surface from numbers or from files of one face or two."""
     if files and dimension is None and roughness is None:
         found = read_surfaces(files, columns=columns)
         if len(found) > FACES:
@@ -114,52 +175,38 @@ def _surface(
             "give either --dimension and --roughness, or --surface for one face (both "
             "alike) or twice for two"
         )
-    return ContactSurface(_of_a_line(dimension), parse_value(roughness, "length"))
+    plain = ContactSurface(_of_a_line(dimension), parse_value(roughness, "length"))
+    spread = replace(
+        plain.spread,
+        dimension=dimension_sd,
+        log_roughness=parse_value(roughness_sd, "ratio"),
+    )
+    return replace(plain, spread=spread)
+
+
+def swept(
+    request: ContactRequest, surface: ContactSurface, name: str, value: float
+) -> tuple[ContactRequest, ContactSurface]:
+    """Return request and surface with one swept input at `value`, spreads left out."""
+    plain = ContactSurface(surface.dimension, surface.roughness)
+    bare = replace(request, hardness_sd=0.0, friction_factor_sd=0.0)
+    if name == "load":
+        return replace(bare, preloads=(Preload(value, 0.0),)), plain
+    if bare.preloads:
+        bare = replace(bare, preloads=(Preload(bare.preloads[0].value, 0.0),))
+    if name == "dimension":
+        return bare, replace(plain, dimension=value)
+    return bare, replace(plain, roughness=value)
 
 
 def _of_a_line(dimension: float) -> float:
     """Return D of a line; a surface's D_s between 2 and 3 is one higher."""
-    return dimension - 1 if dimension > FACES else dimension
-
-
-def _show(
-    points: Sequence[ContactPoint], surface: ContactSurface, json_target: str | None
-) -> None:
-    screen = console(json_target)
-    rows = [
-        (
-            point.state.model,
-            f"{point.state.preload:.6g}",
-            f"{point.state.normal_stiffness:.4g}",
-            _bounds(point.interval),
-            f"{point.state.tangential_stiffness:.4g}",
-            f"{point.state.real_area * 1e6:.4g}",
-            point.state.verdict.value,
+    if not (1 < dimension < FACES or FACES < dimension < FACES + 1):
+        raise BadData(
+            f"fractal dimension {dimension:g} is neither between 1 and 2 (a line) nor "
+            "between 2 and 3 (a surface); give e.g. 1.54, the ends are no fractals"
         )
-        for point in points
-    ]
-    columns = (
-        "model",
-        "preload [N]",
-        "normal K [N/m]",
-        "95 % interval",
-        "tangential K [N/m]",
-        "real area [mm²]",
-        "verdict",
-    )
-    title = (
-        f"Contact at D = {surface.dimension:.4f} (line), G = {surface.roughness:.3g} m"
-    )
-    screen.print(table(title, columns, rows))
-    for reason in dict.fromkeys(r for point in points for r in point.state.reasons):
-        screen.print(f"  {reason}", markup=False)
-
-
-def _bounds(interval: StiffnessInterval) -> str:
-    """Write an interval; one that nothing widens is left out."""
-    if interval.upper <= interval.lower * (1 + 1e-9):
-        return "-"
-    return f"{interval.lower:.3g} to {interval.upper:.3g}"
+    return dimension - 1 if dimension > FACES else dimension
 
 
 def contact_json(
@@ -169,26 +216,37 @@ def contact_json(
     return {
         "dimension": surface.dimension,
         "roughness_m": surface.roughness,
-        "models": [
-            {
-                "name": point.state.model,
-                "mode": MODE,
-                "preload": point.state.preload,
-                "normal_stiffness": point.state.normal_stiffness,
-                "normal_stiffness_interval": [
-                    point.interval.lower,
-                    point.interval.upper,
-                ],
-                "tangential_stiffness": point.state.tangential_stiffness,
-                "damping": point.state.damping,
-                "largest_area": point.state.largest_area,
-                "critical_area": point.state.critical_area,
-                "real_area": point.state.real_area,
-                "stiffness_parts": dict(point.state.stiffness_parts),
-                "load_parts": dict(point.state.load_parts),
-                "verdict": point.state.verdict.value,
-                "reasons": list(point.state.reasons),
-            }
-            for point in points
-        ],
+        "models": [_point_json(point) for point in points],
+    }
+
+
+def _point_json(point: ContactPoint) -> dict[str, object]:
+    state, found = point.state, point.uncertainty
+    damping = None if found is None else found.damping
+    return {
+        "name": state.model,
+        "mode": state.mode.value,
+        "preload": state.preload,
+        "normal_stiffness": state.normal_stiffness,
+        "normal_stiffness_interval": [point.interval.lower, point.interval.upper],
+        "normal_stiffness_first_order": list(found.stiffness.first_order)
+        if found
+        else None,
+        "dominant_input": found.stiffness.dominant if found else None,
+        "variance_shares": dict(found.stiffness.shares) if found else {},
+        "approach_stiffness": state.approach_stiffness,
+        "tangential_stiffness": state.tangential_stiffness,
+        "loss_factor": state.loss_factor,
+        "damping": state.damping,
+        "damping_interval": [damping.interval.lower, damping.interval.upper]
+        if damping
+        else None,
+        "largest_area": state.largest_area,
+        "critical_area": state.critical_area,
+        "real_area": state.real_area,
+        "stiffness_parts": dict(state.stiffness_parts),
+        "load_parts": dict(state.load_parts),
+        "verdict": state.verdict.value,
+        "usable": state.verdict is ContactVerdict.USABLE,
+        "reasons": list(state.reasons),
     }

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.errors import BadData
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_models import contact_model
-from jointbench.analysis.surface_spread import ContactSurface
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.signal.structure_function import StructureFunction
 from jointbench.station.bench_model import ContactTable
 from jointbench.station.contact import (

@@ -14,6 +14,7 @@ import typer
 from typer.exceptions import TyperException
 
 from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
+from jointbench.station.contact_command import contact_command
 
 EXIT_INTERNAL = 1
 EXIT_USAGE = 2
@@ -213,50 +214,7 @@ def surface_command(
     run_surface(files, columns=columns, json_target=json)
 
 
-@app.command(name="contact")
-def contact_command(
-    load: Annotated[
-        list[str], typer.Option(help="Preload with unit, '25 kN'; may be repeated.")
-    ],
-    modulus: Annotated[str, typer.Option(help="Composite modulus E*, '29.3 GPa'.")],
-    hardness: Annotated[str, typer.Option(help="Hardness, '1.5 GPa'.")],
-    dimension: Annotated[
-        float | None, typer.Option(help="Profile fractal dimension, 1 < D < 2.")
-    ] = None,
-    roughness: Annotated[
-        str | None, typer.Option(help="Fractal roughness G with unit, '1e-9 m'.")
-    ] = None,
-    surface: Annotated[
-        list[Path] | None,
-        typer.Option(help="Surface file of one face; give it twice for a joint."),
-    ] = None,
-    columns: Columns = None,
-    poisson: Annotated[float, typer.Option(help="Poisson's ratio [-].")] = 0.25,
-    model: Annotated[
-        list[str] | None, typer.Option(help="Contact model; may be repeated.")
-    ] = None,
-    json: Json = None,
-    debug: Debug = False,
-) -> None:
-    """Predict a rough joint's stiffness from D, G, material and preload.
-
-    Example: jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus
-    '29.3 GPa' --hardness '1.5 GPa' --load '1 kN' --load '25 kN'
-    """
-    from jointbench.station.contact import run_contact
-
-    run_contact(
-        model or ["ke_3d_modified"],
-        loads=load,
-        modulus=modulus,
-        hardness=hardness,
-        poisson=poisson,
-        dimension=dimension,
-        roughness=roughness,
-        surfaces=surface or [],
-        columns=columns,
-        json_target=json,
-    )
+app.command(name="contact")(contact_command)
 
 
 @app.command(name="identify")

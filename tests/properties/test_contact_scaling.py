@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.contact import contact_curve, contact_model
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_models import CONTACT_MODELS
+from jointbench.analysis.contact.curve import contact_curve
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import CONTACT_MODELS, contact_model
 
 
 @settings(max_examples=60, deadline=None)

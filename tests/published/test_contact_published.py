@@ -8,22 +8,22 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.asperity import FractalSurface
-from jointbench.analysis.contact import predict_contact
-from jointbench.analysis.contact_material import (
+from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.material import (
     ContactMaterial,
     YieldCriterion,
     effective_modulus,
 )
-from jointbench.analysis.contact_models import (
+from jointbench.analysis.contact.models import (
     REGIMES,
     Interaction,
     PowerLaw,
     Regime,
     contact_model,
 )
-from jointbench.analysis.contact_sums import joint_sums
-from jointbench.analysis.preload import preload_from_torque
+from jointbench.analysis.contact.predict import predict_contact
+from jointbench.analysis.contact.preload import preload_from_torque
+from jointbench.analysis.contact.sums import joint_sums
 
 # The stiffness (sqrt 3 / 2) E sqrt(a) of eq. (5) as a share of Hertz's 2 E sqrt(a/pi).
 PRINTED_ELASTIC = PowerLaw(math.sqrt(3 * math.pi) / 4, 1.5)

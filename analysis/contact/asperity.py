@@ -2,7 +2,7 @@
 """One asperity of a fractal surface: geometry, load and stiffness by regime.
 
 The joint is the sum of these laws over the contact-area distribution; the closed form
-of that sum is in `contact_sums`.
+of that sum is in `sums`.
 """
 
 import math
@@ -11,12 +11,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.contact_material import ContactMaterial, yield_ratio
-from jointbench.analysis.contact_models import (
+from jointbench.analysis.contact.material import (
+    ContactMaterial,
+    YieldCriterion,
+    yield_ratio,
+)
+from jointbench.analysis.contact.models import (
     REGIME_BOUNDS,
     AsperityLaw,
     ContactModel,
     FullyPlastic,
+    PowerLaw,
     regime_laws,
 )
 
@@ -35,12 +40,24 @@ class FractalSurface:
         roughness: fractal roughness G [m].
         hardness: [Pa].
         gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
+        friction: in place of the material's friction factor [-], or None.
     """
 
     dimension: FloatArray
     roughness: FloatArray
     hardness: FloatArray
     gamma: float = 1.5
+    friction: FloatArray | None = None
+
+
+def surface_yield_ratio(
+    model: ContactModel, surface: FractalSurface, material: ContactMaterial
+) -> FloatArray:
+    """Return kappa of the model, delta_c = kappa^2 R [-], on each surface."""
+    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    if surface.friction is None or model.yielding is not YieldCriterion.FRICTION:
+        return kappa
+    return np.asarray(kappa * surface.friction / material.friction_factor)
 
 
 def excess(model: ContactModel, surface: FractalSurface) -> FloatArray:
@@ -66,7 +83,7 @@ def log_critical_area(
         delta_c = kappa^2 R. Note: eq. (41) as printed counts pi^(2/(2-D)) twice.
     """
     e = excess(model, surface)
-    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    kappa = surface_yield_ratio(model, surface, material)
     log_c = model.topography.log_interference(e, surface.roughness, surface.gamma)
     log_area = 2 * log_c + math.log(model.topography.shape) - 2 * np.log(kappa)
     return np.asarray(np.minimum(log_area / e, _LARGEST_LOG_AREA))
@@ -116,7 +133,7 @@ def asperity_load(
     """
     ratio = interference_ratio(model, surface, material, log_area)
     area = np.exp(log_area)
-    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    kappa = surface_yield_ratio(model, surface, material)
     # P_c = 4/3 E R^(1/2) delta_c^(3/2) with delta_c = kappa^2 R and a = g R delta.
     critical = 4 / 3 * material.effective_modulus * kappa * area
     critical = critical / (model.topography.shape * ratio)
@@ -157,10 +174,15 @@ def asperity_stiffness(
     return _choose(
         ratio,
         [
-            0.0 * slope if isinstance(law, FullyPlastic) else law.exponent * slope
+            0.0 * slope if isinstance(law, FullyPlastic) else _steepness(law) * slope
             for law in regime_laws(model)
         ],
     )
+
+
+def _steepness(law: PowerLaw) -> float:
+    """Return dP/d(delta) over P/delta [-]; the exponent, unless one is printed."""
+    return law.slope / law.coefficient
 
 
 def _laws_with_bounds(

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.contact import predict_contact
-from jointbench.analysis.contact_material import ContactMaterial
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.predict import predict_contact
 
-TABLE = Path(__file__).parents[3] / "shared" / "design" / "contact_reference.json"
+TABLE = Path(__file__).parents[4] / "shared" / "design" / "contact_reference.json"
 ROWS = [
     (model, state)
     for model in (

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from jointbench.acquisition.errors import BadData
-from jointbench.analysis.contact_models import ContactModel
-from jointbench.analysis.contact_spread import ContactSpread
+from jointbench.analysis.contact.models import ContactModel
+from jointbench.analysis.contact.spread import ContactSpread
 from jointbench.signal.structure_constant import log_roughness
 from jointbench.signal.surface_verdict import FractalFit, Scaling
 

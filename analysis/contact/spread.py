@@ -7,9 +7,9 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.analysis.contact import contact_curve
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_models import ContactModel, contact_model
+from jointbench.analysis.contact.curve import contact_curve
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import ContactModel, contact_model
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +23,7 @@ class ContactSpread:
             strong one.
         preload: [N].
         hardness: [Pa].
+        friction: of the friction factor k_mu [-].
     """
 
     dimension: float = 0.0
@@ -30,10 +31,11 @@ class ContactSpread:
     correlation: float = 0.0
     preload: float = 0.0
     hardness: float = 0.0
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         """Check signs and the correlation."""
-        for name in ("dimension", "log_roughness", "preload", "hardness"):
+        for name in ("dimension", "log_roughness", "preload", "hardness", "friction"):
             if not 0 <= getattr(self, name) < np.inf:
                 raise UsageError(
                     f"spread of {name} is {getattr(self, name)!r}, it cannot be "
@@ -45,14 +47,35 @@ class ContactSpread:
             )
 
 
-@dataclass(frozen=True, slots=True)
-class StiffnessInterval:
-    """Predicted normal stiffness with its uncertainty.
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawnInputs:
+    """Draws of all inputs, one array of equal length each.
 
     Attributes:
-        median: [N/m].
-        lower: lower end of the central interval [N/m].
-        upper: upper end [N/m].
+        dimension: inside the model's range [-].
+        roughness: G [m].
+        preload: [N].
+        hardness: [Pa].
+        friction: factor k_mu [-].
+        outside: share of dimensions that were drawn outside the range.
+    """
+
+    dimension: FloatArray
+    roughness: FloatArray
+    preload: FloatArray
+    hardness: FloatArray
+    friction: FloatArray
+    outside: float
+
+
+@dataclass(frozen=True, slots=True)
+class StiffnessInterval:
+    """A predicted stiffness, or damping, with its uncertainty.
+
+    Attributes:
+        median: [N/m], or [N s/m].
+        lower: lower end of the central interval, same unit.
+        upper: upper end, same unit.
         level: probability that the interval covers [-].
         draws: how many draws it rests on.
         outside: share of draws whose dimension left the model's range, drawn again.
@@ -102,24 +125,82 @@ def predict_interval(
             fewer than half of the draws stay inside it.
     """
     model = contact_model(model) if isinstance(model, str) else model
+    drawn = draw_inputs(
+        model,
+        dimension=dimension,
+        roughness=roughness,
+        material=material,
+        preload=preload,
+        spread=spread,
+        draws=draws,
+        seed=seed,
+    )
+    sums = contact_curve(
+        model,
+        dimension=drawn.dimension,
+        roughness=drawn.roughness,
+        material=material,
+        preload=drawn.preload,
+        hardness=drawn.hardness,
+        friction=drawn.friction,
+        gamma=gamma,
+    )
+    return central_interval(
+        sums.stiffness.sum(axis=0), level=level, outside=drawn.outside
+    )
+
+
+def central_interval(
+    values: FloatArray, *, level: float, outside: float
+) -> StiffnessInterval:
+    """Return median and central interval of draws [unit of `values`]."""
+    tail = 0.5 * (1 - level)
+    lower, median, upper = np.quantile(values, [tail, 0.5, 1 - tail])
+    return StiffnessInterval(
+        float(median), float(lower), float(upper), level, values.size, outside
+    )
+
+
+def draw_inputs(
+    model: ContactModel,
+    *,
+    dimension: float,
+    roughness: float,
+    material: ContactMaterial,
+    preload: float,
+    spread: ContactSpread,
+    draws: int,
+    seed: int,
+) -> DrawnInputs:
+    """Draw what goes into a contact model; the same seed draws the same.
+
+    Args:
+        model: whose range of dimensions counts.
+        dimension: centre [-].
+        roughness: G, centre [m].
+        material: hardness and friction factor are centres.
+        preload: centre [N].
+        spread: standard deviations.
+        draws: how many.
+        seed: of the draws.
+
+    Returns:
+        Draws, those outside the model's range of dimensions replaced.
+
+    Raises:
+        BadData: fewer than half of the dimensions stay inside the range.
+    """
     random = np.random.default_rng(seed)
     dimensions, logs, outside = _draw_surface(
         model, dimension, spread, draws=draws, random=random
     )
-    sums = contact_curve(
-        model,
+    return DrawnInputs(
         dimension=dimensions,
         roughness=roughness * np.exp(logs),
-        material=material,
         preload=_lognormal(preload, spread.preload, draws, random),
         hardness=_lognormal(material.hardness, spread.hardness, draws, random),
-        gamma=gamma,
-    )
-    tail = 0.5 * (1 - level)
-    stiffness = sums.stiffness.sum(axis=0)
-    lower, median, upper = np.quantile(stiffness, [tail, 0.5, 1 - tail])
-    return StiffnessInterval(
-        float(median), float(lower), float(upper), level, draws, outside
+        friction=_lognormal(material.friction_factor, spread.friction, draws, random),
+        outside=outside,
     )
 
 

@@ -9,19 +9,16 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from jointbench.analysis.asperity import (
+from jointbench.analysis.contact.asperity import (
     FractalSurface,
     asperity_load,
     asperity_stiffness,
     log_critical_area,
 )
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_models import CONTACT_MODELS, contact_model
-from jointbench.analysis.contact_sums import (
-    joint_sums,
-    power_integral,
-    solve_largest_area,
-)
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import CONTACT_MODELS, contact_model
+from jointbench.analysis.contact.solve import solve_largest_area
+from jointbench.analysis.contact.sums import joint_sums, power_integral
 
 STEEL = ContactMaterial(115e9, 2.3e9, 0.29, friction_factor=0.93)
 

@@ -4,9 +4,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.analysis.contact import predict_contact
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_spread import ContactSpread, predict_interval
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.predict import predict_contact
+from jointbench.analysis.contact.spread import ContactSpread, predict_interval
 
 IRON = ContactMaterial(69.3e9, 2.265e9, 0.25)
 JOINT = {"dimension": 2.5, "roughness": 1e-9, "material": IRON, "preload": 1e3}

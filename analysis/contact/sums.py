@@ -13,24 +13,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.asperity import (
+from jointbench.analysis.contact.asperity import (
     FractalSurface,
-    asperity_load,
     excess,
     log_critical_area,
+    surface_yield_ratio,
 )
-from jointbench.analysis.contact_material import ContactMaterial, yield_ratio
-from jointbench.analysis.contact_models import (
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import (
     REGIME_BOUNDS,
     AsperityLaw,
     ContactModel,
     PowerLaw,
+    bears_nothing,
     regime_laws,
 )
-
-# The solver stops when every step in ln(area) is this small: some 20 ulp of ln(area).
-_STEP_TOLERANCE = 1e-13
-_MOST_STEPS = 200
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,65 +132,6 @@ def joint_sums(
     )
 
 
-def solve_largest_area(
-    model: ContactModel,
-    surface: FractalSurface,
-    material: ContactMaterial,
-    load: FloatArray,
-) -> FloatArray:
-    """Find the largest contact area that carries `load`; load rises with it strictly.
-
-    Args:
-        model: the terms that act.
-        surface: dimension, roughness and hardness.
-        material: effective modulus and yield properties.
-        load: preload [N], broadcast with the surfaces, positive.
-
-    Returns:
-        ln(a_l / m^2) of the broadcast shape, to rounding.
-    """
-    e = excess(model, surface)
-    # Where all is plastic the load is pressure times real area: a start within decades.
-    hard = model.plastic.pressure_factor * surface.hardness * model.population
-    start = np.log(load * (1 - e) / ((1 + e) * hard))
-    low, high = _bracket(model, surface, material, load, start)
-    here = 0.5 * (low + high)
-    for _ in range(_MOST_STEPS):
-        total = joint_sums(model, surface, material, here).load.sum(axis=0)
-        low = np.where(total < load, here, low)
-        high = np.where(total < load, high, here)
-        # d ln(load) / d ln(a_l): the spread grows as a_l^q, and its end moves on.
-        largest = asperity_load(model, surface, material, here)
-        slope = (1 + e) / 2 * (1 + model.population * largest / total)
-        newton = here - np.log(total / load) / slope
-        inside = (newton > low) & (newton < high)
-        following = np.where(inside, newton, 0.5 * (low + high))
-        done = np.all(np.abs(newton - here) <= _STEP_TOLERANCE)
-        here = np.where(np.abs(newton - here) <= _STEP_TOLERANCE, here, following)
-        if done:
-            break
-    return here
-
-
-def _bracket(
-    model: ContactModel,
-    surface: FractalSurface,
-    material: ContactMaterial,
-    load: FloatArray,
-    start: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Return ln areas below and above the solution, stepping by a factor of 100."""
-    low, high = start + 0.0, start + 0.0
-    for _ in range(_MOST_STEPS):
-        heavy = joint_sums(model, surface, material, low).load.sum(axis=0) > load
-        light = joint_sums(model, surface, material, high).load.sum(axis=0) < load
-        if not (heavy.any() or light.any()):
-            break
-        low = np.where(heavy, low - math.log(100), low)
-        high = np.where(light, high + math.log(100), high)
-    return low, high
-
-
 def _prepare(
     model: ContactModel,
     surface: FractalSurface,
@@ -204,7 +142,7 @@ def _prepare(
     """Collect the factors that all regimes share."""
     e = excess(model, surface)
     log_x = np.asarray(log_largest - log_critical)
-    kappa = yield_ratio(model.yielding, material, surface.hardness)
+    kappa = surface_yield_ratio(model, surface, material)
     stiff = math.log(4 / 3 * material.effective_modulus)
     log_shape = math.log(model.topography.shape)
     return _Sum(
@@ -220,6 +158,8 @@ def _prepare(
 def _load(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArray:
     """Return the load of one regime [N]."""
     e = total.excess
+    if bears_nothing(law):
+        return np.zeros(np.broadcast(total.log_population, total.log_load).shape)
     if isinstance(law, PowerLaw):
         exponent = (1 + e) / 2 - law.exponent * e
         factor = total.log_population + total.log_load + math.log(law.coefficient)
@@ -234,9 +174,9 @@ def _load(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArr
 
 def _stiffness(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArray:
     """Return the stiffness of one regime [N/m]."""
-    if not isinstance(law, PowerLaw):
+    if not isinstance(law, PowerLaw) or bears_nothing(law):
         return np.zeros(np.broadcast(total.log_population, total.log_load).shape)
     factor = total.log_population + total.log_slope
-    factor = factor + math.log(law.coefficient * law.exponent)
+    factor = factor + math.log(law.slope)
     exponent = (1 - law.exponent) * total.excess
     return power_integral(exponent, *total.limits(upper, lower), factor)

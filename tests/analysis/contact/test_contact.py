@@ -6,23 +6,20 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.analysis.contact import (
-    ContactVerdict,
-    contact_curve,
-    predict_contact,
-)
-from jointbench.analysis.contact_material import (
+from jointbench.analysis.contact.curve import contact_curve
+from jointbench.analysis.contact.material import (
     ContactMaterial,
     YieldCriterion,
     yield_ratio,
 )
-from jointbench.analysis.contact_models import (
+from jointbench.analysis.contact.models import (
     CONTACT_MODELS,
     Interaction,
     Regime,
     contact_model,
     interaction_share,
 )
+from jointbench.analysis.contact.predict import ContactVerdict, predict_contact
 
 IRON = ContactMaterial(69.3e9, 2.265e9, 0.25)
 

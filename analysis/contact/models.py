@@ -9,15 +9,16 @@ a term with `dataclasses.replace(model, interaction=Interaction.NONE)`.
 import difflib
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cache
 from types import MappingProxyType
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.contact_material import YieldCriterion
+from jointbench.analysis.contact.material import YieldCriterion
 
 
 class Regime(StrEnum):
@@ -82,20 +83,43 @@ SURFACE = Topography("surface", 2.0, math.pi, _surface_interference)
 
 @dataclass(frozen=True, slots=True)
 class PowerLaw:
-    """Load of an asperity as P = coefficient * P_c * (delta / delta_c)^exponent."""
+    """Load of an asperity as P = coefficient * P_c * (delta / delta_c)^exponent.
+
+    Attributes:
+        coefficient: of the load [-].
+        exponent: of the interference ratio [-].
+        printed_slope: of the stiffness in P_c / delta_c [-], where a paper prints one
+            that is not the derivative of its load.
+    """
 
     coefficient: float
     exponent: float
+    printed_slope: float | None = None
+
+    @property
+    def slope(self) -> float:
+        """Coefficient of dP/d(delta) = slope * P_c / delta_c * s^(exponent - 1) [-]."""
+        if self.printed_slope is not None:
+            return self.printed_slope
+        return self.coefficient * self.exponent
 
 
 @dataclass(frozen=True, slots=True)
 class FullyPlastic:
-    """Load of an asperity as P = pressure_factor * hardness * a; no stiffness."""
+    """Load of an asperity as P = pressure_factor * hardness * a; 0 bears nothing."""
 
     pressure_factor: float
 
 
 AsperityLaw = PowerLaw | FullyPlastic
+# Contacts of a regime that was taken out of a model.
+ABSENT = FullyPlastic(0.0)
+
+
+def bears_nothing(law: AsperityLaw) -> bool:
+    """Tell whether contacts of this law carry no load at all."""
+    factor = law.coefficient if isinstance(law, PowerLaw) else law.pressure_factor
+    return factor == 0.0
 
 
 class Interaction(StrEnum):
@@ -103,6 +127,14 @@ class Interaction(StrEnum):
 
     NONE = "none"
     SELF_CONSISTENT = "self_consistent"
+    AS_PRINTED = "as_printed"
+
+
+class Mode(StrEnum):
+    """Whose formulas: mended and consistent, or those that the papers print."""
+
+    CORRECTED = "corrected"
+    AS_PRINTED = "as-printed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +153,7 @@ class ContactModel:
         population: factor f of the contact-area distribution [-]; 1 counts one
             contact of the largest area.
         source: paper and chapter.
+        mode: mended, or with the papers' own choices.
     """
 
     name: str
@@ -133,12 +166,16 @@ class ContactModel:
     interaction: Interaction
     population: float
     source: str
+    mode: Mode = Mode.CORRECTED
 
 
 HERTZ = PowerLaw(1.0, 1.5)
 KOGUT_ETSION_1 = PowerLaw(1.03, 1.425)
 # Both papers print the exponent 1.236; Kogut and Etsion (2002) have 1.263.
 KOGUT_ETSION_2 = PowerLaw(1.40, 1.263)
+PRINTED_STAGE_2 = PowerLaw(1.40, 1.236)
+# The papers' share of the interference that an interacting asperity keeps.
+PRINTED_SHARE = 3 * math.pi / 16
 PLASTIC_PROFILE = FullyPlastic(1.0)
 # In the surface geometry `a` is half the truncated area: full plasticity bears 2 H a.
 PLASTIC_SURFACE = FullyPlastic(2.0)
@@ -201,24 +238,52 @@ CONTACT_MODELS: Mapping[str, ContactModel] = MappingProxyType(
 )
 
 
-def contact_model(name: str) -> ContactModel:
+def contact_model(name: str, mode: str = Mode.CORRECTED) -> ContactModel:
     """Return the contact model called `name`.
 
     Args:
         name: one of `CONTACT_MODELS`.
+        mode: ``corrected``: lost notation restored, misprints mended; ``as-printed``:
+            with the laws and factors that the papers chose.
 
     Returns:
-        The model in mode ``corrected``: lost notation restored, misprints mended.
+        The model; the papers' own joint sums are in `printed_2023`.
 
     Raises:
-        UsageError: there is no such model.
+        UsageError: there is no such model, or no such mode.
     """
+    known = {str(m) for m in Mode}
+    if mode not in known:
+        raise UsageError(f"no mode {mode!r}; known: {', '.join(sorted(known))}")
     if name in CONTACT_MODELS:
-        return CONTACT_MODELS[name]
+        model = CONTACT_MODELS[name]
+        return model if mode == Mode.CORRECTED else _as_printed(model)
     near = difflib.get_close_matches(name, CONTACT_MODELS, n=1)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise UsageError(
         f"no contact model {name!r}; {hint}known: {', '.join(CONTACT_MODELS)}"
+    )
+
+
+def _as_printed(model: ContactModel) -> ContactModel:
+    """Return `model` with the choices of its paper."""
+    if model.name == "mb_2d":
+        # The original takes a = pi r^2 and P = 4 E r^3 / (3 R): with R and delta of
+        # the profile that is 4 sqrt(pi)/3 E G^(D-1) a^((3-D)/2), and k = 2 E r.
+        root = math.sqrt(math.pi)
+        elastic = PowerLaw(math.pi * root, 1.5, 1.5 * root)
+        return replace(model, elastic=elastic, mode=Mode.AS_PRINTED)
+    interaction = model.interaction
+    if interaction is Interaction.SELF_CONSISTENT:
+        interaction = Interaction.AS_PRINTED
+    of_2025_3d = model.topography is SURFACE and model.source == _PAPER_2025
+    return replace(
+        model,
+        second=PRINTED_STAGE_2,
+        plastic=PLASTIC_PROFILE,
+        interaction=interaction,
+        population=0.5 if of_2025_3d else 1.0,
+        mode=Mode.AS_PRINTED,
     )
 
 
@@ -231,8 +296,9 @@ def interaction_share(model: ContactModel) -> float:
         model: its interaction term and its topography decide.
 
     Returns:
-        1 without interaction; else the root of (16/(9 g)) x^3 = (1 - x)^2, which
-        makes Hertz's law and the sinking F/(E sqrt a) bear the same load.
+        1 without interaction, 3 pi/16 as printed; else the root of
+        (16/(9 g)) x^3 = (1 - x)^2, which makes Hertz's law and the sinking
+        F/(E sqrt a) bear the same load.
 
     Source:
         Appl. Sci. 2023, 13, 11680, eqs. (17)-(18), solved. Note: the papers put
@@ -240,7 +306,15 @@ def interaction_share(model: ContactModel) -> float:
     """
     if model.interaction is Interaction.NONE:
         return 1.0
-    cubic = 16 / (9 * model.topography.shape)
+    if model.interaction is Interaction.AS_PRINTED:
+        return PRINTED_SHARE
+    return _balanced_share(model.topography.shape)
+
+
+@cache
+def _balanced_share(shape: float) -> float:
+    """Return the root of (16/(9 g)) x^3 = (1 - x)^2 between 0 and 1."""
+    cubic = 16 / (9 * shape)
     share = 1.0
     for _ in range(50):  # Newton on a rising, convex-at-the-root function
         value = cubic * share**3 - (1 - share) ** 2
@@ -255,11 +329,22 @@ def regime_laws(model: ContactModel) -> tuple[AsperityLaw, ...]:
         model: its four laws and its interaction term.
 
     Returns:
-        From small contacts to large; interaction, which makes an elastic contact bear
-        x^(3/2) of what its geometric interference would, is part of the last one.
+        From small contacts to large; with interaction an elastic contact bears
+        x^(3/2) of what its geometric interference would.
     """
     elastic = model.elastic
-    if isinstance(elastic, PowerLaw):
+    if isinstance(elastic, PowerLaw) and model.interaction is Interaction.AS_PRINTED:
+        elastic = _printed_interaction(elastic, model.topography.shape)
+    elif isinstance(elastic, PowerLaw):
         share = interaction_share(model)
         elastic = PowerLaw(elastic.coefficient * share**1.5, elastic.exponent)
     return (model.plastic, model.second, model.first, elastic)
+
+
+def _printed_interaction(elastic: PowerLaw, shape: float) -> PowerLaw:
+    """Return the elastic law of eqs. (18) and (30): load and stiffness disagree."""
+    # P = E a^(3/2) (1 - 3 pi/16)/(pi R) and k = (sqrt 3 / 2) E sqrt(a), as multiples
+    # of Hertz's 4/3 E R^(1/2) delta^(3/2) and 2 E sqrt(a/g), with a = g R delta.
+    load = 3 / (4 * math.pi) * shape**1.5 * (1 - PRINTED_SHARE)
+    slope = math.sqrt(3 * shape) / 4 * elastic.exponent
+    return PowerLaw(elastic.coefficient * load, elastic.exponent, slope)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.asperity import (
+from jointbench.analysis.contact.asperity import (
     FractalSurface,
     asperity_load,
     asperity_stiffness,
@@ -14,8 +14,8 @@ from jointbench.analysis.asperity import (
     interference_ratio,
     log_critical_area,
 )
-from jointbench.analysis.contact_material import ContactMaterial
-from jointbench.analysis.contact_models import Interaction, contact_model
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import Interaction, contact_model
 
 MATERIAL = ContactMaterial(69.3e9, 2.265e9, 0.25)
 PROFILE = FractalSurface(np.array(1.5), np.array(1e-9), np.array(2.265e9))

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: MIT
+"""Predict the stiffness of a rough joint from its surface, material and preload."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from jointbench.acquisition.errors import BadData
+from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.curve import contact_curve
+from jointbench.analysis.contact.damping import (
+    DampingChoice,
+    damping_coefficient,
+    loss_factor,
+)
+from jointbench.analysis.contact.inverse import approach_stiffness
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import (
+    REGIMES,
+    ContactModel,
+    Mode,
+    Regime,
+    contact_model,
+)
+from jointbench.analysis.contact.printed import (
+    printed_stiffness_parts,
+    printed_warnings,
+)
+from jointbench.analysis.contact.sums import JointSums
+from jointbench.analysis.contact.tangential import tangential_stiffness
+
+DAMPING_REASON = (
+    "no damping: say what mass moves on the joint, or at what frequency, to have the "
+    "loss of a first loading as N s/m; a small vibration loses less, identify it"
+)
+
+# Above this many times the largest contact, the real area is made of contacts far
+# smaller than any the model's surface was measured at.
+_MANY_CONTACTS = 100.0
+
+
+class ContactVerdict(StrEnum):
+    """Whether a predicted stiffness can be used."""
+
+    USABLE = "usable"
+    FULLY_PLASTIC = "fully plastic"
+    OVER_NOMINAL = "real area above nominal area"
+
+
+@dataclass(frozen=True, slots=True)
+class ContactState:
+    """A rough joint under preload, as one model predicts it.
+
+    Attributes:
+        model: name of the model.
+        mode: mended, or with the choices and sums of its paper.
+        preload: [N].
+        normal_stiffness: sum of the stiffnesses of all contacts at their present
+            sizes [N/m]; as in the papers, not the derivative of the load by the
+            approach of the bodies.
+        approach_stiffness: derivative of the load by the interference of the largest
+            contact, which is how far the bodies approach while it grows [N/m].
+        tangential_stiffness: of the elastic contacts only [N/m].
+        loss_factor: of a first loading, in the convention asked for [-], or None.
+        damping: [N s/m]; None where no mass or frequency is given, `DAMPING_REASON`.
+        largest_area: area of the largest contact a_l [m^2].
+        critical_area: area below which asperities yield a_c [m^2].
+        real_area: sum of all contact areas [m^2].
+        load_parts: load carried by each regime [N].
+        stiffness_parts: stiffness of each regime [N/m].
+        verdict: whether to use it.
+        reasons: one line for each thing the verdict rests on, or to keep in mind.
+    """
+
+    model: str
+    mode: Mode
+    preload: float
+    normal_stiffness: float
+    approach_stiffness: float
+    tangential_stiffness: float
+    loss_factor: float | None
+    damping: float | None
+    largest_area: float
+    critical_area: float
+    real_area: float
+    load_parts: Mapping[Regime, float]
+    stiffness_parts: Mapping[Regime, float]
+    verdict: ContactVerdict
+    reasons: tuple[str, ...]
+
+
+def predict_contact(
+    model: str | ContactModel,
+    *,
+    dimension: float,
+    roughness: float,
+    material: ContactMaterial,
+    preload: float,
+    gamma: float = 1.5,
+    mode: str = Mode.CORRECTED,
+    nominal_area: float | None = None,
+    damping: DampingChoice | None = None,
+    tangential_load: float = 0.0,
+    friction: float = 0.3,
+) -> ContactState:
+    """Predict one joint.
+
+    Args:
+        model: name or record; see `CONTACT_MODELS`.
+        dimension: fractal dimension, between 1 and 2 for a profile model (2D),
+            between 2 and 3 for a surface model (3D) [-].
+        roughness: fractal roughness G of the equivalent surface [m].
+        material: composite modulus, hardness and so on.
+        preload: normal force on the joint [N].
+        gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
+        mode: ``corrected`` or ``as-printed``, for a model given by name.
+        nominal_area: apparent area of the joint [m^2]; only guards the real one.
+        damping: what a damping coefficient is made of; None for no damping.
+        tangential_load: already on the joint [N].
+        friction: coefficient of friction [-]; matters under a tangential load only.
+
+    Returns:
+        Stiffness, areas, parts by regime, verdict with reasons. As printed, the
+        largest area is that of the paper's own laws summed right, because the printed
+        loads of 2023 can be negative; stiffness is to the letter.
+
+    Raises:
+        BadData: a number outside the model's range.
+
+    Source:
+        `sums.joint_sums`; tangential: Mindlin 1949.
+    """
+    model = contact_model(model, mode) if isinstance(model, str) else model
+    surface = {"dimension": dimension, "roughness": roughness, "gamma": gamma}
+    sums = contact_curve(model, material=material, preload=preload, **surface)
+    if nominal_area is not None and not 0 < nominal_area < math.inf:
+        raise BadData(
+            f"nominal area is {nominal_area:g} m^2, it must be finite and positive; "
+            "give e.g. 0.01"
+        )
+    tangential = tangential_stiffness(
+        model, sums, material, tangential_load=tangential_load, friction=friction
+    )
+    fractal = FractalSurface(
+        np.array(dimension), np.array(roughness), np.array(material.hardness), gamma
+    )
+    verdict, reasons = _judge(sums, nominal_area)
+    if tangential_load and float(tangential) == 0 < float(sums.stiffness[-1]):
+        reasons.append("the tangential load exceeds friction times preload: it slides")
+    state = _state(
+        model, fractal, material, sums, tangential=float(tangential), preload=preload
+    )
+    state = replace(state, verdict=verdict, reasons=tuple(reasons))
+    if model.mode is Mode.AS_PRINTED:
+        state = _to_the_letter(state, material, **surface)
+    return _with_damping(state, model, fractal, material, damping)
+
+
+def _state(
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    sums: JointSums,
+    *,
+    tangential: float,
+    preload: float,
+) -> ContactState:
+    """Return the sums of one joint as a state, not judged, without damping."""
+    return ContactState(
+        model=model.name,
+        mode=model.mode,
+        preload=float(preload),
+        normal_stiffness=float(sums.stiffness.sum()),
+        approach_stiffness=float(approach_stiffness(model, surface, material, sums)),
+        tangential_stiffness=tangential,
+        loss_factor=None,
+        damping=None,
+        largest_area=float(sums.largest_area),
+        critical_area=float(sums.critical_area),
+        real_area=float(sums.real_area),
+        load_parts=dict(zip(REGIMES, map(float, sums.load), strict=True)),
+        stiffness_parts=dict(zip(REGIMES, map(float, sums.stiffness), strict=True)),
+        verdict=ContactVerdict.USABLE,
+        reasons=(),
+    )
+
+
+def _to_the_letter(
+    state: ContactState,
+    material: ContactMaterial,
+    *,
+    dimension: float,
+    roughness: float,
+    gamma: float,
+) -> ContactState:
+    """Put the printed sums in place of the mended ones, and say what is wrong."""
+    surface = {"dimension": dimension, "roughness": roughness, "gamma": gamma}
+    warnings = printed_warnings(
+        state.model, material=material, preload=state.preload, **surface
+    )
+    state = replace(state, reasons=state.reasons + warnings)
+    literal = printed_stiffness_parts(
+        state.model, material=material, largest_area=state.largest_area, **surface
+    )
+    if literal is None:
+        return state
+    critical, parts = literal
+    return replace(
+        state,
+        critical_area=critical,
+        stiffness_parts=parts,
+        normal_stiffness=sum(parts.values()),
+    )
+
+
+def _with_damping(
+    state: ContactState,
+    model: ContactModel,
+    surface: FractalSurface,
+    material: ContactMaterial,
+    choice: DampingChoice | None,
+) -> ContactState:
+    """Add loss factor and damping, where they are asked for."""
+    if choice is None:
+        return state
+    factor = loss_factor(
+        model,
+        surface,
+        material,
+        np.log(state.largest_area),
+        form=choice.form,
+        convention=choice.convention,
+    )
+    if not np.isfinite(factor):
+        line = "nothing is stored elastically, so a loss factor has no value"
+        return replace(state, reasons=(*state.reasons, line))
+    value = damping_coefficient(factor, np.array(state.normal_stiffness), choice)
+    return replace(state, loss_factor=float(factor), damping=float(value))
+
+
+def _judge(
+    sums: JointSums, nominal_area: float | None
+) -> tuple[ContactVerdict, list[str]]:
+    """Say whether the stiffness of one joint can be used, and why."""
+    verdict = ContactVerdict.USABLE
+    reasons: list[str] = []
+    largest, critical = float(sums.largest_area), float(sums.critical_area)
+    real = float(sums.real_area)
+    if largest < critical:
+        reasons.append(
+            f"the largest contact, {largest:.3g} m^2, is below the critical area, "
+            f"{critical:.3g} m^2: no contact is elastic, interaction changes nothing, "
+            "and the tangential stiffness of elastic contacts is 0"
+        )
+    if real > _MANY_CONTACTS * largest:
+        reasons.append(
+            f"the real area is {real / largest:.3g} times the largest contact: at this "
+            "dimension it rests on contacts smaller than any profile resolves"
+        )
+    if not sums.stiffness.sum() > 0:
+        verdict = ContactVerdict.FULLY_PLASTIC
+        reasons.append(
+            "every contact is fully plastic and has no stiffness in this model; "
+            "check dimension, roughness (in metres) and hardness"
+        )
+    if nominal_area is not None and real > nominal_area:
+        verdict = ContactVerdict.OVER_NOMINAL
+        reasons.append(
+            f"the real area, {real:.3g} m^2, is above the nominal {nominal_area:.3g} "
+            "m^2: the preload is beyond what the surface can carry in this model"
+        )
+    return verdict, reasons

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""Terms of a contact model by name: put one in, take one out, see what it does."""
+
+from dataclasses import replace
+from enum import StrEnum
+
+from jointbench.analysis.contact.material import YieldCriterion
+from jointbench.analysis.contact.models import (
+    ABSENT,
+    HERTZ,
+    KOGUT_ETSION_1,
+    KOGUT_ETSION_2,
+    PLASTIC_PROFILE,
+    PLASTIC_SURFACE,
+    PROFILE,
+    SURFACE,
+    AsperityLaw,
+    ContactModel,
+    FullyPlastic,
+    Interaction,
+    PowerLaw,
+    bears_nothing,
+)
+
+
+class Term(StrEnum):
+    """A part of a contact model that can be there or not."""
+
+    ELASTIC = "elastic"
+    ELASTIC_PLASTIC_1 = "elastic_plastic_1"
+    ELASTIC_PLASTIC_2 = "elastic_plastic_2"
+    PLASTIC = "plastic"
+    INTERACTION = "interaction"
+    FRICTION = "friction"
+    THIRD_DIMENSION = "third_dimension"
+
+
+def model_terms(model: ContactModel) -> frozenset[Term]:
+    """Return the terms that act in `model`."""
+    present = {
+        Term.ELASTIC: isinstance(model.elastic, PowerLaw),
+        Term.ELASTIC_PLASTIC_1: isinstance(model.first, PowerLaw),
+        Term.ELASTIC_PLASTIC_2: isinstance(model.second, PowerLaw),
+        Term.PLASTIC: not bears_nothing(model.plastic),
+        Term.INTERACTION: model.interaction is not Interaction.NONE,
+        Term.FRICTION: model.yielding is YieldCriterion.FRICTION,
+        Term.THIRD_DIMENSION: model.topography is SURFACE,
+    }
+    return frozenset(term for term, there in present.items() if there)
+
+
+def with_term(model: ContactModel, term: Term, *, present: bool) -> ContactModel:
+    """Return `model` with a term put in or taken out.
+
+    Args:
+        model: to start from.
+        term: what to switch.
+        present: whether it shall act.
+
+    Returns:
+        The model as it is where nothing changes. A missing elastic-plastic stage flows
+        fully plastically, as in Majumdar and Bhushan 1991; missing elastic or plastic
+        contacts bear nothing; without friction, yield is set by the mean contact
+        pressure; without the third dimension the surface is a profile, and its
+        fractal dimension one lower.
+    """
+    if (term in model_terms(model)) is present:
+        return model
+    flow = PLASTIC_SURFACE if model.topography is SURFACE else PLASTIC_PROFILE
+    match term:
+        case Term.ELASTIC:
+            return replace(model, elastic=HERTZ if present else ABSENT)
+        case Term.ELASTIC_PLASTIC_1:
+            return replace(model, first=KOGUT_ETSION_1 if present else flow)
+        case Term.ELASTIC_PLASTIC_2:
+            return replace(model, second=KOGUT_ETSION_2 if present else flow)
+        case Term.PLASTIC:
+            return replace(model, plastic=flow if present else ABSENT)
+        case Term.INTERACTION:
+            on = Interaction.SELF_CONSISTENT
+            return replace(model, interaction=on if present else Interaction.NONE)
+        case Term.FRICTION:
+            off = YieldCriterion.MEAN_CONTACT_PRESSURE
+            on_off = YieldCriterion.FRICTION if present else off
+            return replace(model, yielding=on_off)
+        case Term.THIRD_DIMENSION:
+            return _with_third_dimension(model, present=present)
+
+
+def _with_third_dimension(model: ContactModel, *, present: bool) -> ContactModel:
+    """Return `model` on the other kind of topography, with its full plasticity."""
+    flow = PLASTIC_SURFACE if present else PLASTIC_PROFILE
+
+    def moved(law: AsperityLaw) -> AsperityLaw:
+        flows = isinstance(law, FullyPlastic) and not bears_nothing(law)
+        return flow if flows else law
+
+    return replace(
+        model,
+        topography=SURFACE if present else PROFILE,
+        first=moved(model.first),
+        second=moved(model.second),
+        plastic=ABSENT if bears_nothing(model.plastic) else flow,
+    )
