@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Heights from plain tables: x and z in columns, or x, y and z of points on a grid."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,6 +25,7 @@ from jointbench.acquisition.records import Provenance, Step, step
 from jointbench.acquisition.surfaces import Areal, Profile, Surface
 from jointbench.acquisition.tables import Table, split_row
 from jointbench.acquisition.text_files import named, shown
+from jointbench.acquisition.units import is_unit
 
 # A coordinate may lie this far from its grid line [step], and two readings nearer
 # than `_SAME_LINE` of a typical step are the same line.
@@ -31,9 +33,15 @@ _OFF_GRID = 0.25
 _SAME_LINE = 0.5
 _LEAST_FILLED = 0.5
 _AREAL_COLUMNS = 3
+_COUNTERS = frozenset({"index", "no", "no.", "#", "n", "i"})
+_HEADER_CELL = re.compile(
+    r"(?P<axis>[xyz])\s*(?:in\s+|[\[(/_]+\s*)(?P<unit>[^\])]+?)\s*[\])]?", re.I
+)
 # A value met at least twice and this far outside the range of all others [range] is
 # taken for a code that means "no point".
 _FAR_OUTSIDE = 5.0
+# Codes that instruments are known to write for a missing point, in any unit.
+_KNOWN_CODES = (-25400.0, -25.4, -9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +76,36 @@ def surface_columns(spec: str) -> tuple[Column, ...]:
                 + " or ".join(repr(example) for example in SURFACE_EXAMPLES)
             )
     return columns
+
+
+def header_columns(table: Table) -> tuple[Column, ...] | None:
+    """Read what the columns hold from a header such as ``x in um,z in um``.
+
+    Args:
+        table: as read, with the lines above its numbers.
+
+    Returns:
+        The columns; of two lengths without a z, the second is the height. None where
+        any unit is missing or the words are others.
+    """
+    line = next((text for text in reversed(table.header) if text.strip()), "")
+    cells = split_row(line.lstrip("#% "), table.delimiter)
+    if len(cells) != table.values.shape[0]:
+        return None
+    found = [_HEADER_CELL.fullmatch(cell) for cell in cells]
+    axes = [match["axis"].lower() for match in found if match]
+    columns = []
+    for cell, match in zip(cells, found, strict=True):
+        if cell.lower() in _COUNTERS:
+            columns.append(Column("skip", ""))
+            continue
+        if match is None or not is_unit(match["unit"].strip(), "length"):
+            return None
+        axis = match["axis"].lower()
+        role = "z" if axis == "y" and axes == ["x", "y"] else axis
+        columns.append(Column(role, match["unit"].strip()))
+    roles = [column.role for column in columns if column.role != "skip"]
+    return tuple(columns) if sorted(roles) in (["x", "z"], ["x", "y", "z"]) else None
 
 
 def surface_from_table(
@@ -144,6 +182,7 @@ def _heights(table: Table, index: int, column: Column) -> tuple[FloatArray, Bool
     if column.code is not None:
         missing |= values == column.code
     else:
+        missing |= _known_codes(values)
         _refuse_unsaid_code(table, values[~missing], column)
     infinite = np.flatnonzero(np.isinf(values) & ~missing)
     if infinite.size:
@@ -158,6 +197,17 @@ def _heights(table: Table, index: int, column: Column) -> tuple[FloatArray, Bool
         )
     table.require_sane(index, column.factor, "height", skip=missing)
     return np.where(missing, 0.0, values) * column.factor, ~missing
+
+
+def _known_codes(values: FloatArray) -> BoolArray:
+    """Mark values that are a known code and stand far outside all others."""
+    code = np.isin(values, _KNOWN_CODES) | (np.abs(values) >= 1e30)
+    others = values[np.isfinite(values) & ~code]
+    if others.size < 2 or np.ptp(others) == 0:
+        return np.zeros(values.shape, dtype=np.bool_)
+    middle, reach = 0.5 * (others.min() + others.max()), np.ptp(others)
+    far = np.abs(values - middle) > (0.5 + _FAR_OUTSIDE) * reach
+    return np.asarray(code & far & np.isfinite(values))
 
 
 def _refuse_unsaid_code(table: Table, values: FloatArray, column: Column) -> None:

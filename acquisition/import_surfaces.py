@@ -1,19 +1,46 @@
 # SPDX-License-Identifier: MIT
 """Surfaces from files: the format is recognised by content, the units never guessed."""
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from jointbench.acquisition.height_tables import surface_columns, surface_from_table
-from jointbench.acquisition.keyence import is_keyence, parse_keyence
-from jointbench.acquisition.records import step
+from jointbench.acquisition.dektak import is_dektak, parse_dektak
+from jointbench.acquisition.gwyddion_text import is_gwyddion, parse_gwyddion
+from jointbench.acquisition.height_tables import (
+    header_columns,
+    surface_columns,
+    surface_from_table,
+)
+from jointbench.acquisition.interferometer_texts import (
+    is_interferometer,
+    parse_interferometer,
+)
+from jointbench.acquisition.keyence import parse_keyence
+from jointbench.acquisition.keyence_words import is_keyence
+from jointbench.acquisition.records import Step, step
 from jointbench.acquisition.surfaces import Surface
 from jointbench.acquisition.surfcom import is_surfcom, parse_surfcom
-from jointbench.acquisition.tables import is_array_file, load_table, parse_table
+from jointbench.acquisition.tables import (
+    is_array_file,
+    load_table,
+    parse_table,
+    read_head,
+)
 from jointbench.acquisition.text_files import (
     decode,
     file_digest,
     read_bytes,
     text_lines,
+)
+from jointbench.acquisition.vendor_files import is_vendor_name, read_vendor
+
+_Parser = Callable[[Sequence[str], Path, Step, str], Surface]
+
+_PLAIN_BYTES = 512
+_TEXTS: tuple[tuple[Callable[[Sequence[str]], bool], _Parser], ...] = (
+    (is_dektak, parse_dektak),
+    (is_interferometer, parse_interferometer),
+    (is_gwyddion, parse_gwyddion),
 )
 
 
@@ -23,10 +50,14 @@ def read_surface(
     """Read a profile or an areal map.
 
     Args:
-        path: a Keyence image CSV (English), a Surfcom TX1 or TX2, or a plain table of
-            x and z, or of x, y and z (text or .npy).
-        columns: what the columns of a plain table hold and in which unit, for example
-            ``"x:mm,y:mm,z:um"``; formats that state their units do without.
+        path: a Keyence image CSV (English, German, Japanese or Chinese), a Dektak CSV,
+            a Surfcom TX1 or TX2, a Wyko, Zygo or Gwyddion text, a plain table of x and
+            z, or of x, y and z (text or .npy), or, with the extra ``surfaces``, a
+            maker's own format.
+        columns: what the columns of a table hold and in which unit, for example
+            ``"x:mm,y:mm,z:um"``; it overrules what the content looks like. Formats
+            that state their units, and tables with units above their columns, do
+            without.
         name: of the surface; the name of the file without its ending if None.
 
     Returns:
@@ -46,11 +77,25 @@ def read_surface(
     if array:
         table = load_table(path, columns=None if wanted is None else len(wanted))
         return surface_from_table(table, wanted, origin, label)
+    if wanted is None and is_vendor_name(path) and not _is_plain(path):
+        return read_vendor(path, origin, label)
     data = read_bytes(path)
-    if is_keyence(data):
+    if wanted is None and is_keyence(data):
         return parse_keyence(data, path, origin, label)
     text, encoding = decode(data, path)
     lines = text_lines(text, path)
-    if is_surfcom(lines, path):
-        return parse_surfcom(lines, path, origin, label)
-    return surface_from_table(parse_table(lines, path, encoding), wanted, origin, label)
+    if wanted is None:
+        for recognise, parse in _TEXTS:
+            if recognise(lines):
+                return parse(lines, path, origin, label)
+        if is_surfcom(lines, path):
+            return parse_surfcom(lines, path, origin, label)
+    table = parse_table(lines, path, encoding)
+    found = header_columns(table) if wanted is None else wanted
+    return surface_from_table(table, found, origin, label)
+
+
+def _is_plain(path: Path) -> bool:
+    """Tell whether a file with a maker's ending is but a table, as .dat often is."""
+    head = read_head(path, _PLAIN_BYTES)
+    return path.suffix.lower() == ".dat" and b"\x00" not in head

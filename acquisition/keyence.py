@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Height images that Keyence VK and VR microscopes export as CSV, in English.
+"""Height images that Keyence VK and VR microscopes export as CSV.
 
 The layout is known from public parsers, not from the maker: quoted cells; a header of
-keys and values whose number of rows varies with the model; a row that reads "Height";
+keys and values, in the language of the analyser, whose number of rows varies with the
+model; a row that reads "Height";
 then one row of cells for each row of the image. A key may hold a line break inside
 its quotes, so a CSV reader reads it, never a split by lines.
 """
@@ -10,39 +11,54 @@ its quotes, so a CSV reader reads it, never a split by lines.
 import csv
 import io
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import FormatError, HostileFile, UnitError
+from jointbench.acquisition.keyence_words import (
+    MARK,
+    UNIT_WORDS,
+    Language,
+    decode_keyence,
+)
 from jointbench.acquisition.records import Step, step
 from jointbench.acquisition.surfaces import Areal, SurfaceInstrument
-from jointbench.acquisition.tables import DECIMAL_COMMA, MAX_CELLS, parse_cell
-from jointbench.acquisition.text_files import decode, named, shown
+from jointbench.acquisition.tables import (
+    DECIMAL_COMMA,
+    MAX_CELLS,
+    NUMBER,
+    parse_cell,
+)
+from jointbench.acquisition.text_files import named, shown
 from jointbench.acquisition.units import to_si
 
-_MARK = "ImageDataCsv"
-_KEY = "XY Calibration"
-_LABEL = "Height"
-_HEAD_BYTES = 8192
 _MAX_HEADER_ROWS = 100
-_NEEDED = (_KEY, "Output image data", "Horizontal", "Vertical", "Unit")
-_KEPT = {
-    "Measured date": "measured",
-    "Measurement data name": "data_name",
-    "Measurement Mode": "measurement_mode",
-    "Objective Lens Power": "objective_lens_power",
-    "Lens power": "objective_lens_power",
-}
-
-_Header = dict[str, list[str]]
+_NEEDED = ("calibration", "output", "columns", "rows", "unit")
+_KEPT = ("measured", "data_name", "measurement_mode", "objective_lens_power")
 
 
-def is_keyence(data: bytes) -> bool:
-    """Tell by the content whether a file is a Keyence image CSV of any language."""
-    head = data[:_HEAD_BYTES].replace(b"\x00", b"")  # UTF-16 counts too
-    return _MARK.encode() in head or _KEY.encode() in head
+@dataclass(frozen=True, slots=True)
+class _Header:
+    """Keys and values as they stand, and the language that gives them a meaning."""
+
+    cells: dict[str, list[str]]
+    language: Language
+
+    def key(self, meaning: str) -> str:
+        """Return the key that the file uses for a meaning, or the usual one."""
+        words = self.language.words[meaning]
+        return next((word for word in words if word in self.cells), words[0])
+
+    def values(self, meaning: str) -> list[str]:
+        """Return the cells behind a key that hold anything."""
+        return [cell for cell in self.cells.get(self.key(meaning), []) if cell]
+
+    def text(self, meaning: str) -> str:
+        """Return the first of them, empty where there is none."""
+        return next(iter(self.values(meaning)), "")
 
 
 def parse_keyence(data: bytes, path: Path, origin: Step, name: str) -> Areal:
@@ -59,33 +75,34 @@ def parse_keyence(data: bytes, path: Path, origin: Step, name: str) -> Areal:
         more rows than the file holds: provenance tells both numbers.
 
     Raises:
-        FormatError: not English, not a height image, decimal commas, rows cut short.
+        FormatError: no known language, not a height image, decimal commas, rows cut
+            short, heights beyond the declared least or most.
         UnitError: a unit of length is missing or unknown.
     """
-    if _KEY.encode() not in data[:_HEAD_BYTES].replace(b"\x00", b""):
-        raise FormatError(
-            f"{named(path)} is a Keyence CSV whose labels are not English; only the "
-            "English export is read: set the analyser to English and export again"
-        )
-    text, encoding = decode(data, path)
-    rows = _csv_rows(text, path)
-    header = _read_header(rows, path)
+    text, encoding, language = decode_keyence(data, path)
+    rows = _csv_rows(text, path, language)
+    header = _read_header(rows, path, language)
     width, height, pitch, unit = _read_geometry(header, path)
     heights = _read_heights(rows, width, height, path)
+    _require_within_declared(header, heights, path)
     missing = np.isnan(heights)
     return Areal(
         name=name,
         heights=np.where(missing, 0.0, heights) * unit,
         spacing=(pitch, pitch),
         valid=~missing,
-        instrument=SurfaceInstrument(name=_text(header, "Model")),
+        instrument=SurfaceInstrument(name=header.text("model")),
         provenance=(origin, _describe(header, heights, height, encoding)),
     )
 
 
-def _csv_rows(text: str, path: Path) -> Iterator[tuple[int, list[str]]]:
+def _csv_rows(
+    text: str, path: Path, language: Language
+) -> Iterator[tuple[int, list[str]]]:
     """Yield the line number and the cells of each row."""
-    reader = csv.reader(io.StringIO(text), delimiter=_delimiter(text), strict=True)
+    reader = csv.reader(
+        io.StringIO(text), delimiter=_delimiter(text, language), strict=True
+    )
     try:
         for row in reader:
             yield reader.line_num, row
@@ -96,47 +113,52 @@ def _csv_rows(text: str, path: Path) -> Iterator[tuple[int, list[str]]]:
         ) from error
 
 
-def _delimiter(text: str) -> str:
+def _delimiter(text: str, language: Language) -> str:
     """Return what stands behind the key of the calibration."""
-    behind = text[text.index(_KEY) + len(_KEY) :].lstrip('" \n')
+    key = language.words["calibration"][0]
+    behind = text[text.index(key) + len(key) :].lstrip('" \n')
     return behind[0] if behind[:1] in {";", "\t"} else ","
 
 
-def _read_header(rows: Iterator[tuple[int, list[str]]], path: Path) -> _Header:
+def _read_header(
+    rows: Iterator[tuple[int, list[str]]], path: Path, language: Language
+) -> _Header:
     """Read keys and values down to the row that says that heights follow."""
-    header: _Header = {}
+    header = _Header({}, language)
     for _, row in rows:
         cells = [" ".join(cell.split()) for cell in row]
         filled = [cell for cell in cells if cell]
-        if filled == [_LABEL] and "Unit" in header:
+        if filled == [language.height] and header.text("unit"):
             break
         if filled:
-            header[cells[0]] = cells[1:]
-        if len(header) > _MAX_HEADER_ROWS:
+            header.cells[cells[0]] = cells[1:]
+        if len(header.cells) > _MAX_HEADER_ROWS:
             break
     else:
         raise FormatError(
-            f"{named(path)} ends before a row that reads {_LABEL!r}; it is cut short, "
+            f"{named(path)} ends before a row that reads {language.height!r} below "
+            f"{header.key('unit')!r}; it is cut short or has no value for the unit, "
             "export it again"
         )
-    lacking = [key for key in _NEEDED if not any(header.get(key, []))]
+    lacking = [meaning for meaning in _NEEDED if not header.values(meaning)]
     if lacking:
         raise FormatError(
-            f"{named(path)} has no value for {lacking[0]!r} in its header; export the "
-            "height image with its header"
+            f"{named(path)} has no value for {header.key(lacking[0])!r} in its header; "
+            "export the height image with its header"
         )
     return header
 
 
 def _read_geometry(header: _Header, path: Path) -> tuple[int, int, float, float]:
     """Return declared width and height, pitch [m] and unit of the heights [m]."""
-    kind = _text(header, "Output image data")
-    if kind != _LABEL:
+    kind = header.text("output")
+    if kind != header.language.height:
         raise FormatError(
-            f"{named(path)} holds {shown(kind)}, not {_LABEL!r}; export the heights"
+            f"{named(path)} holds {shown(kind)}, not {header.language.height!r}; "
+            "export the heights"
         )
-    width = _number(header, "Horizontal", path)
-    height = _number(header, "Vertical", path)
+    width = _number(header, "columns", path)
+    height = _number(header, "rows", path)
     if not (width.is_integer() and height.is_integer()) or min(width, height) < 1:
         raise FormatError(
             f"{named(path)} declares {width:g} by {height:g} points; whole numbers "
@@ -147,24 +169,25 @@ def _read_geometry(header: _Header, path: Path) -> tuple[int, int, float, float]
             f"{named(path)} declares {width:g} by {height:g} points, at most "
             f"{MAX_CELLS} are read"
         )
-    calibration = [cell for cell in header[_KEY] if cell]
+    calibration = header.values("calibration")
     unit = calibration[1] if len(calibration) > 1 else ""
-    pitch = _number(header, _KEY, path) * _length_unit(unit, _KEY, path)
+    key = header.key("calibration")
+    pitch = _number(header, "calibration", path) * _length_unit(unit, key, path)
     if pitch <= 0:
-        raise FormatError(f"{named(path)}: {_KEY!r} is {pitch:g} m, must be above zero")
-    heights_unit = _length_unit(_text(header, "Unit"), "Unit", path)
+        raise FormatError(f"{named(path)}: {key!r} is {pitch:g} m, must be above zero")
+    heights_unit = _length_unit(header.text("unit"), header.key("unit"), path)
     return int(width), int(height), pitch, heights_unit
 
 
 def _length_unit(unit: str, key: str, path: Path) -> float:
     try:
-        return to_si(unit, "length")
+        return to_si(UNIT_WORDS.get(unit, unit), "length")
     except UnitError as error:
         raise UnitError(f"{named(path)}: {key!r}: {error}") from error
 
 
-def _number(header: _Header, key: str, path: Path) -> float:
-    cell = _text(header, key)
+def _number(header: _Header, meaning: str, path: Path) -> float:
+    cell, key = header.text(meaning), header.key(meaning)
     if DECIMAL_COMMA.fullmatch(cell):
         raise FormatError(
             f"{named(path)}: {key!r} is {shown(cell)}; decimal commas are not read, "
@@ -181,8 +204,20 @@ def _number(header: _Header, key: str, path: Path) -> float:
     return value
 
 
-def _text(header: _Header, key: str) -> str:
-    return next((cell for cell in header.get(key, []) if cell), "")
+def _require_within_declared(header: _Header, heights: FloatArray, path: Path) -> None:
+    """Refuse heights beyond the least and most that the header states."""
+    for meaning, sign in (("least", -1.0), ("most", 1.0)):
+        cell = header.text(meaning)
+        if not NUMBER.fullmatch(cell) or not np.isfinite(heights).any():
+            continue
+        extreme = float(np.nanmax(sign * heights))
+        last_digit = 10.0 ** -len(cell.partition(".")[2])
+        if extreme > sign * float(cell) + 2 * last_digit:
+            raise FormatError(
+                f"{named(path)} holds a height of {sign * extreme:g}, beyond its "
+                f"{header.key(meaning)!r} of {shown(cell)}; a decimal point is lost "
+                "or the unit has changed, export it again"
+            )
 
 
 def _read_heights(
@@ -203,7 +238,7 @@ def _read_heights(
         if len(cells) != width:
             raise FormatError(
                 f"{named(path)}: line {line} has {len(cells)} cells, the header "
-                f"declares {width} (Horizontal); the file is cut short or has decimal "
+                f"declares {width} ; the file is cut short or has decimal "
                 "commas, export it again"
             )
         image.append(_parse_row(cells, line, path))
@@ -225,19 +260,19 @@ def _parse_row(cells: list[str], line: int, path: Path) -> FloatArray:
 def _describe(
     header: _Header, heights: FloatArray, declared: int, encoding: str
 ) -> Step:
-    kept = {new: _text(header, old) for old, new in _KEPT.items() if _text(header, old)}
+    kept = {meaning: header.text(meaning) for meaning in _KEPT if header.text(meaning)}
     rows = heights.shape[0]
     note = f"declares {declared} rows, holds {rows}" if rows != declared else "complete"
     return step(
         "recognise",
-        format="Keyence image CSV, English",
-        reason=f"header holds {_MARK} or {_KEY!r}",
+        format=f"Keyence image CSV, {header.language.name}",
+        reason=f"header holds {MARK} or {header.key('calibration')!r}",
         encoding=encoding,
         declared_rows=declared,
         rows=rows,
         completeness=note,
-        xy_calibration=" ".join(header[_KEY]).strip(),
-        height_unit=_text(header, "Unit"),
+        xy_calibration=" ".join(header.values("calibration")),
+        height_unit=header.text("unit"),
         missing_points=int(np.isnan(heights).sum()),
         **kept,
     )

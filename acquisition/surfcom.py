@@ -10,16 +10,19 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.errors import FormatError
+from jointbench.acquisition.errors import FormatError, UnitError
 from jointbench.acquisition.records import Step, step
 from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
 from jointbench.acquisition.tables import NUMBER, parse_cell
 from jointbench.acquisition.text_files import named, shown
+from jointbench.acquisition.units import parse_value
 
 SUFFIXES = {".tx1": "primary profile", ".tx2": "roughness profile (filtered)"}
 _MILLIMETRE = 1e-3
 _MICROMETRE = 1e-6
 _HEADER_LINES = 2
+_MOST_SETTINGS = 2**16
+_CUTOFF_WORDS = ("onda de corte", "cutoff", "cut-off", "cut off", "grenzwellen")
 
 
 def is_surfcom(lines: Sequence[str], path: Path) -> bool:
@@ -61,12 +64,17 @@ def parse_surfcom(lines: Sequence[str], path: Path, origin: Step, name: str) -> 
     if np.any(np.isinf(heights)):
         raise FormatError(f"{named(path)} holds an infinite height")
     what = SUFFIXES.get(path.suffix.lower(), "profile")
+    cutoffs, settings = _settings(path)
     return Profile(
         name=name,
         heights=np.where(missing, 0.0, heights) * _MICROMETRE,
         spacing=length * _MILLIMETRE / (count - 1),
         valid=~missing,
-        instrument=SurfaceInstrument(name=f"Surfcom, {what}"),
+        instrument=SurfaceInstrument(
+            name=f"Surfcom, {what}",
+            cutoff_short=cutoffs.get("short"),
+            cutoff_long=cutoffs.get("long"),
+        ),
         provenance=(
             origin,
             step(
@@ -77,9 +85,35 @@ def parse_surfcom(lines: Sequence[str], path: Path, origin: Step, name: str) -> 
                 length_mm=length,
                 points=count,
                 missing_points=int(missing.sum()),
+                settings=settings,
             ),
         ),
     )
+
+
+def _settings(path: Path) -> tuple[dict[str, float], str]:
+    """Read the filter cut-offs [m] from the TX3 file beside a profile, if there is one.
+
+    Its keys are in the language of the instrument; that of lambda_s holds "Ls".
+    """
+    beside = [path.with_suffix(ending) for ending in (".tx3", ".TX3")]
+    found = next((file for file in beside if file.is_file() and file != path), None)
+    if found is None:
+        return {}, "no TX3 beside it"
+    lines = found.read_bytes()[:_MOST_SETTINGS].decode("latin-1").splitlines()
+    pairs = [line.partition("\t")[::2] for line in lines]
+    cutoffs: dict[str, float] = {}
+    for key, cell in pairs:
+        words = key.casefold()
+        if " ls" not in words and not any(word in words for word in _CUTOFF_WORDS):
+            continue
+        try:
+            value = parse_value(cell, "length")
+        except UnitError:
+            continue
+        if 0 < value < 1:
+            cutoffs.setdefault("short" if " ls" in words else "long", value)
+    return cutoffs, found.name
 
 
 def _header(lines: Sequence[str], path: Path) -> tuple[float, int]:

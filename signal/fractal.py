@@ -104,10 +104,11 @@ def fit_fractal(
         Ann. Inst. H. Poincare 33 (1997) 407. Structure function and G: S1 eq. (9).
     """
     structure_constant(1.5, gamma, constant)  # refuse nonsense before the work
-    rough = estimate.only(estimate.value > 0)
+    # Differences within half a step of the heights are no Gaussian ones.
+    rough = estimate.only(estimate.value > 0.25 * estimate.quantum**2)
     for_fit, for_slope = _thinned(rough)
     if not _worth_a_fit(rough.only(for_fit)):
-        reason = _too_short(rough.only(for_fit))
+        reason = _too_coarse(estimate) or _too_short(rough.only(for_fit))
         return rejected_fit(estimate, reason, _unfitted_slope(rough))
     whole = pose(rough.only(for_slope))
     problem = whole.within(for_fit[for_slope])
@@ -181,6 +182,17 @@ def _too_short(estimate: StructureFunction) -> Judgement:
             f"{share:g} % of the length, less than a decade; measure a longer line"
         )
     return Judgement(SurfaceVerdict.NONE, reason)
+
+
+def _too_coarse(estimate: StructureFunction) -> Judgement | None:
+    """Say that the instrument's steps hide the surface, where that is the cause."""
+    if estimate.quantum == 0 or not _worth_a_fit(estimate.only(_thinned(estimate)[0])):
+        return None
+    return Judgement(
+        SurfaceVerdict.INSTRUMENT,
+        f"heights come in steps of {1e9 * estimate.quantum:.3g} nm, which hide the "
+        "surface at all but a few lags; measure with a finer height range",
+    )
 
 
 def _unfitted_slope(estimate: StructureFunction) -> LocalSlope:

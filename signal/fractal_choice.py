@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Chooses the instrument model and says what the choice itself leaves uncertain."""
+"""Chooses the instrument model: the smallest that the data support."""
 
 from dataclasses import dataclass, replace
 
@@ -21,15 +21,18 @@ ACCEPT_PROBABILITY = 0.01
 """A model is accepted if a true one would fit worse at least this often [-]."""
 HOPELESS_PROBABILITY = 1e-6
 """Where the richest model fits with a smaller chance, simpler ones need no trial."""
-CLEAR_GAIN = 2.0
-"""Gain of Akaike's criterion that makes one more parameter worth it [-]: with it
-the likelihood ratio of one parameter is significant at about 5 %."""
+ONE_MORE = 7.88
+"""Gain of chi2 by one more parameter that chance brings in half a percent [-], so that
+all tests together take a larger model by chance in 1 % at the most."""
+TWO_MORE = 11.4
+"""The same for two more parameters, in a third of a percent [-]."""
+LEAST_GAIN = 2.0
+"""Gain of chi2 a parameter from which a larger model casts doubt on D [-]."""
 DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
-NO_WEIGHT = 10.0
-"""Loss of the criterion that leaves a model without weight in an average [-]."""
-CLEAR_CORNER = 5.0
-"""Gain of the likelihood criterion that makes a corner of the surface clear [-]."""
+CLEAR_CORNER = 9.0
+"""Gain of the likelihood criterion that makes a corner of the surface clear [-]; one
+clean profile in 60 has it by chance."""
 RULE_FACTOR = 2.0
 """The surface rules S where the instrument changes it by less than this factor [-]."""
 CORNER_SEEN = 0.5
@@ -42,15 +45,12 @@ CORNER_FACTOR = 0.8
 class Choice:
     """The model chosen for one range of lags, and the power law found there.
 
-    The power law is averaged over the instrument models that the data do not tell
-    apart, by their Akaike weights: a noise too small to be proven still moves D.
-
     Attributes:
         fit: of the smallest model that the data support, by its own covariance.
-        law: averaged s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`,
+        law: s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`,
             shape (2,).
-        covariance: of `law`, with the spread between models and, on a map, no less
-            than the scatter of its strips, shape (2, 2).
+        covariance: of `law`, with what an unproven instrument would move it; on a map
+            no less than the scatter of its strips, shape (2, 2).
         problem: what was fitted.
     """
 
@@ -130,7 +130,11 @@ def _longest_run(lag: FloatArray, rules: list[bool]) -> tuple[float, float] | No
 
 
 def choose(problem: FractalProblem) -> Choice:
-    """Fit all models and take the smallest that the data support.
+    """Fit models of growing size and take the smallest that the data support.
+
+    A model stands unless a larger one gains significantly in likelihood, both weighed
+    by the covariance of the smaller: under it, and only then, is the distribution of
+    the gain known.
 
     Args:
         problem: the structure function at the lags of the fit.
@@ -140,61 +144,101 @@ def choose(problem: FractalProblem) -> Choice:
         only where that is clearly likelier.
 
     Source:
-        Spread between models: Burnham and Anderson, Model Selection and Multimodel
-        Inference (2002), eq. (4.9).
+        Likelihood-ratio tests, 1 % together; as noise and point spread cannot fall
+        below zero, chance brings a gain in about half of what chi-squared says: Self
+        and Liang, J. Am. Stat. Assoc. 82 (1987) 605.
     """
-    endless = _choose_instrument(problem, rolls_off=False)
-    # The whole family with a corner is fitted only where its nearest member gains.
-    nearest = Model(endless.fit.model.instrument, rolls_off=True)
-    glance = settle(problem, nearest, endless.fit.seen)
-    if endless.fit.likelihood_criterion <= glance.likelihood_criterion:
-        return endless
-    cornered = _choose_instrument(problem, rolls_off=True)
-    gain = endless.fit.likelihood_criterion - cornered.fit.likelihood_criterion
-    return cornered if gain > CLEAR_CORNER and cornered.ends_early else endless
+    endless, doubt = _choose_instrument(problem, rolls_off=False)
+    nearest = Model(endless.model.instrument, rolls_off=True)
+    # A plateau at long lags lies in the short tail of a skewed spread: only weights of
+    # its own tell it, so likelihoods are compared, determinants included.
+    glance = settle(problem, nearest, endless.seen)
+    if endless.likelihood_criterion - glance.likelihood_criterion < CLEAR_CORNER:
+        return _chosen(problem, endless, doubt)
+    cornered = _chosen(problem, *_choose_instrument(problem, rolls_off=True))
+    gain = endless.likelihood_criterion - cornered.fit.likelihood_criterion
+    if gain > CLEAR_CORNER and cornered.ends_early:
+        return cornered
+    return _chosen(problem, endless, doubt)
 
 
 def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
     """Fit a straight line, without instrument or corner; it may be unacceptable."""
-    fit = fit_model(problem, Model(), weights)
-    return _averaged(problem, fit, [fit], np.ones(1))
+    return _chosen(problem, fit_model(problem, Model(), weights), np.zeros(2))
 
 
-def _choose_instrument(problem: FractalProblem, *, rolls_off: bool) -> Choice:
-    """Take the smallest instrument model that the data support."""
-    models = [Model(instrument, rolls_off) for instrument in InstrumentModel]
-    # All models are weighed by the covariance of the richest, so that their chi2
-    # are comparable.
-    richest = settle(problem, models[-1], problem.straight())
+def _choose_instrument(
+    problem: FractalProblem, *, rolls_off: bool
+) -> tuple[GlsFit, FloatArray]:
+    """Take the smallest instrument model that no larger one clearly beats.
+
+    Returns:
+        The fit, and how far the power law of a larger model lies from its own where
+        that one gains without proof, shape (2,).
+    """
+    kinds = InstrumentModel
+    plain = settle(problem, Model(kinds.NONE, rolls_off), problem.straight())
+    own = weigh(problem, plain.seen)
+    # Where the model is far off its weights never settle; all three share the last.
+    plain = fit_model(problem, plain.model, own, start=plain.parameters)
+    noisy = fit_model(problem, Model(kinds.NOISE, rolls_off), own)
+    both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
+    gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
+    if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
+        return plain, _doubt(plain, noisy if gains[0] > LEAST_GAIN else both)
+    richest = settle(problem, both.model, both.seen)
     if richest.probability < HOPELESS_PROBABILITY:
-        return _averaged(problem, richest, [richest], np.ones(1))
-    common = weigh(problem, richest.seen)
-    fits = [fit_model(problem, model, common) for model in models[:-1]]
-    fits.append(fit_model(problem, models[-1], common, start=richest.parameters))
-    least = min(fit.criterion for fit in fits)
-    close = [fit for fit in fits if fit.criterion <= least + CLEAR_GAIN]
-    simplest = min(close, key=lambda fit: (fit.parameters.size, fit.criterion))
-    own = weigh(problem, simplest.seen)
-    chosen = fit_model(problem, simplest.model, own, start=simplest.parameters)
-    likely = [fit for fit in fits if fit.criterion <= least + NO_WEIGHT]
-    weights = np.exp([(least - fit.criterion) / 2 for fit in likely])
-    return _averaged(problem, chosen, likely, weights)
+        return richest, np.zeros(2)
+    single = [
+        settle(problem, Model(kind, rolls_off), start.seen)
+        for kind, start in (
+            (kinds.BAND_LIMIT, plain),
+            (kinds.NOISE, noisy),
+            (kinds.PSF, richest),
+        )
+    ]
+    best, doubt = richest, np.zeros(2)
+    for fit in single:
+        small, rival = _with_rival(problem, fit, richest)
+        more = richest.parameters.size - fit.parameters.size
+        stands = small.chi2 - rival.chi2 < (ONE_MORE if more == 1 else TWO_MORE)
+        better = fit.likelihood_criterion < best.likelihood_criterion
+        accepted = fit.probability >= ACCEPT_PROBABILITY
+        if stands and accepted and (better or best is richest):
+            best, doubt = fit, _doubt(small, rival)
+    return best, doubt
 
 
-def _averaged(
-    problem: FractalProblem, chosen: GlsFit, fits: list[GlsFit], weights: FloatArray
-) -> Choice:
-    """Return the choice with the power law averaged over models of some weight."""
-    laws = np.array([fit.parameters[:2] for fit in fits])
-    mean = np.average(laws, axis=0, weights=weights)
-    apart = laws - mean
-    spreads = np.array([fit.covariance[:2, :2] for fit in fits])
-    spreads += apart[:, :, None] * apart[:, None, :]
-    covariance = np.average(spreads, axis=0, weights=weights)
-    strips = _strip_scatter(problem, chosen) / chosen.dimension_sd
+def _with_rival(
+    problem: FractalProblem, small: GlsFit, large: GlsFit
+) -> tuple[GlsFit, GlsFit]:
+    """Fit a model and a larger one, both with the weights of the smaller."""
+    own = weigh(problem, small.seen)
+    return (
+        fit_model(problem, small.model, own, start=small.parameters),
+        fit_model(problem, large.model, own, start=large.parameters),
+    )
+
+
+def _doubt(small: GlsFit, large: GlsFit) -> FloatArray:
+    """Return how far apart the power laws are, where the larger model gains at all.
+
+    A noise too small to be proven still moves D: the shift counts as uncertainty.
+    """
+    more = large.parameters.size - small.parameters.size
+    if small.chi2 - large.chi2 < LEAST_GAIN * more:
+        return np.zeros(2)
+    shift: FloatArray = large.parameters[:2] - small.parameters[:2]
+    return shift
+
+
+def _chosen(problem: FractalProblem, fit: GlsFit, doubt: FloatArray) -> Choice:
+    """Return a fit as a choice; on a map with no less scatter than its strips show."""
+    covariance = fit.covariance[:2, :2] + np.outer(doubt, doubt)
+    strips = _strip_scatter(problem, fit) / fit.dimension_sd
     return Choice(
-        fit=chosen,
-        law=mean,
+        fit=fit,
+        law=fit.parameters[:2],
         covariance=covariance * max(1.0, strips**2),
         problem=problem,
     )

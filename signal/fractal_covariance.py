@@ -20,14 +20,11 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.signal.structure_function import Sampling, StructureFunction
 
-EXACT_STEPS = 30
+EXACT_STEPS = 16
 """Single steps on each side of a place where c(d) has a kink [samples]."""
-GROWTH = 1.04
-"""Ratio of neighbouring steps beyond them [-]."""
-MAP_EXACT_STEPS = 30
-"""The same along the profiles of a map, whose other rows blunt the kinks [samples]."""
-MAP_GROWTH = 1.04
-"""The same beyond them [-]."""
+GROWTH = 1.1
+"""Ratio of neighbouring steps beyond them [-]; with both the covariance is within
+6e-4 of the full sum, and the standard deviation of D within 2e-3."""
 EXACT_ROWS = 16
 """Single steps between rows [rows]."""
 ROW_GROWTH = 1.08
@@ -128,9 +125,7 @@ def _plan(lag: FloatArray, face: Sampling) -> _Plan:
     # Lags on the face's own grid stay exact integers, so distances fall together.
     steps = np.where(np.abs(steps - whole) < 1e-6 * steps, whole, steps)
     first, second = np.triu_indices(lag.size)
-    lone = face.profiles == 1
-    exact, growth = (EXACT_STEPS, GROWTH) if lone else (MAP_EXACT_STEPS, MAP_GROWTH)
-    offsets = _graded(face.points, exact, growth)
+    offsets = _graded(face.points, EXACT_STEPS, GROWTH)
     offsets = np.concatenate([-offsets[:0:-1], offsets])
     points, weights = [], []
     for a, b in zip(steps[first], steps[second], strict=True):
@@ -140,19 +135,36 @@ def _plan(lag: FloatArray, face: Sampling) -> _Plan:
     counts = np.array([p.size for p in points])
     d = np.concatenate(points)
     a, b = np.repeat(steps[first], counts), np.repeat(steps[second], counts)
-    four = np.abs(np.stack([d - a, d + b, d, d + b - a]))
-    distance, places = np.unique(np.round(four, 6), return_inverse=True)
+    distance, places = _distinct(np.abs(np.stack([d - a, d + b, d, d + b - a])))
     rows, row_weight = _rows(face.profiles)
+    row_distance = face.row_distance
+    if np.isinf(row_distance):  # unrelated profiles: each agrees with itself only
+        rows, row_weight, row_distance = rows[:1], row_weight[:1], 0.0
     return _Plan(
         first=first,
         second=second,
         distance=distance,
-        places=places.reshape(four.shape),
+        places=places,
         weight=np.concatenate(weights),
         starts=np.concatenate([[0], np.cumsum(counts)[:-1]]),
-        row_distance=rows * face.row_distance / face.spacing,
+        row_distance=rows * row_distance / face.spacing,
         row_weight=row_weight,
     )
+
+
+def _distinct(values: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the distinct values, and where each value stands among them.
+
+    Whole numbers, the rule on one face, are marked instead of sorted.
+    """
+    whole = np.rint(values)
+    if not np.array_equal(whole, values):
+        found, places = np.unique(np.round(values, 6), return_inverse=True)
+        return found, places.reshape(values.shape)
+    index = whole.astype(np.int64)
+    met = np.zeros(int(index.max()) + 1, dtype=np.bool_)
+    met[index] = True
+    return np.flatnonzero(met).astype(np.float64), (np.cumsum(met) - 1)[index]
 
 
 def _points(

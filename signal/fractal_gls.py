@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
-from scipy.optimize import OptimizeResult, least_squares
 from scipy.stats import chi2 as chi2_distribution
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.signal.fractal_problem import FractalProblem
+from jointbench.signal.fractal_search import Found, search
 from jointbench.signal.self_affine import InstrumentModel, SeenSurface
 
 EXPONENT_RANGE = (0.02, 1.98)
@@ -29,20 +29,10 @@ WIDEST_PSF = 30.0
 """Point spread beyond which no instrument would be sampled so finely [samples]."""
 WIDEST_PSF_SHARE = 0.25
 """The same as a share of the longest lag: beyond, nothing is left [-]."""
-BOUND_REBATE = -1.0
-"""What noise costs less than a free parameter's 2 [-]: it cannot fall below zero,
-so where there is none it fits chance in half of the cases only."""
-PSF_COST = 2.0
-"""What a point spread costs in the criterion beyond a parameter's 2 [-]: together
-with noise it can follow any bend at short lags, so it has to be clear."""
 CORNER_STARTS = (0.03, 0.5)
 """Corners from which the search starts, over the longest lag [-]."""
 CORNER_RANGE = (0.5, 10.0)
 """Corners searched, from so many samples to so many longest lags [-]."""
-SETTLED = 1e-6
-"""Relative change of chi2 or of the parameters that ends a search [-]."""
-MOST_STEPS = 40
-"""Steps of one search; fits of a surface take about 15, hopeless ones go on [-]."""
 JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
 """Variance added on the diagonal, as a share of it [-]; the first that suffices."""
 SMALLEST_INFORMATION = 1e-6
@@ -103,20 +93,9 @@ class GlsFit:
         return float(chi2_distribution.sf(self.chi2, self.dof))
 
     @property
-    def criterion(self) -> float:
-        """Akaike's information criterion up to a constant [-].
-
-        Between fits with the same weights; `likelihood_criterion` otherwise.
-        """
-        cost = 2.0 * self.parameters.size
-        cost += BOUND_REBATE if self.model.instrument.has_noise else 0.0
-        cost += PSF_COST if self.model.instrument.has_psf else 0.0
-        return self.chi2 + cost
-
-    @property
     def likelihood_criterion(self) -> float:
         """Akaike's criterion with each model's own scatter in the likelihood [-]."""
-        return self.criterion + self.log_determinant
+        return self.chi2 + self.log_determinant + 2.0 * self.parameters.size
 
     @property
     def dimension(self) -> float:
@@ -188,7 +167,6 @@ def fit_model(
         The best of all starts.
     """
     lower, upper = _bounds(problem, model)
-    margin = 1e-6 * (upper - lower)
 
     def residual(parameters: FloatArray) -> FloatArray:
         """Return the whitened relative residuals."""
@@ -197,19 +175,9 @@ def fit_model(
         white: FloatArray = solve_triangular(weights.root, gap, lower=True)
         return white
 
-    found = [
-        least_squares(
-            residual,
-            np.clip(begin, lower + margin, upper - margin),
-            bounds=(lower, upper),
-            x_scale="jac",
-            ftol=SETTLED,
-            xtol=SETTLED,
-            max_nfev=MOST_STEPS,
-        )
-        for begin in (_starts(problem, model) if start is None else [start])
-    ]
-    best = min(found, key=lambda one: float(one.cost))
+    starts = _starts(problem, model) if start is None else [start]
+    found = [search(residual, begin, lower, upper) for begin in starts]
+    best = min(found, key=lambda one: one.squares)
     return _result(problem, model, weights, best)
 
 
@@ -238,12 +206,12 @@ def _root(covariance: FloatArray) -> FloatArray:
 
 
 def _result(
-    problem: FractalProblem, model: Model, weights: Weights, best: OptimizeResult
+    problem: FractalProblem, model: Model, weights: Weights, best: Found
 ) -> GlsFit:
     """Put the outcome of a search into a record."""
-    seen = _unpack(problem, model, best.x)
+    seen = _unpack(problem, model, best.parameters)
     predicted = problem.predicted(seen)
-    covariance = _inverse(best.jac)
+    covariance = _inverse(best.jacobian)
     share = np.diag(predicted / weights.reference)
     whitening = solve_triangular(weights.root, share, lower=True)
     return GlsFit(
@@ -251,13 +219,13 @@ def _result(
         seen=seen,
         lag=problem.lag,
         predicted=predicted,
-        parameters=best.x,
+        parameters=best.parameters,
         covariance=covariance,
-        gain=-covariance @ best.jac.T @ whitening,
+        gain=-covariance @ best.jacobian.T @ whitening,
         pivot=problem.pivot,
-        chi2=float(2 * best.cost),
+        chi2=best.squares,
         log_determinant=weights.log_determinant,
-        dof=max(1, problem.lag.size - best.x.size),
+        dof=max(1, problem.lag.size - best.parameters.size),
     )
 
 
@@ -289,6 +257,7 @@ def _unpack(
         axes=problem.axes,
         band_limited=instrument is InstrumentModel.BAND_LIMIT,
         corner=float(np.exp(rest.pop(0))) if model.rolls_off else np.inf,
+        quantum=problem.estimate.quantum,
     )
 
 

@@ -57,7 +57,7 @@ class FractalProblem:
         to lose.
         """
         points = float(self.estimate.points)
-        part = 1.0 if self.estimate.profiles == 1 else PLANE_LOSS
+        part = 1.0 if self.estimate.separate else PLANE_LOSS
         unit = levelling_loss(self.lag / points, seen.exponent)
         power = seen.amplitude * points**seen.exponent
         if np.isfinite(seen.corner):
@@ -90,10 +90,13 @@ class FractalProblem:
     def misfit(self, seen: SeenSurface) -> FloatArray:
         """Return the covariance of what the model leaves open, as `scatter` [-].
 
-        The whole loss by levelling enters once more as an unknown of that size: how
-        much a mean plane takes is not known, and a surface may lack waves longer
-        than the profile, which bends S in the same way.
+        Where a misfit is allowed, and on a map, the whole loss by levelling enters
+        once more as an unknown of that size: how much a mean plane takes is not known,
+        and a surface may lack waves longer than the profile, which bends S likewise.
+        The loss of a self-affine profile is known exactly.
         """
+        if self.tolerance == 0 and self.estimate.separate:
+            return np.zeros((self.lag.size, self.lag.size))
         loss = self.loss(seen) / seen.seen(self.lag)
         misfit: FloatArray = self.tolerance**2 * np.eye(loss.size)
         return misfit + np.outer(loss, loss)

@@ -18,18 +18,17 @@ from jointbench.acquisition.arrays import (
 )
 from jointbench.acquisition.errors import ShapeError
 from jointbench.acquisition.records import Provenance, Quantity, Recording, Step, step
+from jointbench.signal.frf_estimators import Estimator, bias_bound, estimate_pair
 from jointbench.signal.hits import accepted_hits, find_hits
+from jointbench.signal.innovation_noise import innovation_noise
 from jointbench.signal.spectra import (
     HitSpectra,
-    Pair,
     hit_spectra,
     pair_up,
     require_alive,
 )
 from jointbench.signal.windows import HammerWindow, choose_window, join_windows
 
-# The scatter of a few hits is itself noisy; it is averaged over this many lines.
-_SCATTER_LINES = 9
 # The hammer excites up to where its force spectrum has fallen by this much.
 _FORCE_DROP_DB = 20.0
 # Anti-alias filters of the usual converters leave this share of the sample rate.
@@ -75,6 +74,8 @@ class Frf:
         averages: smallest number of hits behind a column; 0 if unknown.
         provenance: how it came about.
         usable_band: (lowest, highest) frequency that was really excited [Hz], or None.
+        innovation_noise: variance that the noise seen by the Kalman stage explains
+            [unit of response squared], same shape, or None: good for weights only.
     """
 
     frequency: FloatArray
@@ -88,6 +89,7 @@ class Frf:
     averages: int = 0
     provenance: Provenance = field(default=())
     usable_band: tuple[float, float] | None = None
+    innovation_noise: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -95,7 +97,8 @@ class Frf:
         require_finite("frequency", self.frequency)
         require_shape("response", self.response, (None, None, self.frequency.size))
         require_finite("response", self.response)
-        for name, array in (("coherence", self.coherence), ("variance", self.variance)):
+        for name in ("coherence", "variance", "innovation_noise"):
+            array = getattr(self, name)
             if array is not None:
                 require_shape(name, array, self.response.shape)
         n_outputs, n_inputs, _ = self.response.shape
@@ -108,13 +111,23 @@ class Frf:
                 object.__setattr__(self, name, numbered)
             elif len(labels) != size:
                 raise ShapeError(f"{len(labels)} labels for {size} {name}")
-        freeze(self, "frequency", "response", "coherence", "variance")
+        freeze(
+            self,
+            "frequency",
+            "response",
+            "coherence",
+            "variance",
+            "innovation_noise",
+        )
 
 
 def estimate_frf(
-    recordings: Sequence[Recording] | Recording, *, window: HammerWindow | None = None
+    recordings: Sequence[Recording] | Recording,
+    *,
+    window: HammerWindow | None = None,
+    estimator: Estimator = Estimator.H1,
 ) -> Frf:
-    """Estimate the FRF from hammer hits by H1, which trusts the force.
+    """Estimate the FRF from hammer hits.
 
     Hits may come one a file or many a stream; those at different points become
     different inputs. Recordings without hits are searched with default criteria.
@@ -122,10 +135,13 @@ def estimate_frf(
     Args:
         recordings: force and responses, all at one sample rate.
         window: windows for all hits, or None to choose them (see `choose_window`).
+        estimator: H1 trusts the force and is low where it is noisy; H2 trusts the
+            response and is high where that is noisy; Hv lies between them.
 
     Returns:
-        H1 over the accepted hits, with coherence and variance from the scatter between
-        hits where there are at least two for every column.
+        The average over the accepted hits, with coherence and variance from the scatter
+        between hits where there are at least two for every column. The estimator, its
+        bias in words and how far H1 and H2 are apart are in the provenance.
 
     Raises:
         NoHitFound: no accepted hit.
@@ -146,21 +162,31 @@ def estimate_frf(
         window = join_windows([choose_window(r) for r in judged if accepted_hits(r)])
     spectra = hit_spectra(judged, window)
     outputs, inputs, pairs = pair_up(spectra)
-    averaged = [_average(spectra, pair) for pair in pairs]
+    averaged = [
+        estimate_pair(
+            spectra.force[pair.hits], spectra.response[pair.hits, pair.rows], estimator
+        )
+        for pair in pairs
+    ]
     shape = (len(outputs), len(inputs), spectra.frequency.size)
     averages = min(pair.hits.size for pair in pairs)
+    coherence = _stack([a.coherence for a in averaged], shape, averages)
+    done = _record(spectra, window, averages, estimator, coherence)
+    inherited, decay = _inherited(judged), window.decay_rate or 0.0
+    noise = innovation_noise(spectra, outputs, pairs, inherited, decay)
     return Frf(
         frequency=spectra.frequency,
-        response=np.array([a[0] for a in averaged]).reshape(shape),
+        response=np.array([a.response for a in averaged]).reshape(shape),
         kind=KIND_OF_RESPONSE[spectra.quantity],
-        coherence=_stack([a[1] for a in averaged], shape, averages),
-        variance=_stack([a[2] for a in averaged], shape, averages),
-        added_decay_rate=window.decay_rate or 0.0,
+        coherence=coherence,
+        variance=_stack([a.variance for a in averaged], shape, averages),
+        added_decay_rate=decay,
         outputs=outputs,
         inputs=inputs,
         averages=averages,
-        provenance=(*_inherited(judged), _record(spectra, window, averages)),
+        provenance=(*inherited, done),
         usable_band=excited_band(spectra),
+        innovation_noise=None if noise is None else noise.reshape(shape),
     )
 
 
@@ -186,24 +212,6 @@ def excited_band(spectra: HitSpectra) -> tuple[float, float]:
     return float(frequency[max(first, 1)]), float(highest)
 
 
-def _average(
-    spectra: HitSpectra, pair: Pair
-) -> tuple[ComplexArray, FloatArray, FloatArray]:
-    """Return H1, coherence and variance of one pair of output and input."""
-    force = spectra.force[pair.hits]
-    response = spectra.response[pair.hits, pair.rows]
-    force_power = np.sum(np.abs(force) ** 2, axis=0)
-    force_power = np.maximum(force_power, 1e-24 * force_power.max())
-    response_power = np.sum(np.abs(response) ** 2, axis=0)
-    h1 = np.sum(response * force.conj(), axis=0) / force_power
-    scatter = np.sum(np.abs(response - h1 * force) ** 2, axis=0)
-    safe = np.where(response_power > 0.0, response_power, 1.0)
-    coherence = np.clip(1.0 - scatter / safe, 0.0, 1.0)
-    freedom = max(1, pair.hits.size - 1)
-    noise = uniform_filter1d(scatter, _SCATTER_LINES, mode="nearest") / freedom
-    return h1, coherence, noise / force_power
-
-
 def _stack(
     rows: Sequence[FloatArray], shape: tuple[int, int, int], averages: int
 ) -> FloatArray | None:
@@ -216,14 +224,28 @@ def _inherited(recordings: Sequence[Recording]) -> Provenance:
     return tuple(dict.fromkeys(s for r in recordings for s in r.provenance))
 
 
-def _record(spectra: HitSpectra, window: HammerWindow, averages: int) -> Step:
+def _record(
+    spectra: HitSpectra,
+    window: HammerWindow,
+    averages: int,
+    estimator: Estimator,
+    coherence: FloatArray | None,
+) -> Step:
+    bound: dict[str, float] = {}
+    if coherence is not None:
+        low, high = excited_band(spectra)
+        inside = (spectra.frequency >= low) & (spectra.frequency <= high)
+        apart = bias_bound(coherence[:, :, inside], averages)
+        bound["h1_below_h2_median"] = float(np.median(apart))
     return step(
         "estimate_frf",
-        estimator="H1",
+        estimator=estimator.value,
+        bias=estimator.bias,
         block=spectra.block,
         block_reason=spectra.block_reason,
         averages=averages,
         force_width=window.force_width or 0.0,
         decay_rate=window.decay_rate or 0.0,
         window_reason=window.reason,
+        **bound,
     )

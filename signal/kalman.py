@@ -47,10 +47,12 @@ __all__ = [
     "smooth_states",
     "stage_gain",
     "stage_gain_of",
+    "stage_noise_of",
     "state_model",
 ]
 
 _STEP = "kalman_stage"
+_NOISE = "noise_sd_"
 # The median of the square of a standard normal number.
 _MEDIAN_CHI2 = 0.45493642311957283
 
@@ -138,7 +140,7 @@ def smooth_recording(
         sample_rate=recording.sample_rate,
         all_channels=len(rows) == len(names),
         **{
-            f"noise_sd_{names[row]}": float(np.sqrt(variance))
+            f"{_NOISE}{names[row]}": float(np.sqrt(variance))
             for row, variance in zip(rows, noise, strict=True)
         },
     )
@@ -170,6 +172,25 @@ def stage_gain_of(provenance: Provenance, frequency: FloatArray) -> StageGain | 
             gain = stage_gain(settings, frequency, float(detail["sample_rate"]))
             return replace(gain, all_channels=bool(detail["all_channels"]))
     return None
+
+
+def stage_noise_of(provenance: Provenance) -> dict[str, float]:
+    """Return the noise that the Kalman stage saw in each channel.
+
+    Args:
+        provenance: of an FRF or of recordings.
+
+    Returns:
+        Standard deviation by channel name [sample unit], rms over stages; empty
+        without a stage.
+    """
+    seen: dict[str, list[float]] = {}
+    for done in provenance:
+        if done.name == _STEP:
+            for key, value in done.detail:
+                if key.startswith(_NOISE):
+                    seen.setdefault(key.removeprefix(_NOISE), []).append(float(value))
+    return {name: float(np.sqrt(np.mean(np.square(sds)))) for name, sds in seen.items()}
 
 
 def _parts(model: StateModel) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

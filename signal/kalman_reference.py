@@ -9,7 +9,7 @@ import numpy as np
 from filterpy.common import Q_discrete_white_noise
 from filterpy.kalman import KalmanFilter
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.signal.kalman_model import StateModel
 
 
@@ -19,13 +19,19 @@ def reference_process_noise() -> FloatArray:
 
 
 def reference_states(
-    model: StateModel, samples: FloatArray
+    model: StateModel,
+    samples: FloatArray,
+    *,
+    at_rest: bool = False,
+    lost: BoolArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Filter and smooth one channel sample by sample in filterpy.
 
     Args:
         model: from `kalman_model.state_model`.
         samples: shape (n_samples,).
+        at_rest: start from a state of zero instead of the first sample.
+        lost: True for samples to predict only, shape (n_samples,); None for none.
 
     Returns:
         Filtered and smoothed states, each of shape (n_samples, n).
@@ -37,11 +43,13 @@ def reference_states(
     kalman.Q = model.process.copy()
     kalman.R = np.eye(1)
     kalman.P = model.start.copy()
-    kalman.x = (samples[0] * model.observation)[:, None]
+    first = 0.0 if at_rest else samples[0]
+    kalman.x = (first * model.observation)[:, None]
+    gaps = np.zeros(samples.size, bool) if lost is None else lost
     states, covariances = [], []
-    for sample in samples:
+    for sample, gap in zip(samples, gaps, strict=True):
         kalman.predict()
-        kalman.update(np.array([[sample]]))
+        kalman.update(None if gap else np.array([[sample]]))
         states.append(kalman.x.copy())
         covariances.append(kalman.P.copy())
     smoothed, *_ = kalman.rts_smoother(np.array(states), np.array(covariances))

@@ -17,7 +17,7 @@ Two choices differ from the textbook and matter:
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,12 +25,18 @@ import scipy.fft
 import scipy.linalg
 from scipy.linalg import toeplitz
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.signal.matrix_roots import inverse_roots
 
 # Share of the circle left open between the ends of the band.
 _GAP = 0.05
 # Keeps the normal equations definite where clean data leave them singular.
 _RIDGE = 1e-14
+# Spectra transformed in one go: fast, and small beside the FRF itself.
+_SERIES_AT_ONCE = 128
+Progress = Callable[[str, float], None]
+"""Called with what is being done, and the share of it that is done [-]."""
+_TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +60,7 @@ class _Reduced:
 
     Attributes:
         factor: lower Cholesky factor of R, shape (n + 1, n + 1).
-        cross: factor^-1 S for each output, shape (n_outputs, n + 1, (n + 1) n_inputs).
+        cross: factor^-1 S for each output, shape (n + 1, n_outputs, (n + 1) n_inputs).
         square: sum of T over outputs, shape ((n + 1) n_inputs,) * 2.
         n_inputs: columns of A.
     """
@@ -95,7 +101,9 @@ def fit_poles(
     orders: Sequence[int],
     *,
     weight: FloatArray | None = None,
+    scalar: bool = False,
     added_decay_rate: float = 0.0,
+    progress: Progress | None = None,
 ) -> tuple[OrderPoles, ...]:
     """Fit poles of several orders at once.
 
@@ -103,8 +111,13 @@ def fit_poles(
         frequency: lines of the band [Hz], shape (n_lines,).
         response: FRF on them, any kind, shape (n_outputs, n_inputs, n_lines).
         orders: degrees, each at least 1; ascending.
-        weight: of each line [-], shape (n_lines,), or None for all alike.
+        weight: of each line [-], shape (n_lines,), or None for all alike (see
+            `line_weights`).
+        scalar: one denominator for all FRFs, each an output of its own: for many
+            inputs, or inputs that were not measured together. Close modes then share
+            the order with all others, and shapes have n_outputs n_inputs components.
         added_decay_rate: of the exponential window [1/s], taken off the poles.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         For each order the poles inside the band with positive damping.
@@ -113,66 +126,87 @@ def fit_poles(
         Peeters, Van der Auweraer, Guillaume and Leuridan, Shock and Vibration 11
         (2004) 395, eq. (9) to (19).
     """
+    if scalar:
+        response = response.reshape(-1, 1, frequency.size)
     circle = _Circle.around(frequency)
     largest = max(orders)
-    scale = np.sqrt(np.mean(np.abs(response) ** 2, axis=(1, 2), keepdims=True))
-    scaled = response / np.where(scale > 0.0, scale, 1.0)
+    scale = np.array([[[np.linalg.norm(r)]] for r in response])
+    scale /= math.sqrt(response[0].size)
     line_weight = np.ones_like(frequency) if weight is None else weight
-    reduced = _normal_equations(circle.angle(frequency), scaled, line_weight, largest)
-    band = (float(frequency[0]), float(frequency[-1]))
-    return tuple(
-        _order_poles(order, reduced, matrix, circle, band, added_decay_rate, scale)
-        for order, matrix in _nested(reduced, orders)
+    reduced = _normal_equations(
+        circle.angle(frequency),
+        response,
+        np.where(scale > 0.0, scale, 1.0),
+        line_weight,
+        largest,
+        progress,
     )
+    band = (float(frequency[0]), float(frequency[-1]))
+    found, inverse = [], None
+    for order, matrix in _nested(reduced, orders):
+        denominator = _denominator(matrix, reduced.n_inputs)
+        inverse = inverse_roots(denominator, inverse)
+        finite = np.where(np.abs(inverse) > _TINY, inverse, _TINY)
+        roots = np.asarray(1.0 / finite, np.complex128)
+        kept = _modes_among(circle.pole(roots) + added_decay_rate, band)
+        shape = _shapes(reduced, denominator, roots[kept]) * scale.ravel()
+        pole = circle.pole(roots[kept]) + added_decay_rate
+        found.append(OrderPoles(order, pole, _unit(shape)))
+        if progress is not None:
+            progress("finding poles", (order / largest) ** 2)
+    return tuple(found)
 
 
-def _order_poles(
-    order: int,
-    reduced: _Reduced,
-    matrix: ComplexArray,
-    circle: _Circle,
-    band: tuple[float, float],
-    added_decay_rate: float,
-    scale: ComplexArray,
-) -> OrderPoles:
-    """Solve one order and keep the poles that can be modes."""
-    denominator = _denominator(matrix, reduced.n_inputs)
-    roots = _roots(denominator)
-    pole = circle.pole(roots) + added_decay_rate
+def _modes_among(pole: ComplexArray, band: tuple[float, float]) -> IntArray:
+    """Return which poles can be modes, by ascending frequency."""
     frequency = pole.imag / (2.0 * np.pi)
     kept = (pole.real < 0.0) & (frequency >= band[0]) & (frequency <= band[1])
     kept &= np.abs(pole) <= 2.0 * np.pi * band[1]
     chosen = np.flatnonzero(kept)
-    chosen = chosen[np.argsort(frequency[chosen])]
-    shape = _shapes(reduced, denominator, roots[chosen]) * scale.ravel()
+    return np.asarray(chosen[np.argsort(frequency[chosen])])
+
+
+def _unit(shape: ComplexArray) -> ComplexArray:
+    """Return shapes of unit length, one a row."""
     length = np.linalg.norm(shape, axis=1, keepdims=True)
-    return OrderPoles(order, pole[chosen], shape / np.where(length > 0, length, 1.0))
+    return np.asarray(shape / np.where(length > 0, length, 1.0))
 
 
 def _normal_equations(
-    angle: FloatArray, response: ComplexArray, weight: FloatArray, order: int
+    angle: FloatArray,
+    response: ComplexArray,
+    scale: FloatArray,
+    weight: FloatArray,
+    order: int,
+    progress: Progress | None,
 ) -> _Reduced:
-    """Fill R, S and T and eliminate R."""
+    """Fill R, S and T, a few outputs at a time, and eliminate R."""
     n_outputs, n_inputs, n_lines = response.shape
     size = order + 1
-    inner = np.einsum("oil,ojl->ijl", response.conj(), response).reshape(-1, n_lines)
-    rows = (np.ones((1, n_lines), complex), response.reshape(-1, n_lines), inner)
-    moments = _moments(angle, np.asarray(np.concatenate(rows) * weight, complex), order)
-    factor = np.asarray(np.linalg.cholesky(_regular(_block(moments[0], size))))
-    n_frf = n_outputs * n_inputs
-    blocks = np.array([-_block(m, size) for m in moments[1 : n_frf + 1]])
-    blocks = blocks.reshape(n_outputs, n_inputs, size, size)
-    cross = blocks.transpose(2, 0, 3, 1).reshape(size, -1)
-    cross = scipy.linalg.solve_triangular(factor, cross, lower=True)
-    square = np.array([_block(m, size) for m in moments[n_frf + 1 :]])
+    plain = _moments(angle, weight[None].astype(complex), order)
+    factor = np.asarray(np.linalg.cholesky(_regular(_block(plain[0], size))))
+    inner = np.zeros((n_inputs, n_inputs, n_lines), complex)
+    cross = np.empty((size, n_outputs, size * n_inputs), complex)
+    chunk = max(1, _SERIES_AT_ONCE // n_inputs)
+    for first in range(0, n_outputs, chunk):
+        part = response[first : first + chunk] / scale[first : first + chunk]
+        inner += np.einsum("oil,ojl->ijl", part.conj(), part)
+        series = (part * weight).reshape(-1, n_lines)
+        blocks = np.array([-_block(m, size) for m in _moments(angle, series, order)])
+        blocks = blocks.reshape(-1, n_inputs, size, size).transpose(2, 0, 3, 1)
+        solved = scipy.linalg.solve_triangular(
+            factor, blocks.reshape(size, -1), lower=True
+        )
+        cross[:, first : first + chunk] = solved.reshape(size, -1, size * n_inputs)
+        if progress is not None:
+            progress("adding up FRFs", min(1.0, (first + chunk) / n_outputs))
+    moments = _moments(
+        angle, np.asarray(inner * weight, np.complex128).reshape(-1, n_lines), order
+    )
+    square = np.array([_block(m, size) for m in moments])
     square = square.reshape(n_inputs, n_inputs, size, size).transpose(2, 0, 3, 1)
     return _Reduced(
-        factor,
-        np.ascontiguousarray(
-            cross.reshape(size, n_outputs, size * n_inputs).transpose(1, 0, 2)
-        ),
-        square.reshape(size * n_inputs, size * n_inputs),
-        n_inputs,
+        factor, cross, square.reshape(size * n_inputs, size * n_inputs), n_inputs
     )
 
 
@@ -209,7 +243,7 @@ def _nested(
     wanted = set(orders)
     eliminated = np.zeros_like(reduced.square)
     for row in range(max(orders) + 1):
-        rows = reduced.cross[:, row]
+        rows = reduced.cross[row]
         eliminated += rows.conj().T @ rows
         if row in wanted:
             size = (row + 1) * reduced.n_inputs
@@ -225,33 +259,20 @@ def _denominator(matrix: ComplexArray, n_inputs: int) -> ComplexArray:
     return np.asarray(stacked.reshape(-1, n_inputs, n_inputs), np.complex128)
 
 
-def _roots(denominator: ComplexArray) -> ComplexArray:
-    """Return the roots of det A from the companion matrix of the reversed A."""
-    order, n_inputs = denominator.shape[0] - 1, denominator.shape[1]
-    companion = np.eye(order * n_inputs, k=n_inputs, dtype=complex)
-    last = -denominator[:0:-1].transpose(1, 0, 2).reshape(n_inputs, -1)
-    companion[-n_inputs:] = last
-    inverse = np.linalg.eigvals(companion)
-    tiny = np.finfo(float).tiny
-    return np.asarray(1.0 / np.where(np.abs(inverse) > tiny, inverse, tiny))
-
-
 def _shapes(
     reduced: _Reduced, denominator: ComplexArray, roots: ComplexArray
 ) -> ComplexArray:
     """Return B(z) v for each root z, where A(z) v = 0; shape (n_roots, n_outputs)."""
     size, n_inputs, _ = denominator.shape
-    n_outputs = reduced.cross.shape[0]
+    n_outputs = reduced.cross.shape[1]
     if roots.size == 0 or n_outputs == 1:
         return np.ones((roots.size, n_outputs), complex)
     powers = roots[:, None] ** np.arange(size)
     null = np.linalg.svd(np.einsum("rk,kij->rij", powers, denominator))[2][:, -1].conj()
-    moved = reduced.cross[:, :size, : size * n_inputs] @ denominator.reshape(
+    moved = reduced.cross[:size, :, : size * n_inputs] @ denominator.reshape(
         -1, n_inputs
     )
     numerator = -scipy.linalg.solve_triangular(
-        reduced.factor[:size, :size].conj().T,
-        moved.transpose(1, 0, 2).reshape(size, -1),
-        lower=False,
+        reduced.factor[:size, :size].conj().T, moved.reshape(size, -1), lower=False
     ).reshape(size, n_outputs, n_inputs)
     return np.asarray(np.einsum("rk,koi,ri->ro", powers, numerator, null))

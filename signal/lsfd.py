@@ -14,10 +14,9 @@ above. Two terms only, as the textbooks have it, let strong modes beyond the ban
 the damping of those within.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.linalg
 
 from jointbench.acquisition.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.signal.frf import Frf
@@ -25,6 +24,10 @@ from jointbench.signal.frf import Frf
 # Powers of s of the residual terms, beside the derivative of the FRF's kind.
 _RESIDUAL_POWERS = (-2, -1, 0, 1, 2, 3, 4, 5, 6)
 _RIDGE = 1e-13
+# Up to here the products of columns cost more than they save.
+_FEW_FRFS = 8
+# Products of columns are formed for this many lines at a time, to stay in the cache.
+_LINES_AT_ONCE = 512
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,7 +52,7 @@ class LinearFit:
 
     Attributes:
         coefficients: Re and Im of each residue, pole by pole, then the residual terms,
-            shape (n_frf, 2 n_modes + 9).
+            shape (n_frf, 2 n_modes + 9); residual terms on orthonormal columns.
         synthesis: the fitted FRF, shape (n_frf, n_lines).
         significance: chi-squared lost if a mode were left out, summed over FRFs,
             shape (n_modes,).
@@ -59,10 +62,54 @@ class LinearFit:
     synthesis: ComplexArray
     significance: FloatArray
 
+    def of_modes(self, n_modes: int) -> "LinearFit":
+        """Return the same fit with only its first poles counted as modes."""
+        return replace(self, significance=self.significance[:n_modes])
+
     def residues(self) -> ComplexArray:
         """Return receptance residues, shape (n_modes, n_frf)."""
         modal = self.coefficients[:, : 2 * self.significance.size]
         return np.asarray((modal[:, ::2] + 1j * modal[:, 1::2]).T)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ResidualTerms:
+    """What lies below and above the band, as seen in it.
+
+    Attributes:
+        lower: of the receptance, lower / s^2 [1/kg]: one over the mass that modes
+            below the band, or a free body, put in; shape (n_frf,).
+        upper: of the receptance [m/N]: the compliance of the modes above, shape
+            (n_frf,).
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+
+
+def residual_terms(lines: Lines, fit: LinearFit) -> ResidualTerms:
+    """Return the lower and upper residual of every FRF.
+
+    Args:
+        lines: what was fitted.
+        fit: of `fit_residues`.
+
+    Returns:
+        The two classical terms; the further powers of s that the fit carries beside
+        them are left out.
+    """
+    n_modal = 2 * fit.significance.size
+    s = lines.laplace
+    used = _residual_terms(s, s**lines.derivatives)
+    parts = fit.coefficients[:, n_modal:] @ used.T
+    scale = np.abs(s[s.size // 2])
+    powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
+    # The fit has these columns made orthogonal to each other: taken apart again here.
+    columns = stacked(powers * (s**lines.derivatives)[:, None])
+    size = np.linalg.norm(columns, axis=0)
+    terms = np.linalg.lstsq(columns / size, stacked(parts.T), rcond=None)[0].T / size
+    lower = terms[:, _RESIDUAL_POWERS.index(-2)] * scale**2
+    return ResidualTerms(lower, terms[:, _RESIDUAL_POWERS.index(0)])
 
 
 def measured_width(lines: Lines, pole: ComplexArray) -> FloatArray:
@@ -103,11 +150,21 @@ def modal_basis(lines: Lines, pole: ComplexArray) -> ComplexArray:
     columns = np.empty((s.size, modal_size(pole)), complex)
     columns[:, 0 : 2 * pole.size : 2] = own + mirrored
     columns[:, 1 : 2 * pole.size : 2] = 1j * (own - mirrored)
-    # Scaled to the middle of the band, so that all columns are of one size.
+    power = s**lines.derivatives
+    columns[:, : 2 * pole.size] *= power[:, None]
+    columns[:, 2 * pole.size :] = _residual_terms(s, power)
+    return columns
+
+
+def _residual_terms(s: ComplexArray, power: ComplexArray) -> ComplexArray:
+    """Return columns that span the residual terms, orthonormal over the lines.
+
+    Powers of s as they stand are nearly one another's multiples.
+    """
     scale = np.abs(s[s.size // 2])
-    for i, power in enumerate(_RESIDUAL_POWERS):
-        columns[:, 2 * pole.size + i] = (s / scale) ** power
-    return np.asarray(columns * (s**lines.derivatives)[:, None])
+    terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
+    rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
+    return unstacked(np.linalg.qr(rows)[0])
 
 
 def modal_size(pole: ComplexArray) -> int:
@@ -126,30 +183,21 @@ def unstacked(rows: FloatArray) -> ComplexArray:
     return np.asarray(rows[:half] + 1j * rows[half:])
 
 
-def solve_gram(gram: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Solve normal equations after scaling them to a unit diagonal.
-
-    Args:
-        gram: symmetric, shape (n, n).
-        right: shape (n,) or (n, k).
-
-    Returns:
-        The solution, shaped as `right`, and the inverse of `gram`.
-    """
-    diagonal = np.sqrt(np.diag(gram))
-    scale = 1.0 / np.where(diagonal > 0.0, diagonal, 1.0)
-    scaled = gram * np.outer(scale, scale) + _RIDGE * np.eye(scale.size)
-    inverse = scipy.linalg.pinvh(scaled) * np.outer(scale, scale)
-    return inverse @ right, inverse
-
-
-def fit_residues(lines: Lines, pole: ComplexArray, variance: FloatArray) -> LinearFit:
+def fit_residues(
+    lines: Lines,
+    pole: ComplexArray,
+    variance: FloatArray,
+    *,
+    real_modes: bool = False,
+) -> LinearFit:
     """Fit residues and residual terms to every FRF.
 
     Args:
         lines: what is fitted.
         pole: [rad/s], shape (n_modes,).
         variance: E|error|^2 of each line, shape (n_frf, n_lines).
+        real_modes: residues purely imaginary, as those of a proportionally damped
+            structure are: half the unknowns, and a bias where damping is not so.
 
     Returns:
         The fit, its synthesis on the same lines, and the weight of each mode in it.
@@ -158,22 +206,80 @@ def fit_residues(lines: Lines, pole: ComplexArray, variance: FloatArray) -> Line
         Heylen, Lammens and Sas, Modal Analysis Theory and Testing (1997), A.3.3.
     """
     basis = modal_basis(lines, pole)
-    columns = stacked(basis)
-    coefficients = np.empty((lines.response.shape[0], basis.shape[1]))
-    significance = np.zeros(pole.size)
-    for i, (response, noise) in enumerate(zip(lines.response, variance, strict=True)):
-        weight = np.tile(np.sqrt(2.0 / noise), 2)
-        weighted = columns * weight[:, None]
-        right = weighted.T @ (stacked(response) * weight)
-        coefficients[i], inverse = solve_gram(weighted.T @ weighted, right)
-        significance += _wald(coefficients[i], inverse, pole.size)
+    weight = 2.0 / variance
+    used = np.ones(basis.shape[1], bool)
+    if real_modes:
+        used[: 2 * pole.size : 2] = False
+    some = np.ascontiguousarray(basis[:, used])
+    solved = inverses(gram_matrices(some, weight))
+    right = correlations(some, weight * lines.response)
+    n_frf, size = variance.shape[0], basis.shape[1]
+    coefficients, inverse = (
+        np.zeros((n_frf, size)),
+        np.tile(np.eye(size), (n_frf, 1, 1)),
+    )
+    coefficients[:, used] = (solved @ right[:, :, None])[:, :, 0]
+    inverse[np.ix_(np.arange(n_frf), used, used)] = solved
+    significance = _wald(coefficients, inverse, pole.size)
     return LinearFit(coefficients, coefficients @ basis.T, significance)
 
 
+def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
+    """Return Re(columns^H diag(weight) columns) for all rows of weights.
+
+    With many rows, each product of two columns serves them all.
+
+    Args:
+        columns: shape (n_lines, n).
+        weight: shape (n_frf, n_lines).
+
+    Returns:
+        Shape (n_frf, n, n).
+    """
+    if weight.shape[0] <= _FEW_FRFS:
+        rows = stacked(columns)
+        scaled = (rows * np.sqrt(np.tile(w, 2))[:, None] for w in weight)
+        return np.array([part.T @ part for part in scaled])
+    size = columns.shape[1]
+    upper = np.triu_indices(size)
+    packed = np.zeros((weight.shape[0], upper[0].size))
+    for first in range(0, columns.shape[0], _LINES_AT_ONCE):
+        part = np.ascontiguousarray(columns[first : first + _LINES_AT_ONCE].T)
+        real, imag = part.real.copy(), part.imag.copy()
+        pairs = [real[i] * real[i:] + imag[i] * imag[i:] for i in range(size)]
+        packed += weight[:, first : first + part.shape[1]] @ np.vstack(pairs).T
+    gram = np.empty((weight.shape[0], size, size))
+    gram[:, upper[0], upper[1]] = gram[:, upper[1], upper[0]] = packed
+    return gram
+
+
+def correlations(columns: ComplexArray, values: ComplexArray) -> FloatArray:
+    """Return Re(columns^H values) row by row, shape (n_frf, n)."""
+    return np.asarray((values @ columns.conj()).real)
+
+
+def inverses(gram: FloatArray) -> FloatArray:
+    """Invert Gram matrices after scaling them to a unit diagonal.
+
+    Args:
+        gram: symmetric, shape (..., n, n).
+
+    Returns:
+        Same shape.
+    """
+    # Rounding can leave the square of next to nothing below zero.
+    diagonal = np.sqrt(np.maximum(np.einsum("...ii->...i", gram), 0.0))
+    scale = 1.0 / np.where(diagonal > 0.0, diagonal, 1.0)
+    outer = scale[..., :, None] * scale[..., None, :]
+    return np.asarray(
+        np.linalg.inv(gram * outer + _RIDGE * np.eye(gram.shape[-1])) * outer
+    )
+
+
 def _wald(coefficients: FloatArray, inverse: FloatArray, n_modes: int) -> FloatArray:
-    """Return the chi-squared of each residue against zero, shape (n_modes,)."""
-    pairs = coefficients[: 2 * n_modes].reshape(n_modes, 2)
+    """Return the chi-squared of each residue against zero, summed over FRFs."""
+    pairs = coefficients[:, : 2 * n_modes].reshape(coefficients.shape[0], n_modes, 2)
     index = np.arange(2 * n_modes).reshape(n_modes, 2)
-    blocks = inverse[index[:, :, None], index[:, None, :]]
-    solved = np.linalg.solve(blocks, pairs[:, :, None])[:, :, 0]
-    return np.asarray(np.sum(pairs * solved, axis=1))
+    blocks = inverse[:, index[:, :, None], index[:, None, :]]
+    solved = np.linalg.solve(blocks, pairs[..., None])[..., 0]
+    return np.asarray(np.sum(pairs * solved, axis=(0, 2)))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from jointbench.acquisition.arrays import (
+    BoolArray,
     ComplexArray,
     FloatArray,
     IntArray,
@@ -15,8 +16,12 @@ from jointbench.acquisition.arrays import (
 )
 from jointbench.acquisition.records import Provenance
 from jointbench.signal.frf import Frf
+from jointbench.signal.residue_covariance import residue_uncertainty
 from jointbench.signal.selection import FittedModes
 from jointbench.signal.stabilisation import Candidate
+
+# Interval twice as wide as noise alone would make it.
+_SYSTEMATIC = 4.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,12 +35,18 @@ class ModalModel:
         damping_ratio_sd: its standard uncertainty [-], shape (n_modes,).
         residues: of the receptance, whatever was measured [m/(N s)], shape
             (n_modes, n_outputs, n_inputs).
+        residues_sd: standard uncertainty of their real part and, as imaginary part, of
+            their imaginary part, same shape.
         shapes: response of each output, largest component real and 1, shape
             (n_modes, n_outputs).
+        shapes_sd: standard uncertainty of real and imaginary part, likewise.
         participation: residue of that largest component from each input [m/(N s)],
             shape (n_modes, n_inputs).
         significance: chi-squared lost if the mode were left out [-], shape (n_modes,).
+        misfit: residual around each mode over its noise [-]: 1 where noise is all
+            there is, shape (n_modes,).
         stable_orders: at how many orders it was stable, shape (n_modes,).
+        by_hand: True for a mode that a person insisted on, shape (n_modes,).
         outputs: labels of the outputs.
         inputs: labels of the inputs.
         provenance: how it came about.
@@ -46,10 +57,14 @@ class ModalModel:
     damping_ratio: FloatArray
     damping_ratio_sd: FloatArray
     residues: ComplexArray
+    residues_sd: ComplexArray
     shapes: ComplexArray
+    shapes_sd: ComplexArray
     participation: ComplexArray
     significance: FloatArray
+    misfit: FloatArray
     stable_orders: IntArray
+    by_hand: BoolArray
     outputs: tuple[str, ...]
     inputs: tuple[str, ...]
     provenance: Provenance = field(default=())
@@ -66,14 +81,27 @@ class ModalModel:
             ("damping_ratio", (n_modes,)),
             ("damping_ratio_sd", (n_modes,)),
             ("residues", (n_modes, n_outputs, n_inputs)),
+            ("residues_sd", (n_modes, n_outputs, n_inputs)),
             ("shapes", (n_modes, n_outputs)),
+            ("shapes_sd", (n_modes, n_outputs)),
             ("participation", (n_modes, n_inputs)),
             ("significance", (n_modes,)),
+            ("misfit", (n_modes,)),
             ("stable_orders", (n_modes,)),
+            ("by_hand", (n_modes,)),
         ):
             require_shape(name, getattr(self, name), shape)
             freeze(self, name)
         freeze(self, "natural_frequency")
+
+    @property
+    def systematic(self) -> BoolArray:
+        """True where misfit, not noise, makes most of the interval, shape (n_modes,).
+
+        The model is not quite right there: leakage, a neighbour left out, a structure
+        that is not linear. More averages would not narrow the interval.
+        """
+        return np.asarray(self.misfit > _SYSTEMATIC)
 
     @property
     def poles(self) -> ComplexArray:
@@ -105,7 +133,9 @@ def build_model(
     chosen = [found[i] for i in fitted.chosen[by_frequency]]
     frequency_sd, damping_sd = _uncertainty(fitted, [found[i] for i in fitted.chosen])
     shape = (pole.size, len(frf.outputs), len(frf.inputs))
-    residues = fitted.fit.residues().reshape(shape)[by_frequency]
+    residues = fitted.fit.residues().reshape(shape)
+    residues_sd, shapes_sd = residue_uncertainty(fitted.poles, residues)
+    residues = residues[by_frequency]
     shapes, participation = split_residues(residues)
     ordered = pole[by_frequency]
     return ModalModel(
@@ -114,10 +144,14 @@ def build_model(
         damping_ratio=-ordered.real / np.abs(ordered),
         damping_ratio_sd=damping_sd[by_frequency],
         residues=residues,
+        residues_sd=residues_sd[by_frequency],
         shapes=shapes,
+        shapes_sd=shapes_sd[by_frequency],
         participation=participation,
         significance=fitted.significance[by_frequency],
+        misfit=fitted.misfit[by_frequency],
         stable_orders=np.array([c.stable_orders for c in chosen], np.int64),
+        by_hand=np.array([c.by_hand for c in chosen], bool),
         outputs=frf.outputs,
         inputs=frf.inputs,
         provenance=provenance,

@@ -9,10 +9,12 @@ from jointbench.acquisition.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.errors import NoModeFound, UsageError
 from jointbench.acquisition.records import Step, step
 from jointbench.signal.band import choose_band
+from jointbench.signal.choices import Choices, overrule
 from jointbench.signal.frf import Frf
 from jointbench.signal.kalman import stage_gain_of
 from jointbench.signal.kalman_model import StageGain
-from jointbench.signal.lscf import fit_poles
+from jointbench.signal.line_weights import weights_of
+from jointbench.signal.lscf import Progress, fit_poles
 from jointbench.signal.lsfd import Lines, lines_of
 from jointbench.signal.modal_model import ModalModel, build_model
 from jointbench.signal.selection import FittedModes, fit_modes
@@ -42,12 +44,14 @@ class ModalSettings:
         highest_order: of the fit, 2 or more, or None for 100 over the number of inputs.
         stability: when a pole counts as stable.
         refine: whether poles are refined by nonlinear least squares.
+        choices: poles kept or dropped by hand.
     """
 
     band: tuple[float, float] | None = None
     highest_order: int | None = None
     stability: StabilityLimits = field(default_factory=StabilityLimits)
     refine: bool = True
+    choices: Choices = field(default_factory=Choices)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +82,12 @@ class ModalResult:
         freeze(self, "synthesis_error")
 
 
-def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResult:
+def identify_modes(
+    frf: Frf,
+    settings: ModalSettings | None = None,
+    *,
+    progress: Progress | None = None,
+) -> ModalResult:
     """Identify the modes of an FRF without being told where they are.
 
     Poles of all orders (LSCF), those that keep still (stabilisation), those that the
@@ -94,6 +103,7 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
     Args:
         frf: any kind, any number of outputs and inputs.
         settings: see `ModalSettings`; None for the defaults.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         The modal model with the evidence for it.
@@ -106,24 +116,26 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
     settings = settings or ModalSettings()
     _require_alive(frf)
     keep, reason = choose_band(frf, settings.band)
-    orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
-    poles = fit_poles(
-        frf.frequency[keep],
-        frf.response[:, :, keep],
-        orders,
-        added_decay_rate=frf.added_decay_rate,
-    )
-    table = stabilise(poles, settings.stability)
+    table, weighed = _stabilisation(frf, keep, settings, progress)
     found = candidates(table, settings.stability)
+    found = overrule(found, table, settings.choices)
     lines = lines_of(frf, keep)
     start = np.array([c.pole for c in found], complex)
-    fitted = fit_modes(lines, start, _scatter(frf, keep), refine=settings.refine)
+    fitted = fit_modes(
+        lines,
+        start,
+        _scatter(frf, keep),
+        held=np.array([c.by_hand for c in found], bool),
+        refine=settings.refine,
+        progress=progress,
+    )
     if fitted.chosen.size == 0:
         raise NoModeFound(
             f"none of {start.size} stable poles rises above the noise, orders "
-            f"{orders[0]} to {orders[-1]}, {reason}; give another band or more hits"
+            f"{table.orders[0]} to {table.orders[-1]}, {reason}; give another band or "
+            "more hits"
         )
-    done = _record(reason, orders, start.size, fitted)
+    done = _record(reason, weighed, table, start.size, fitted, settings.choices)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
     return ModalResult(
         model=model,
@@ -134,6 +146,23 @@ def identify_modes(frf: Frf, settings: ModalSettings | None = None) -> ModalResu
         band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
         stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
     )
+
+
+def _stabilisation(
+    frf: Frf, keep: BoolArray, settings: ModalSettings, progress: Progress | None
+) -> tuple[Stabilisation, str]:
+    """Return the poles of all orders, and what their lines were weighed by."""
+    orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
+    weight, source = weights_of(frf, keep)
+    poles = fit_poles(
+        frf.frequency[keep],
+        frf.response[:, :, keep],
+        orders,
+        weight=weight,
+        added_decay_rate=frf.added_decay_rate,
+        progress=progress,
+    )
+    return stabilise(poles, settings.stability), source
 
 
 def orders_to_try(
@@ -181,16 +210,25 @@ def _require_alive(frf: Frf) -> None:
 
 
 def _record(
-    band: str, orders: tuple[int, ...], candidates_found: int, fitted: FittedModes
+    band: str,
+    weights: str,
+    table: Stabilisation,
+    candidates_found: int,
+    fitted: FittedModes,
+    choices: Choices,
 ) -> Step:
     return step(
         "identify_modes",
         band=band,
-        highest_order=orders[-1],
+        line_weights=weights,
+        highest_order=int(table.orders[-1]),
         candidates=candidates_found,
         modes=fitted.chosen.size,
         model_error=fitted.model_error,
         unrefined=int(np.count_nonzero(~fitted.poles.converged)),
+        beyond_band=fitted.poles.beyond.size,
+        kept_by_hand=", ".join(f"{f:g} Hz" for f in choices.keep) or "none",
+        dropped_by_hand=", ".join(f"{f:g} Hz" for f in choices.drop) or "none",
     )
 
 
@@ -210,6 +248,7 @@ def _synthesis(frf: Frf, keep: BoolArray, fitted: FittedModes) -> Frf:
         frequency=frf.frequency[keep],
         response=fitted.fit.synthesis.reshape(shape),
         coherence=None,
+        innovation_noise=None,
         variance=fitted.variance.reshape(shape),
         provenance=(*frf.provenance, step("synthesis")),
     )

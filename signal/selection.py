@@ -12,14 +12,17 @@ import numpy as np
 import scipy.stats
 
 from jointbench.acquisition.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from jointbench.signal.beyond import find_beyond
 from jointbench.signal.line_noise import (
     line_noise,
     local_level,
     local_misfit,
     model_error,
 )
+from jointbench.signal.lscf import Progress
 from jointbench.signal.lsfd import LinearFit, Lines, fit_residues, measured_width
-from jointbench.signal.refine import RefinedPoles, refine_poles
+from jointbench.signal.misfit import misfit_around
+from jointbench.signal.refine import RefinedPoles, refine_poles, unresolved
 
 # Relative model error taken for granted before a fit has shown its own [-].
 _FIRST_MODEL_ERROR = 0.02
@@ -43,6 +46,7 @@ class FittedModes:
         significance: chi-squared lost without each mode, by the misfit around it,
             shape (n_modes,).
         model_error: of the fit, as a share of the local level [-].
+        misfit: residual around each mode over noise alone [-], shape (n_modes,).
     """
 
     chosen: IntArray
@@ -51,6 +55,7 @@ class FittedModes:
     variance: FloatArray
     significance: FloatArray
     model_error: float
+    misfit: FloatArray
 
 
 def fit_modes(
@@ -58,7 +63,9 @@ def fit_modes(
     candidates: ComplexArray,
     scatter: FloatArray | None,
     *,
+    held: BoolArray | None = None,
     refine: bool = True,
+    progress: Progress | None = None,
 ) -> FittedModes:
     """Refine candidate poles and keep those that the FRF needs.
 
@@ -69,36 +76,95 @@ def fit_modes(
         lines: what is fitted.
         candidates: poles [rad/s], shape (n_candidates,).
         scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
+        held: True for candidates that stay whatever the FRF says, shape
+            (n_candidates,), or None.
         refine: False keeps the poles where LSCF put them.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         The modes, possibly none.
     """
     noise, level = line_noise(lines.response, scatter), local_level(lines.response)
     variance = noise + _FIRST_MODEL_ERROR**2 * level
-    chosen = _needed(lines, candidates, noise, variance)
     steps = _STEPS if refine else 0
-    poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
-    fit = fit_residues(lines, poles.pole, variance)
-    error = model_error(lines.response - fit.synthesis, noise, lines.response)
+    held = np.zeros(candidates.size, bool) if held is None else held
+    tell = progress or _nobody
+    tell("refining modes", 0.0)
+    chosen, poles = _first_fit(lines, candidates, held, noise, variance, steps)
+    tell("refining modes", 0.4)
+    # The response itself is rough where it resonates; what a fit leaves is not.
+    noise = line_noise(lines.response, scatter, poles.residual)
+    beyond = poles.beyond
+    if refine:
+        beyond = find_beyond(lines, poles.pole, beyond, poles.residual, noise, variance)
+    residual = (
+        poles.residual
+        if beyond.size == poles.beyond.size
+        else refine_poles(lines, poles.pole, variance, beyond=beyond, steps=0).residual
+    )
+    error = model_error(residual, noise, lines.response)
     variance = noise + error**2 * level
-    kept = _needed(lines, poles.pole, noise, variance)
+    kept = _needed(lines, poles.pole, held[chosen], noise, variance, beyond)
+    tell("refining modes", 0.7)
     while True:
         chosen = chosen[kept]
         poles = refine_poles(
             lines,
             candidates[chosen],
             variance,
+            beyond=beyond,
             doubt=poles.inflation[kept],
             begin=poles.pole[kept],
             steps=steps,
         )
-        fit = fit_residues(lines, poles.pole, variance)
-        significance = _significance(lines, fit, poles.pole, noise)
-        vague = _vague(lines, poles, significance)
-        if not vague.any():
-            return FittedModes(chosen, poles, fit, variance, significance, error)
-        kept = np.flatnonzero(~vague)
+        beyond = poles.beyond
+        fit = fit_residues(lines, np.append(poles.pole, beyond), variance)
+        significance = _significance(lines, fit, poles.pole, noise, beyond)
+        aside = unresolved(lines, poles.pole) & ~held[chosen]
+        bad = (_vague(lines, poles, significance) & ~held[chosen]) | aside
+        if not bad.any():
+            tell("refining modes", 1.0)
+            return FittedModes(
+                chosen,
+                poles,
+                fit.of_modes(chosen.size),
+                variance,
+                significance,
+                error,
+                misfit_around(lines, poles.pole, poles.residual, noise),
+            )
+        beyond = np.append(beyond, poles.pole[aside])
+        kept = np.flatnonzero(~bad)
+
+
+def _nobody(what: str, share: float) -> None:
+    """Tell no one."""
+
+
+def _first_fit(
+    lines: Lines,
+    candidates: ComplexArray,
+    held: BoolArray,
+    noise: FloatArray,
+    variance: FloatArray,
+    steps: int,
+) -> tuple[IntArray, RefinedPoles]:
+    """Refine what is needed; poles that end beyond the band become computational."""
+    none = np.empty(0, complex)
+    chosen = _needed(lines, candidates, held, noise, variance, none)
+    poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
+    aside = unresolved(lines, poles.pole) & ~held[chosen]
+    if not aside.any() or steps == 0:
+        return chosen, poles
+    left = refine_poles(
+        lines,
+        candidates[chosen[~aside]],
+        variance,
+        beyond=poles.pole[aside],
+        begin=poles.pole[~aside],
+        steps=steps,
+    )
+    return chosen[~aside], left
 
 
 def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolArray:
@@ -120,30 +186,41 @@ def _vague(lines: Lines, poles: RefinedPoles, significance: FloatArray) -> BoolA
 
 
 def _needed(
-    lines: Lines, pole: ComplexArray, noise: FloatArray, variance: FloatArray
+    lines: Lines,
+    pole: ComplexArray,
+    held: BoolArray,
+    noise: FloatArray,
+    variance: FloatArray,
+    beyond: ComplexArray,
 ) -> IntArray:
     """Drop the least needed pole until all that are left are needed; return indices."""
     left = np.arange(pole.size)
     chance = _CHANCE / lines.laplace.size
     limit = float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
     while left.size:
-        fit = fit_residues(lines, pole[left], variance)
-        significance = _significance(lines, fit, pole[left], noise)
-        weak: BoolArray = significance < limit
+        fit = fit_residues(lines, np.append(pole[left], beyond), variance)
+        significance = _significance(lines, fit, pole[left], noise, beyond)
+        weak: BoolArray = (significance < limit) & ~held[left]
         if not weak.any():
             break
         # Weak ones may stand in for each other: only the weakest goes, unless hopeless.
-        weak &= significance <= max(0.1 * limit, float(significance.min()))
+        weak &= significance <= max(0.1 * limit, float(significance[weak].min()))
         left = left[~weak]
     return left
 
 
 def _significance(
-    lines: Lines, fit: LinearFit, pole: ComplexArray, noise: FloatArray
+    lines: Lines,
+    fit: LinearFit,
+    pole: ComplexArray,
+    noise: FloatArray,
+    beyond: ComplexArray,
 ) -> FloatArray:
     """Judge each mode by the noise or by the misfit around it, whichever is more."""
     misfit = local_misfit(lines.response - fit.synthesis)
-    apparent = fit_residues(lines, pole, np.maximum(noise, misfit)).significance
+    everything = np.append(pole, beyond)
+    judged = fit_residues(lines, everything, np.maximum(noise, misfit))
+    apparent = np.nan_to_num(judged.significance[: pole.size])
     return np.asarray(apparent / _window_gain(lines, pole))
 
 

@@ -19,6 +19,9 @@ _QUADRATURE_NODES = 96
 _QUADRATURE_LAGS = 60.0
 """Lag beyond which a cosine over the band averages out [samples]; the nodes follow
 it up to there."""
+_ROUNDING_TERMS = 6
+_WITHIN_ONE_STEP = 0.05
+"""S over the square of the step below which no difference exceeds one step [-]."""
 _FRACTION_TERMS = 60
 """Depth of the continued fraction; gives twelve digits from pi upwards [-]."""
 
@@ -58,6 +61,7 @@ class SeenSurface:
             around on an isotropic map.
         band_limited: whether wavelengths under two samples are cut off sharply.
         corner: lag at which the surface stops to grow rougher [samples].
+        quantum: step in which the heights are read; 0 for none.
     """
 
     exponent: float
@@ -67,6 +71,7 @@ class SeenSurface:
     axes: int = 1
     band_limited: bool = False
     corner: float = np.inf
+    quantum: float = 0.0
 
     def surface(self, lag: FloatArray) -> FloatArray:
         """Return the power law of the surface itself at lags [samples]."""
@@ -89,7 +94,31 @@ class SeenSurface:
         if np.isfinite(self.corner):
             shape = rolled_off(shape, self.corner**self.exponent)
         seen: FloatArray = self.amplitude * shape + np.where(lag > 0, 2 * self.noise, 0)
-        return seen
+        return rounded(seen, self.quantum) if self.quantum > 0 else seen
+
+
+def rounded(value: FloatArray, quantum: float) -> FloatArray:
+    """Return the structure function of heights that are read in steps.
+
+    A Gaussian difference d of heights whose place between two steps is random turns
+    into a whole number of steps with the mean square d^2 + q^2 f (1 - f), f being the
+    fraction of |d| / q; the mean of f (1 - f) is a Fourier series.
+
+    Args:
+        value: S of the heights before [m^2], any shape.
+        quantum: the step q [m], above 0.
+
+    Source:
+        Widrow and Kollar, Quantization Noise (2008), sec. 4 (characteristic function
+        of a quantised Gaussian).
+    """
+    share = np.maximum(value, 0.0) / quantum**2
+    order = np.arange(1.0, _ROUNDING_TERMS + 1)
+    decay = np.exp(-2 * np.pi**2 * np.multiply.outer(share, order**2))
+    fraction = 1 / 6 - np.sum(decay / (np.pi * order) ** 2, axis=-1)
+    near = np.sqrt(2 * share / np.pi) - share  # all differences within one step
+    added: FloatArray = np.where(share < _WITHIN_ONE_STEP, near, fraction)
+    return value + quantum**2 * added
 
 
 def rolled_off(shape: FloatArray, ceiling: float) -> FloatArray:

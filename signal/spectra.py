@@ -89,7 +89,7 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
         raise NoHitFound(_why_none(recordings))
     rate = _common_rate(recordings)
     block, reason = choose_block([hit.stop - hit.start for _, hit in chosen])
-    windowed = [_windowed(r, hit, window, block) for r, hit in chosen]
+    windowed = [windowed_hit(r, hit, window, block) for r, hit in chosen]
     responses = _same_number([w[1] for w in windowed])
     channels = [c for r in recordings for c in r.channels]
     return HitSpectra(
@@ -203,10 +203,20 @@ def _pair(spectra: HitSpectra, output: str, point: str) -> Pair:
     return Pair(np.array(hits), np.array(rows))
 
 
-def _windowed(
+def windowed_hit(
     recording: Recording, hit: Hit, window: HammerWindow, block: int
 ) -> tuple[FloatArray, FloatArray]:
-    """Return force and responses of a hit, windowed and of the block's length."""
+    """Cut a hit out of its recording and window it.
+
+    Args:
+        recording: holds the hit.
+        hit: which.
+        window: to apply.
+        block: samples wanted; a shorter hit is padded with zeros.
+
+    Returns:
+        Force, shape (block,), and responses, shape (n_responses, block).
+    """
     stop = min(hit.stop, hit.start + block)
     samples = recording.samples[:, hit.start : stop]
     force, response = apply_window(

@@ -110,12 +110,14 @@ class Candidate:
         scatter: sd of frequency [Hz] and of damping ratio [-] over those orders.
         stable_orders: how many orders it was stable at.
         track: its number in the table.
+        by_hand: True if a person insisted on it.
     """
 
     pole: complex
     scatter: tuple[float, float]
     stable_orders: int
     track: int
+    by_hand: bool = False
 
 
 @dataclass(slots=True)

@@ -19,10 +19,11 @@ from jointbench.acquisition.arrays import (
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Provenance, step
 from jointbench.acquisition.surfaces import Profile, Surface
+from jointbench.signal.height_step import height_step
 from jointbench.signal.lay import stretch_across
 from jointbench.signal.preparation import SurfaceTooSmall, level
 
-LAG_COUNT = 45
+LAG_COUNT = 55
 """Logarithmic lags asked for by default; equal integers fall together [-]."""
 LARGEST_LAG_SHARE = 1 / 3
 """Largest default lag as a share of the length of a profile [-]."""
@@ -30,6 +31,7 @@ MOST_BLOCKS = 16
 """Strips of neighbouring rows whose scatter checks the stated uncertainty [-]."""
 
 Direction = Literal["x", "y"]
+Removal = Literal["line", "mean"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +43,8 @@ class Sampling:
         profiles: parallel profiles averaged.
         spacing: distance of neighbours along the profiles [m].
         row_distance: distance of neighbouring profiles, stretched by the lay so
-            that heights differ across it as they do along the profiles [m].
+            that heights differ across it as they do along the profiles [m]; infinite
+            where the profiles are unrelated and each was levelled by itself.
         share: part of S that this face contributes [-].
         pairs: pairs of measured points at each lag, shape (n_lags,).
         blocks: S of strips of neighbouring profiles [m^2], shape (n_blocks, n_lags);
@@ -73,6 +76,7 @@ class StructureFunction:
         kurtosis: fourth moment of the differences over S squared, same shape [-];
             3 where the heights are Gaussian.
         faces: how each contributing face was sampled.
+        quantum: step in which the heights were read [m]; 0 for none.
         provenance: how the values came about.
     """
 
@@ -81,6 +85,7 @@ class StructureFunction:
     value: FloatArray
     kurtosis: FloatArray
     faces: tuple[Sampling, ...]
+    quantum: float = 0.0
     provenance: Provenance = field(default=())
 
     def __post_init__(self) -> None:
@@ -112,6 +117,11 @@ class StructureFunction:
         """Parallel profiles, of the face with the fewest."""
         return min(face.profiles for face in self.faces)
 
+    @property
+    def separate(self) -> bool:
+        """Whether every profile was levelled by itself, not as part of a map."""
+        return all(f.profiles == 1 or np.isinf(f.row_distance) for f in self.faces)
+
     def only(self, keep: BoolArray) -> "StructureFunction":
         """Return the structure function at the lags marked in `keep`."""
         faces = tuple(
@@ -132,11 +142,13 @@ def structure_function(
     *,
     lags: Sequence[int] | None = None,
     direction: Direction = "x",
+    remove: Removal = "line",
 ) -> StructureFunction:
     """Estimate the structure function of a surface by direct sums.
 
-    The mean line or plane is removed first. Sums over pairs are exact (no Fourier
-    route, which loses digits by cancellation) and skip missing points.
+    The mean line or plane is removed first, unless told otherwise. Sums over pairs are
+    exact (no Fourier route, which loses digits by cancellation) and skip missing
+    points.
 
     Args:
         surface: a profile, or a map that is taken as parallel profiles.
@@ -144,6 +156,7 @@ def structure_function(
             at even steps of their logarithm.
         direction: of the profiles of a map: ``"x"`` along its rows, ``"y"`` along its
             columns. A profile has the direction ``"x"`` only.
+        remove: ``"line"``, or ``"mean"`` where the heights hold no tilt.
 
     Returns:
         The structure function at those lags at which any pair was measured.
@@ -152,7 +165,7 @@ def structure_function(
         SurfaceTooSmall: too few measured points, or no pair at any lag.
         UsageError: a lag below 1 or beyond the profile, or a profile along ``"y"``.
     """
-    levelled = level(surface)
+    levelled = level(surface) if remove == "line" else surface
     heights, valid, spacing, across = _as_rows(levelled, direction)
     wanted = _lags(heights.shape[1], lags)
     sums, fourths, pairs = _row_sums(heights, valid, wanted)
@@ -181,6 +194,7 @@ def structure_function(
         value=value,
         kurtosis=fourths.sum(axis=0) / pairs.sum(axis=0) / safe**2,
         faces=(face,),
+        quantum=height_step(surface.heights[surface.valid]),
         provenance=(
             *levelled.provenance,
             step("structure_function", direction=direction, lags=int(lag.size)),
@@ -226,6 +240,7 @@ def combine(a: StructureFunction, b: StructureFunction) -> StructureFunction:
         # Fourth moments of a sum of independent differences with S_a and S_b.
         kurtosis=3 + (a.kurtosis - 3) * part**2 + (b.kurtosis - 3) * (1 - part) ** 2,
         faces=(*_shared(a, share), *_shared(b, 1 - share)),
+        quantum=max(a.quantum, b.quantum),
         provenance=(
             *a.provenance,
             *b.provenance,

@@ -2,7 +2,6 @@
 """A simulated profilometer: measures a surface and exports it as instruments do."""
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 import scipy.ndimage
@@ -90,63 +89,6 @@ def measure_areal(areal: Areal, instrument: Profilometer, *, seed: int) -> Areal
         instrument=SurfaceInstrument(name="simulated profilometer"),
         provenance=(*areal.provenance, _measured(instrument, seed)),
     )
-
-
-def write_keyence_csv(
-    areal: Areal, path: Path, *, date: str = "2025-03-21 11:43:55"
-) -> None:
-    """Write a map as the height CSV of Keyence's MultiFileAnalyzer, in English.
-
-    The quirks are the point: every cell quoted, CRLF, a byte-order mark, a line break
-    inside the cell "Data type", heights in um, missing points as empty cells.
-
-    Args:
-        areal: the map; one spacing for both directions.
-        path: file to write.
-        date: as the header states it.
-
-    Raises:
-        UsageError: the spacing differs between the directions.
-
-    Source:
-        Layout reconstructed from public parsers of these exports.
-    """
-    if not np.isclose(areal.spacing[0], areal.spacing[1], rtol=1e-9):
-        raise UsageError(
-            f"spacing is {areal.spacing} m; this format holds one XY calibration, "
-            "resample to square pixels first"
-        )
-    micrometres = areal.heights * 1e6
-    seen = micrometres[areal.valid]
-    rows, columns = areal.heights.shape
-    header = (
-        ("Measured date", date),
-        ("Model", "VK-X3000 Series"),
-        ("Data type\n", "ImageDataCsv"),
-        ("File version", "1000"),
-        ("Measurement data name", areal.name),
-        ("Objective Lens Power", "50"),
-        ("XY Calibration", f"{areal.spacing[1] * 1e9:.3f}", "nm"),
-        ("Output image data", "Height"),
-        ("Horizontal", str(columns)),
-        ("Vertical", str(rows)),
-        ("Minimum value", f"{seen.min():.4f}"),
-        ("Maximum value", f"{seen.max():.4f}"),
-        ("Unit", "um"),
-        ("Reference data name", ""),
-        (),
-        ("Height",),
-    )
-    lines = [",".join(f'"{cell}"' for cell in cells) for cells in header]
-    lines += [
-        ",".join(
-            f'"{height:.4f}"' if valid else '""'
-            for height, valid in zip(row.tolist(), mask.tolist(), strict=True)
-        )
-        for row, mask in zip(micrometres, areal.valid, strict=True)
-    ]
-    text = "\r\n".join(lines) + "\r\n"
-    path.write_bytes(text.encode("utf-8-sig"))
 
 
 def _read(

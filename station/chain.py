@@ -6,9 +6,15 @@ from dataclasses import dataclass, field, replace
 
 from jointbench.acquisition.records import Provenance, Recording
 from jointbench.signal.frf import Frf, estimate_frf
+from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.hits import HitCriteria, find_hits
 from jointbench.signal.kalman import KalmanSettings, smooth_recording
+from jointbench.signal.lscf import Progress
 from jointbench.signal.modes import ModalResult, ModalSettings, identify_modes
+from jointbench.signal.oscillator_bank import repair_dropouts
+
+# A gap spoils the modes that fill it; what a second round leaves is below the noise.
+_REPAIRS = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,11 +25,13 @@ class ChainSettings:
         hits: how hits are found and judged.
         kalman: the smoother, run on all channels alike; None leaves it out.
         modal: band, order and stability limits of the extraction.
+        estimator: of the FRF.
     """
 
     hits: HitCriteria = field(default_factory=HitCriteria)
     kalman: KalmanSettings | None = field(default_factory=KalmanSettings)
     modal: ModalSettings = field(default_factory=ModalSettings)
+    estimator: Estimator = Estimator.H1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,16 +62,21 @@ def judge_hits(
 
 
 def run_chain(
-    recordings: Sequence[Recording], settings: ChainSettings | None = None
+    recordings: Sequence[Recording],
+    settings: ChainSettings | None = None,
+    *,
+    progress: Progress | None = None,
 ) -> ModalChain:
     """Take recordings to modes.
 
     Hits are judged on the samples as recorded: a smoother would round off the flat
-    tops that betray an overload.
+    tops that betray an overload. Where a response stood still for a while, the modes
+    found without regard to that fill the gap; a few rounds, as those modes get better.
 
     Args:
         recordings: force and responses; hits that are already judged are kept.
         settings: None for the defaults.
+        progress: told what is done, and the share of it; None for nobody.
 
     Returns:
         The whole chain, so that every stage can be shown.
@@ -73,9 +86,28 @@ def run_chain(
     """
     settings = settings or ChainSettings()
     judged = judge_hits(recordings, settings)
-    frf = estimate_frf([_smoothed(recording, settings) for recording in judged])
-    result = identify_modes(frf, settings.modal)
-    return ModalChain(judged, frf, result, result.model.provenance)
+    frf, result = _modes(judged, settings, progress)
+    whole: Sequence[Recording] = judged
+    for _ in range(_REPAIRS):
+        model = result.model
+        repaired = [
+            repair_dropouts(r, model.natural_frequency, model.damping_ratio)
+            for r in judged
+        ]
+        if all(new is old for new, old in zip(repaired, judged, strict=True)):
+            break
+        whole = repaired
+        frf, result = _modes(whole, settings, progress)
+    return ModalChain(tuple(whole), frf, result, result.model.provenance)
+
+
+def _modes(
+    judged: Sequence[Recording], settings: ChainSettings, progress: Progress | None
+) -> tuple[Frf, ModalResult]:
+    """Return the FRF of judged recordings and its modes."""
+    smoothed = [_smoothed(recording, settings) for recording in judged]
+    frf = estimate_frf(smoothed, estimator=settings.estimator)
+    return frf, identify_modes(frf, settings.modal, progress=progress)
 
 
 def _smoothed(recording: Recording, settings: ChainSettings) -> Recording:

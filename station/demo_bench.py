@@ -18,9 +18,9 @@ from jointbench.simulators.bench_url import bench_from_url
 from jointbench.simulators.profilometer import (
     Profilometer,
     measure_areal,
-    write_keyence_csv,
 )
 from jointbench.simulators.rough_surface import rough_map
+from jointbench.simulators.surface_files import write_keyence_csv
 from jointbench.station.record import record
 
 HITS = 12

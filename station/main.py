@@ -1,47 +1,42 @@
 # SPDX-License-Identifier: MIT
-"""The command line: names, options and exit codes; the work is done elsewhere.
+"""The command line: names and options; the work is done elsewhere.
 
 Every command imports what it needs when it runs, so that ``--help`` stays instant.
 """
 
 import sys
-import warnings
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from typer.exceptions import TyperException
 
-from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
 from jointbench.station.contact_command import contact_command
-
-EXIT_INTERNAL = 1
-EXIT_USAGE = 2
-EXIT_BAD_DATA = 3
-EXIT_INSTRUMENT = 4
-EXIT_QUALITY = 5
-EXIT_INTERRUPTED = 130
-COLUMNS_HELP = (
-    "Roles and units of a plain table's columns, for example "
-    "'time:s,force:N,acceleration:m/s^2' or 'x:um,z:um'."
+from jointbench.station.exit_codes import EXIT_QUALITY, exit_code
+from jointbench.station.options import (
+    GAP_HELP,
+    Band,
+    Cache,
+    Columns,
+    Debug,
+    Drop,
+    EstimatorName,
+    Files,
+    Force,
+    GeometryFile,
+    Json,
+    Keep,
+    Model,
+    Order,
+    OutputOnly,
+    Page,
+    Point,
+    Preload,
+    Results,
+    Sessions,
+    Universal,
 )
-GAP_HELP = "Sessions or campaign (.h5), record (.mat), model with data (.toml), URL."
-Files = Annotated[list[Path], typer.Argument(help="Files to read.", show_default=False)]
-Columns = Annotated[str | None, typer.Option("--columns", help=COLUMNS_HELP)]
-Json = Annotated[
-    str | None,
-    typer.Option("--json", metavar="PATH", help="Write results as JSON; '-' = stdout."),
-]
-Model = Annotated[Path | None, typer.Option(help="Bench model (TOML), with priors.")]
-Point = Annotated[str, typer.Option(help="Where the hammer struck.")]
-Preload = Annotated[str | None, typer.Option(help="'4 kN', where no session says.")]
-Page = Annotated[Path | None, typer.Option(help="HTML page to write.")]
-Cache = Annotated[Path | None, typer.Option(help="Folder of reduced structures.")]
-Sessions = Annotated[list[Path] | None, typer.Argument(help="Session files.")]
-Band = Annotated[str | None, typer.Option(help="Band of modes, '50:900' [Hz].")]
-Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
-Force = Annotated[bool, typer.Option("--force", help="Overwrite existing output.")]
+
+__all__ = ["app", "exit_code", "run"]
 
 app = typer.Typer(
     name="jointbench",
@@ -57,50 +52,6 @@ def run() -> None:
     if len(sys.argv) == 1:
         sys.argv.append("--help")
     sys.exit(exit_code(app, debug="--debug" in sys.argv[1:]))
-
-
-def exit_code(command: Callable[..., object], *, debug: bool) -> int:
-    """Call `command` and turn what it raises into the contract's exit code."""
-    if debug:
-        result = command(standalone_mode=False)
-        return result if isinstance(result, int) else 0
-    with warnings.catch_warnings():
-        # What a warning of a library means to the user is said by our own checks.
-        warnings.simplefilter("ignore")
-        return _quiet_exit_code(command)
-
-
-def _quiet_exit_code(command: Callable[..., object]) -> int:
-    try:
-        result = command(standalone_mode=False)
-    except TyperException as error:
-        return _fail(error.format_message(), EXIT_USAGE)
-    except JointbenchError as error:
-        return _fail(str(error), code_of(error))
-    except (KeyboardInterrupt, typer.Abort):
-        return _fail("interrupted; finished files are whole", EXIT_INTERRUPTED)
-    except OSError as error:
-        return _fail(f"{error.strerror or error}: {error.filename}", EXIT_BAD_DATA)
-    except Exception as error:  # noqa: BLE001 - a traceback helps no operator
-        kind = type(error).__name__
-        return _fail(
-            f"internal error ({kind}: {error}); run again with --debug and report it",
-            EXIT_INTERNAL,
-        )
-    return result if isinstance(result, int) else 0
-
-
-def code_of(error: JointbenchError) -> int:
-    """Return the exit code of an error's family."""
-    if isinstance(error, UsageError):
-        return EXIT_USAGE
-    return EXIT_INSTRUMENT if isinstance(error, InstrumentError) else EXIT_BAD_DATA
-
-
-def _fail(message: str, code: int) -> int:
-    line = " ".join(message.split())
-    sys.stderr.write(f"jointbench: error: {line}\n")
-    return code
 
 
 @app.command(name="demo")
@@ -172,15 +123,14 @@ def modal_command(
     files: Files,
     columns: Columns = None,
     point: Point = "1",
-    band: Annotated[
-        str | None, typer.Option(help="Band to fit, for example '50:5000' [Hz].")
-    ] = None,
-    order: Annotated[
-        int | None, typer.Option(help="Highest model order; chosen when left out.")
-    ] = None,
-    out: Annotated[
-        Path | None, typer.Option(help="Results file; beside a session by default.")
-    ] = None,
+    band: Band = None,
+    order: Order = None,
+    estimator: EstimatorName = "H1",
+    keep: Keep = None,
+    drop: Drop = None,
+    out: Results = None,
+    uff: Universal = None,
+    output_only: OutputOnly = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
@@ -188,15 +138,27 @@ def modal_command(
 
     Example: jointbench modal session.h5 --json modes.json
     """
-    from jointbench.station.modal import run_modal
+    if output_only:
+        from jointbench.station.modal import parse_band
+        from jointbench.station.output_only import run_output_only
+
+        run_output_only(
+            files,
+            columns=columns,
+            band=parse_band(band),
+            order=order,
+            json_target=json,
+        )
+        return
+    from jointbench.station.modal import modal_settings, run_modal
 
     run_modal(
         files,
+        modal_settings(band, order, estimator, keep or (), drop or ()),
         columns=columns,
         point=point,
-        band=band,
-        order=order,
         out=out,
+        universal=uff,
         json_target=json,
     )
 
@@ -281,6 +243,7 @@ def report_command(
         Path | None, typer.Option(help="HTML file; beside the session by default.")
     ] = None,
     model: Model = None,
+    geometry: GeometryFile = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
@@ -290,7 +253,7 @@ def report_command(
     """
     from jointbench.station.report_command import run_report
 
-    run_report(session, out=out, model=model, json_target=json)
+    run_report(session, out=out, model=model, geometry=geometry, json_target=json)
 
 
 @app.command(name="inspect")

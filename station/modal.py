@@ -9,35 +9,71 @@ import numpy as np
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Recording
+from jointbench.signal.choices import Choices
+from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.modes import ModalSettings
 from jointbench.station.chain import ChainSettings, ModalChain, run_chain
 from jointbench.station.inputs import is_session_name, read_recordings
-from jointbench.station.output import console, table, with_sd, working, write_json
+from jointbench.station.output import console, progress_bar, table, with_sd, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.results_file import results_path, write_results
+from jointbench.station.universal_file import write_universal
+
+STAGE_COLUMNS = ("|W| [-]", "phase of W [deg]")
+"""Headings of `stage_cells`."""
+
+
+def modal_settings(
+    band: str | None,
+    order: int | None,
+    estimator: str,
+    keep: Sequence[float],
+    drop: Sequence[float],
+) -> ChainSettings:
+    """Return the settings that the options stand for.
+
+    Raises:
+        UsageError: an option is not what it should be.
+    """
+    names = {e.value.lower(): e for e in Estimator}
+    if estimator.lower() not in names:
+        raise UsageError(f"--estimator is {estimator!r}; write H1, H2 or Hv")
+    for option, frequency in (
+        *(("--keep", f) for f in keep),
+        *(("--drop", f) for f in drop),
+    ):
+        if not 0.0 < frequency < inf:
+            raise UsageError(f"{option} is {frequency:g}; write a frequency in Hz")
+    return ChainSettings(
+        estimator=names[estimator.lower()],
+        modal=ModalSettings(
+            band=parse_band(band),
+            highest_order=order,
+            choices=Choices(tuple(keep), tuple(drop)),
+        ),
+    )
 
 
 def run_modal(
     files: Sequence[Path],
+    settings: ChainSettings | None = None,
     *,
-    columns: str | None,
-    point: str,
-    band: str | None,
-    order: int | None,
-    out: Path | None,
-    json_target: str | None,
+    columns: str | None = None,
+    point: str = "1",
+    out: Path | None = None,
+    universal: Path | None = None,
+    json_target: str | None = None,
 ) -> ModalChain:
     """Identify the modes in `files`, show them and keep them beside the session."""
-    settings = ChainSettings(
-        modal=ModalSettings(band=parse_band(band), highest_order=order)
-    )
     target = out or _beside(files)
-    check_outputs(files, [target, json_target])
+    check_outputs(files, [target, universal, json_target])
     recordings = read_recordings(files, columns=columns, point=point)
-    with working("judging hits, estimating FRFs, fitting modes"):
-        chain = run_chain(recordings, settings)
+    with progress_bar("judging hits, estimating FRFs") as progress:
+        chain = run_chain(recordings, settings, progress=progress)
     if target is not None:
         write_results(target, chain, files)
+    if universal is not None:
+        write_universal(universal, chain.frf, chain.result.model)
     show_modal(chain, json_target)
     write_json(json_target, modal_json(chain) | {"results": str(target or "")})
     return chain
@@ -82,14 +118,32 @@ def show_modal(chain: ModalChain, json_target: str | None) -> None:
             with_sd(
                 100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
             ),
+            *stage_cells(chain, number),
+            remark(chain, number),
         )
         for number in range(model.natural_frequency.size)
     ]
     low, high = chain.result.band
     title = f"Modes between {low:.0f} and {high:.0f} Hz (± one standard deviation)"
-    screen.print(
-        table(title, ("mode", "natural frequency [Hz]", "damping ratio [%]"), rows)
-    )
+    columns = ("mode", "natural frequency [Hz]", "damping ratio [%]")
+    screen.print(table(title, (*columns, *STAGE_COLUMNS, "remark"), rows))
+
+
+def stage_cells(chain: ModalChain, number: int) -> tuple[str, str]:
+    """Return what the Kalman stage did at a mode: its gain and its phase."""
+    gain = chain.result.stage_gain
+    if gain is None:
+        return "-", "-"
+    return f"{gain.gain[number]:.4f}", f"{np.degrees(gain.phase[number]):.1f}"
+
+
+def remark(chain: ModalChain, number: int) -> str:
+    """Say who chose a mode, if not the program, and what its interval is made of."""
+    model = chain.result.model
+    words = ["kept by hand"] if model.by_hand[number] else []
+    if model.systematic[number]:
+        words.append("systematic error above noise")
+    return ", ".join(words)
 
 
 def _hits_line(recording: Recording) -> str:
@@ -113,6 +167,9 @@ def modal_json(chain: ModalChain) -> dict[str, object]:
             "damping_ratio": float(model.damping_ratio[i]),
             "damping_ratio_sd": float(model.damping_ratio_sd[i]),
             "stable_orders": int(model.stable_orders[i]),
+            "chosen_by": "hand" if model.by_hand[i] else "automatic",
+            "misfit_over_noise": float(model.misfit[i]),
+            "systematic": bool(model.systematic[i]),
             "shape_re": [float(v) for v in model.shapes[i].real],
             "shape_im": [float(v) for v in model.shapes[i].imag],
             "kalman_gain": None if gain is None else float(gain.gain[i]),

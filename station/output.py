@@ -6,12 +6,13 @@ Tables go to standard output, unless the JSON goes there; progress to standard e
 
 import json
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from math import floor, isfinite, log10
 from pathlib import Path
 
 from rich.console import Console, Group, RenderableType
+from rich.progress import Progress
 from rich.table import Table
 from rich.text import Text
 
@@ -41,6 +42,18 @@ def working(message: str) -> Iterator[None]:
         return
     with progress.status(Text(f"{message} ...")):
         yield
+
+
+@contextmanager
+def progress_bar(first: str) -> Iterator[Callable[[str, float], None]]:
+    """Show a bar on a terminal; yield what moves it: words and the share done."""
+    target = Console(stderr=True, highlight=False)
+    if not target.is_terminal:
+        yield lambda _what, _share: None
+        return
+    with Progress(console=target, transient=True) as bars:
+        task = bars.add_task(first, total=1.0)
+        yield lambda what, share: bars.update(task, description=what, completed=share)
 
 
 def table(

@@ -6,6 +6,7 @@ from pathlib import Path
 from jointbench.acquisition.records import Step, Verdict
 from jointbench.acquisition.session_file import read_session
 from jointbench.station.bench_model import BenchModel
+from jointbench.station.geometry import Geometry
 from jointbench.station.output import console, engineering, with_sd, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.report_hits import hits_section
@@ -28,15 +29,22 @@ LONGEST_DETAIL = 300
 
 
 def run_report(
-    session: Path, *, out: Path | None, model: Path | None, json_target: str | None
+    session: Path,
+    *,
+    out: Path | None,
+    model: Path | None,
+    geometry: Path | None = None,
+    json_target: str | None,
 ) -> Path:
     """Analyse `session` and write the page beside it, or to `out`."""
     target = out or session.with_suffix(".html")
-    check_outputs([session, *([model] if model else [])], [target, json_target])
+    read = [path for path in (session, model, geometry) if path is not None]
+    check_outputs(read, [target, json_target])
+    points = None if geometry is None else read_toml(geometry, Geometry)
     content = read_session(session)
     bench = None if model is None else read_toml(model, BenchModel)
     analysis = analyse_session(content, bench)
-    write_report(compose(analysis, bench, title=session.stem), target)
+    write_report(compose(analysis, bench, title=session.stem, geometry=points), target)
     console(json_target).print(f"report: {target}")
     write_json(json_target, {"report": str(target), "remarks": list(analysis.remarks)})
     return target
@@ -48,8 +56,12 @@ def compose(
     *,
     title: str,
     extra: tuple[Section, ...] = (),
+    geometry: Geometry | None = None,
 ) -> Report:
-    """Arrange an analysis as a page; `extra` sections come first."""
+    """Arrange an analysis as a page; `extra` sections come first.
+
+    Shapes are drawn on the `geometry`, or on a row of points without one.
+    """
     session = analysis.session
     sections = list(extra)
     if analysis.remarks:
@@ -58,7 +70,7 @@ def compose(
     if analysis.recordings:
         sections.append(hits_section(analysis.recordings))
     if analysis.modal is not None:
-        sections += modal_sections(analysis.modal)
+        sections += modal_sections(analysis.modal, geometry)
     if analysis.surfaces:
         sections.append(surface_section(analysis.surfaces))
     if analysis.contact is not None or analysis.joint is not None:

@@ -17,9 +17,12 @@ from jointbench.station.figures import (
     markers,
     thin,
 )
-from jointbench.station.modal import synthesis_error
+from jointbench.station.geometry import Geometry
+from jointbench.station.modal import STAGE_COLUMNS, stage_cells, synthesis_error
 from jointbench.station.output import with_sd
+from jointbench.station.report_checks import checks_section, systematic_words
 from jointbench.station.report_page import DataTable, Plot, Section, Text
+from jointbench.station.report_shapes import shapes_section
 
 MOST_POINTS = 4000
 HALF_TURN = 180.0
@@ -30,12 +33,20 @@ UNITS = {
 }
 
 
-def modal_sections(chain: ModalChain) -> tuple[Section, ...]:
-    """Return the sections FRF, stabilisation and modes."""
+def modal_sections(
+    chain: ModalChain, geometry: Geometry | None = None
+) -> tuple[Section, ...]:
+    """Return the sections FRF, stabilisation, modes, shapes and checks."""
     return (
         Section("frf", "Frequency response", (_frf_plot(chain), Text(_window(chain)))),
         Section("stabilisation", "Stabilisation", (_stabilisation_plot(chain),)),
-        Section("modes", "Modes", (modes_table(chain), Text(_kalman(chain)))),
+        Section(
+            "modes",
+            "Modes",
+            (modes_table(chain), Text(systematic_words(chain)), Text(_kalman(chain))),
+        ),
+        shapes_section(chain, geometry),
+        checks_section(chain),
     )
 
 
@@ -72,10 +83,15 @@ def _frf_plot(chain: ModalChain) -> Plot:
     )
     caption = (
         f"{frf.kind.value.capitalize()} from {frf.averages} accepted hits a point "
-        "(H1): measured as lines, synthesised from the identified modes as dashes; "
-        "phase; ordinary coherence."
+        f"({_estimator(chain)}): measured as lines, synthesised from the identified "
+        "modes as dashes; phase; ordinary coherence."
     )
     return Plot("frf-plot", caption, plot, 620)
+
+
+def _estimator(chain: ModalChain) -> str:
+    detail = next(dict(s.detail) for s in chain.provenance if s.name == "estimate_frf")
+    return f"{detail['estimator']}, {detail['bias']}"
 
 
 def _one_frf(
@@ -173,7 +189,7 @@ def _stabilisation_plot(chain: ModalChain) -> Plot:
     )
     caption = (
         "Poles of every model order of the least-squares complex frequency estimator. "
-        "Vertical lines: the modes that were chosen, automatically."
+        "Vertical lines: the modes that were chosen."
     )
     return Plot("stabilisation-plot", caption, plot, 440)
 
@@ -201,23 +217,17 @@ def modes_table(chain: ModalChain) -> DataTable:
             with_sd(
                 100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
             ),
-            *_stage(chain, number),
+            *stage_cells(chain, number),
+            "hand" if model.by_hand[number] else "program",
         )
         for number in range(len(model.natural_frequency))
     )
     return DataTable(
         "Identified modes with one standard deviation; gain and phase of the Kalman "
         "stage at each mode.",
-        ("mode", "frequency [Hz]", "damping ratio [%]", "|W| [-]", "phase of W [deg]"),
+        ("mode", "frequency [Hz]", "damping ratio [%]", *STAGE_COLUMNS, "chosen by"),
         rows,
     )
-
-
-def _stage(chain: ModalChain, number: int) -> tuple[str, str]:
-    gain = chain.result.stage_gain
-    if gain is None:
-        return "-", "-"
-    return f"{gain.gain[number]:.4f}", f"{np.degrees(gain.phase[number]):.1f}"
 
 
 def _window(chain: ModalChain) -> str:

@@ -128,6 +128,14 @@ def _write_modes(group: h5py.Group, model: ModalModel) -> None:
         ("damping_ratio", model.damping_ratio, "1"),
         ("damping_ratio_sd", model.damping_ratio_sd, "1"),
     )
+    write_flags(
+        group,
+        "chosen_by",
+        model.by_hand.astype("i1"),
+        ("mode",),
+        meanings=("automatic", "hand"),
+        long_name="who chose the mode",
+    )
     write_texts(
         group, "output_label", model.outputs, "output", long_name="channel@point"
     )

@@ -126,14 +126,14 @@ def test_fewer_rows_than_declared_are_said_in_the_provenance(tmp_path):
         (lambda t: t[:-20], FormatError, "cut short|do not close"),
         (lambda t: t[: t.index('\r\n"Height"')], FormatError, "ends before a row"),
         (lambda t: t.replace('"um"', '"parsec"'), UnitError, "k.csv.*length"),
-        (lambda t: t.replace('"um"', '""'), FormatError, "no value for 'Unit'"),
+        (lambda t: t.replace('"um"', '""'), FormatError, "no value for the unit"),
         (lambda t: t.replace(',"nm"', ""), UnitError, "k.csv.*length"),
         (lambda t: t.replace('data","Height', 'data","Color'), FormatError, "'Color'"),
         (lambda t: t.replace('"Vertical","4"', '"Vertical","2"'), FormatError, "more"),
         (
-            lambda t: t.replace("XY Calibration", "XY-Justierung"),
+            lambda t: t.replace("XY Calibration", "Calibrazione XY"),
             FormatError,
-            "English",
+            "not readable as English, German, Japanese, Chinese",
         ),
         (lambda t: t.replace("276.923", "0"), FormatError, "above zero"),
         (
@@ -152,11 +152,22 @@ def test_a_keyence_image_that_is_not_whole_is_refused(tmp_path, change, error, s
 
 
 @shared
-@pytest.mark.parametrize("language", ["de_cp1252", "de_semicolon", "ja_cp932"])
-def test_other_languages_are_refused_by_name(language):
-    """They are recognised, and not read yet."""
-    with pytest.raises(FormatError, match="only the English export is read"):
-        read_surface(SURFACES / "formats" / f"SYNTHETIC_vk_{language}.csv")
+@pytest.mark.parametrize(
+    ("name", "language", "encoding"),
+    [
+        ("de_cp1252", "German", "cp1252"),
+        ("de_semicolon", "German", "cp1252"),
+        ("ja_cp932", "Japanese", "cp932"),
+    ],
+)
+def test_other_languages_hold_the_same_map(name, language, encoding):
+    """Bit for bit what the English file holds."""
+    english = read_surface(SURFACES / "formats" / "SYNTHETIC_vk_en_utf8.csv")
+    other = read_surface(SURFACES / "formats" / f"SYNTHETIC_vk_{name}.csv")
+    assert_array_equal(other.heights, english.heights)
+    assert other.spacing == english.spacing
+    assert detail(other)["format"] == f"Keyence image CSV, {language}"
+    assert detail(other)["encoding"] == encoding
 
 
 # --- Surfcom -----------------------------------------------------------------------
@@ -296,12 +307,12 @@ def test_a_gap_in_x_is_refused_by_its_line(tmp_path):
 
 def test_a_code_for_missing_points_becomes_a_mask_once_it_is_said(tmp_path):
     """Unsaid it is refused with what to type, and what it says works."""
-    z = [1.0, 2.0, -25400, 1.5, -25400, 1.2, 1.1, 1.9]
+    z = [1.0, 2.0, -7777, 1.5, -7777, 1.2, 1.1, 1.9]
     text = "".join(f"{x},{h}\n" for x, h in enumerate(z))
     path = written(tmp_path / "a.csv", text, "ascii")
-    with pytest.raises(FormatError, match="z:um!-25400,") as caught:
+    with pytest.raises(FormatError, match="z:um!-7777,") as caught:
         read_surface(path, columns="x:um,z:um")
-    for item, missing in (("z:um!-25400", 2), ("z:um!nan", 0)):
+    for item, missing in (("z:um!-7777", 2), ("z:um!nan", 0)):
         assert item in str(caught.value)
         surface = read_surface(path, columns=f"x:um,{item}")
         assert np.sum(~surface.valid) == missing
@@ -354,12 +365,72 @@ def test_real_scans_of_x_y_z_lines_become_maps():
     assert_allclose(surface.heights[1, 2], 479.3868e-6, rtol=0.02)
 
 
+@pytest.mark.parametrize("code", [-25400, -9999, 1e30])
+def test_a_known_code_far_outside_is_a_missing_point(tmp_path, code):
+    """Masked without a word from the user, where even a single one stands far out."""
+    z = [1.0, 2.0, code, 1.5, 1.7, 1.2, 1.1, 1.9]
+    path = written(tmp_path / "a.csv", "".join(f"{x},{h}\n" for x, h in enumerate(z)))
+    surface = read_surface(path, columns="x:um,z:um")
+    assert_array_equal(surface.valid, np.arange(8) != 2)
+    assert surface.heights[2] == 0
+
+
+def test_the_same_number_among_its_like_is_a_height(tmp_path):
+    """A trench at -25400 nm is a trench."""
+    z = [-25000.0, -25400.0, -25300.0, -25100.0]
+    path = written(tmp_path / "a.csv", "".join(f"{x},{h}\n" for x, h in enumerate(z)))
+    assert read_surface(path, columns="x:um,z:nm").valid.all()
+
+
+def test_units_above_the_columns_are_taken(tmp_path):
+    """UTF-16 with a counter and two lengths: x and height."""
+    text = "index,x in µm,y in µm\r\n0,0.5,-1.5\r\n1,0.75,-1.25\r\n2,1.0,\r\n"
+    surface = read_surface(written(tmp_path / "u.csv", text, "utf-16"))
+    assert surface.spacing == pytest.approx(0.25e-6)
+    assert_allclose(surface.heights[:2], [-1.5e-6, -1.25e-6])
+    assert_array_equal(surface.valid, [True, True, False])
+
+
 @shared
-def test_a_vendor_binary_is_refused():
-    """No reader for it here."""
-    for name in ("plu-1.plu", "x3p-2.x3p", "opdx-3.opdx", "mitutoyo_mock.xlsx"):
-        with pytest.raises(FormatError, match="binary"):
-            read_surface(SURFACES / "various" / name)
+@pytest.mark.parametrize(
+    "name", ["plu-1.plu", "x3p-2.x3p", "opdx-3.opdx", "sdf-1.sdf", "metropro-1.dat"]
+)
+def test_a_vendor_file_agrees_with_the_public_reader(name):
+    """Heights and pitch; SurfaceTopography counts x first and whole cells."""
+    reader = pytest.importorskip("SurfaceTopography")
+    topography = reader.read_topography(str(SURFACES / "various" / name))
+    metres = {"µm": 1e-6, "um": 1e-6, "mm": 1e-3, "m": 1.0, "nm": 1e-9}
+    scale = metres[topography.unit]
+    surface = read_surface(SURFACES / "various" / name)
+    assert_allclose(surface.heights, topography.heights().T * scale, rtol=1e-12)
+    pitch = np.array(topography.physical_sizes) / topography.nb_grid_pts * scale
+    assert_allclose(np.ravel(surface.spacing)[::-1], pitch, rtol=1e-9)
+
+
+@shared
+def test_a_public_reader_that_is_wrong_by_a_million_is_not_believed():
+    """NMS: 160 m wide by the public reader, 160 um by the file's own header."""
+    pytest.importorskip("SurfaceTopography")
+    with pytest.raises(FormatError, match="scale is wrong"):
+        read_surface(SURFACES / "various" / "nms-1.nms")
+
+
+@shared
+def test_a_dektak_trace_has_even_steps_and_its_stylus():
+    """X is printed to 0.1 um; 1499.8 um over 9599 steps."""
+    surface = read_surface(SURFACES / "various" / "dektak-1.csv")
+    assert isinstance(surface, Profile)
+    assert surface.spacing == pytest.approx(0.15625e-6, rel=2e-5)
+    assert surface.heights[0] == pytest.approx(-0.00933e-6)
+    assert surface.instrument.stylus_radius == pytest.approx(2.5e-6)
+
+
+@shared
+def test_surfcom_settings_beside_a_trace_are_kept():
+    """TX3 of the same name states the cut-offs, in Spanish."""
+    surface = read_surface(SURFACES / "surfcom" / "GI-EI.tx1")
+    assert surface.instrument.cutoff_long == pytest.approx(2.5e-3)
+    assert surface.instrument.cutoff_short == pytest.approx(25e-6)
 
 
 # --- numbers no surface has ------------------------------------------------------

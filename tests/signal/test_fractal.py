@@ -14,6 +14,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.surfaces import Areal, Profile, all_valid
 from jointbench.signal.fractal import fit_fractal, fractal_from_line
+from jointbench.signal.pooled_profiles import pool_profiles
 from jointbench.signal.structure_constant import structure_constant
 from jointbench.signal.structure_function import combine, structure_function
 from jointbench.signal.surface_verdict import FractalFit, SurfaceVerdict
@@ -79,13 +80,15 @@ def test_a_long_profile_gives_its_dimension_to_a_hundredth(dimension: float):
 def test_the_stated_interval_covers_the_truth():
     """Ten noisy profiles, D 1.3 to 1.7: two standard deviations miss at most 2.
 
+    Noise of a whole step, which the likelihood ratio finds in each.
+
     The chance of more at 95 % coverage is 1 %. The errors are no smaller than half of
     what is stated either.
     """
     errors, stated = [], []
     for seed in range(10):
         dimension = 1.3 + 0.4 * seed / 9
-        heights = brownian(4000, dimension, seed) + noise(4000, 0.3 * STEP, seed)
+        heights = brownian(4000, dimension, seed) + noise(4000, STEP, seed)
         value, sd = known(fit(heights))
         errors.append(value - dimension)
         stated.append(sd)
@@ -182,6 +185,38 @@ def test_two_faces_of_one_dimension_add_their_amplitudes():
     assert found.roughness_interval is not None
     low, high = found.roughness_interval
     assert low / 2 < 2 * roughness_of(1.5) < 2 * high
+
+
+@pytest.mark.parametrize("step", [0.7, 2.0])
+def test_heights_read_in_steps_keep_their_dimension(step: float):
+    """Rounded to 0.7 and to 2 times the roughness of a sample: D stays, within 3 sd."""
+    quantum = step * STEP
+    heights = quantum * np.round(brownian(10_000, 1.5, 21) / quantum)
+    value, sd = known(fit(heights))
+    assert abs(value - 1.5) < 3 * sd
+    assert sd < 0.02
+
+
+def test_a_surface_hidden_by_the_steps_of_its_heights_is_instrument_limited():
+    """Steps of 60 times the roughness of a sample leave no decade."""
+    quantum = 60 * STEP
+    heights = quantum * np.round(brownian(4000, 1.5, 22) / quantum)
+    found = fit(heights + 0.0)
+    assert found.verdict is not SurfaceVerdict.FRACTAL
+    assert found.dimension is None
+
+
+def test_pooled_profiles_add_their_knowledge():
+    """Nine profiles: sd a third of one's, and the truth within three of it."""
+    profiles = [
+        Profile(f"p{seed}", z, SPACING, all_valid(z))
+        for seed in range(9)
+        for z in [brownian(4000, 1.5, seed)]
+    ]
+    value, sd = known(fit_fractal(pool_profiles(profiles)))
+    alone = known(fit_fractal(structure_function(profiles[0])))[1]
+    assert abs(value - 1.5) < 3 * sd
+    assert 0.2 < sd / alone < 0.7
 
 
 X = np.arange(6000.0)

@@ -16,6 +16,7 @@ from jointbench.acquisition.errors import (
 )
 from jointbench.acquisition.records import Quantity, Recording, Verdict
 from jointbench.signal.frf import Frf, FrfKind, estimate_frf
+from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.hits import find_hits
 from jointbench.signal.spectra import choose_block, fast_length
 from jointbench.signal.windows import HammerWindow
@@ -219,3 +220,19 @@ def test_labels_are_numbered_where_none_are_given() -> None:
     """So that every table can name its columns."""
     frf = Frf(np.arange(9.0), np.ones((2, 1, 9), complex), FrfKind.MOBILITY)
     assert (frf.outputs, frf.inputs) == (("1", "2"), ("1",))
+
+
+def test_the_provenance_names_the_estimator_and_its_bias(
+    hammered: Callable[..., Recording], structure: Callable[..., Any]
+) -> None:
+    """H2 is above H1 by what coherence says, and both are written down."""
+    record = hammered(structure((300.0,), (0.03,)), peaks=(100.0,) * 4, noise=0.003)
+    h1, h2 = (estimate_frf(record, estimator=e) for e in (Estimator.H1, Estimator.H2))
+    detail = dict(h2.provenance[-1].detail)
+    assert detail["estimator"] == "H2"
+    assert "high" in str(detail["bias"])
+    assert 0.0 < float(detail["h1_below_h2_median"]) < 1.0
+    assert h1.coherence is not None
+    lines = band(h1, 100.0, 1000.0)
+    ratio = np.abs(h1.response / h2.response)[0, 0, lines]
+    assert np.allclose(ratio, h1.coherence[0, 0, lines])

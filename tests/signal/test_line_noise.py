@@ -10,6 +10,7 @@ import pytest
 from jointbench.signal.frf import Frf
 from jointbench.signal.line_noise import line_noise, model_error, roughness
 
+ONES = np.ones((1, 100), complex)
 LINES = np.arange(1.0, 2000.0, 0.5)
 
 
@@ -27,13 +28,13 @@ def test_roughness_tells_the_noise_of_a_resonant_frf(
 def test_the_scatter_of_hits_is_preferred_to_roughness() -> None:
     """What was measured is taken as it is."""
     scatter = np.full((1, 100), 0.25)
-    assert np.all(line_noise(np.ones((1, 100), complex), scatter) == 0.25)
+    assert np.all(line_noise(ONES, scatter) == 0.25)
 
 
 def test_no_line_is_ever_exact() -> None:
     """Silence and exact data still get a positive variance."""
-    assert np.all(line_noise(np.ones((1, 100), complex), None) > 0.0)
-    assert np.all(line_noise(np.zeros((1, 100), complex), None) > 0.0)
+    assert np.all(line_noise(ONES, None) > 0.0)
+    assert np.all(line_noise(0.0 * ONES, None) > 0.0)
 
 
 def test_the_model_error_is_what_noise_does_not_explain() -> None:

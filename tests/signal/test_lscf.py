@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from jointbench.signal.frf import Frf
+from jointbench.signal.line_weights import line_weights
 from jointbench.signal.lscf import fit_poles
 
 BAND = np.arange(20.0, 1000.0, 0.5)
@@ -102,3 +103,36 @@ def test_the_decay_rate_of_the_window_is_taken_off_the_poles(
     moved = (r / (s - p) + np.conj(r) / (s - np.conj(p)))[None, None]
     found = fit_poles(BAND, moved, [8], added_decay_rate=30.0)[0]
     assert abs(nearest(found.pole, truth.poles)[0] - p) < 1e-5 * abs(p)
+
+
+def test_the_scalar_form_finds_the_poles_of_many_inputs(
+    structure: Callable[..., Any],
+) -> None:
+    """Two modes seen from three inputs: one denominator, shapes of six components."""
+    shapes = np.array([[1.0, 0.5, -0.7], [0.3, -1.0, 0.9]])
+    constant = np.stack([np.outer(v[:2], v) for v in shapes])
+    truth = structure((200.0, 600.0), (0.01, 0.02), constant)
+    found = fit_poles(BAND, truth.response(BAND, 2), [10], scalar=True)[0]
+    assert found.shape.shape[1] == 6
+    assert np.allclose(nearest(found.pole, truth.poles), truth.poles, rtol=1e-5)
+
+
+def test_noisy_lines_count_less_when_they_are_weighted(
+    structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
+) -> None:
+    """A third of the lines with 50 times the noise: weights take off a third."""
+    truth = structure((200.0, 700.0), (0.01, 0.01))
+    errors = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        clean = truth.response(BAND, 2)
+        sd = np.where((BAND > 300.0) & (BAND < 600.0), 0.5, 0.01) * np.abs(clean).mean()
+        parts = rng.normal(size=(2, *clean.shape))
+        response = clean + sd * (parts[0] + 1j * parts[1])
+        weight = line_weights(response, np.broadcast_to(2.0 * sd**2, clean.shape))
+        both = [
+            fit_poles(BAND, response, [12], weight=w)[0].pole for w in (None, weight)
+        ]
+        errors.append([np.abs(nearest(p, truth.poles) - truth.poles) for p in both])
+    plain, weighted = np.mean(errors, axis=(0, 2))
+    assert weighted < 0.67 * plain

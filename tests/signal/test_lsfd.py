@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from jointbench.signal.frf import Frf, FrfKind
-from jointbench.signal.lsfd import fit_residues, lines_of
+from jointbench.signal.lsfd import fit_residues, lines_of, residual_terms
 from jointbench.signal.modal_model import split_residues
 
 LINES = np.arange(20.0, 1000.0, 0.5)
@@ -70,3 +70,47 @@ def test_a_rank_one_residue_splits_into_shape_and_participation() -> None:
     shapes, participation = split_residues(np.outer(shape, drive)[None])
     assert shapes[0] == pytest.approx([-0.25, 1.0, -0.5])
     assert np.allclose(np.outer(shapes[0], participation[0]), np.outer(shape, drive))
+
+
+def test_the_residuals_are_a_mass_below_and_a_compliance_above_the_band(
+    structure: Callable[..., Any],
+) -> None:
+    """A free body of 5 kg and a mode at 4 kHz: 1/5 per kg, 1 / omega^2, within 1 %."""
+    truth = structure((400.0, 4000.0), (0.01, 0.01))
+    s = 2j * np.pi * LINES
+    response = truth.response(LINES, 0) + (1.0 / 5.0) / s**2
+    lines = lines_of(Frf(LINES, response, FrfKind.RECEPTANCE), ALL)
+    noise = np.full((1, LINES.size), 1e-20)
+    fit = fit_residues(lines, truth.poles[:1], noise)
+    terms = residual_terms(lines, fit)
+    assert terms.lower[0] == pytest.approx(0.2, rel=1e-2)
+    assert terms.upper[0] == pytest.approx((2 * np.pi * 4000.0) ** -2, rel=1e-2)
+
+
+def test_real_modes_have_imaginary_residues_and_the_same_synthesis(
+    structure: Callable[..., Any],
+) -> None:
+    """A proportionally damped structure: nothing is lost, real parts are exactly 0."""
+    truth = structure((200.0, 600.0), (0.01, 0.02), (1.0, -0.4))
+    lines = lines_of(Frf(LINES, truth.response(LINES, 2), FrfKind.ACCELERANCE), ALL)
+    noise = np.ones((1, LINES.size))
+    fit = fit_residues(lines, truth.poles, noise, real_modes=True)
+    assert not np.any(fit.residues().real)
+    assert np.allclose(fit.residues()[:, 0], truth.residues()[:, 0, 0], rtol=1e-6)
+    assert np.allclose(fit.synthesis, lines.response, rtol=1e-6)
+
+
+def test_a_complex_mode_forced_to_be_real_is_missed_in_part(
+    structure: Callable[..., Any],
+) -> None:
+    """A residue turned by 0.3 rad: sin(0.3) = 30 % of it is left over at its peak."""
+    truth = structure((400.0,), (0.01,))
+    p, r = truth.poles[0], truth.residues()[0, 0, 0] * np.exp(0.3j)
+    s = 2j * np.pi * LINES
+    response = (r / (s - p) + np.conj(r) / (s - np.conj(p)))[None, None]
+    lines = lines_of(Frf(LINES, response, FrfKind.RECEPTANCE), ALL)
+    noise = np.ones((1, LINES.size))
+    fit = fit_residues(lines, truth.poles, noise, real_modes=True)
+    peak = int(np.argmax(np.abs(lines.response[0])))
+    missed = np.abs(fit.synthesis - lines.response)[0, peak]
+    assert missed / np.abs(lines.response[0, peak]) > 0.2

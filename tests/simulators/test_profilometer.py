@@ -13,9 +13,9 @@ from jointbench.simulators.profilometer import (
     Profilometer,
     measure_areal,
     measure_profile,
-    write_keyence_csv,
 )
 from jointbench.simulators.rough_surface import rough_map, rough_profile
+from jointbench.simulators.surface_files import write_keyence_csv
 
 MAP = rough_map(12, 20, spacing=0.25e-6, dimension=1.5, roughness=1e-9, seed=1)
 

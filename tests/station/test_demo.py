@@ -14,7 +14,7 @@ from jointbench.station.bench_model import BenchModel
 from jointbench.station.demo import run_demo
 from jointbench.station.demo_bench import HITS
 from jointbench.station.identify import run_identify
-from jointbench.station.modal import run_modal
+from jointbench.station.modal import modal_settings, run_modal
 from jointbench.station.report_page import (
     DataTable,
     Report,
@@ -126,12 +126,8 @@ def test_a_narrow_band_finds_only_the_mode_inside(demo: Path) -> None:
     """--band restricts the fit."""
     chain = run_modal(
         [demo / "session.h5"],
-        columns=None,
-        point="1",
-        band="100:400",
-        order=None,
+        modal_settings("100:400", None, "H1", (), ()),
         out=demo / "narrow.h5",
-        json_target=None,
     )
     assert chain.result.model.natural_frequency.size == 1
 

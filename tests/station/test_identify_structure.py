@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from jointbench.station.main import EXIT_BAD_DATA, EXIT_USAGE, app, exit_code
+from jointbench.station.exit_codes import EXIT_BAD_DATA, EXIT_USAGE, exit_code
+from jointbench.station.main import app
 
 BLOCKS = """
 [materials.marble]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.surfaces import Areal, all_valid
-from jointbench.simulators.profilometer import write_keyence_csv
+from jointbench.simulators.surface_files import write_keyence_csv
 from jointbench.station.import_files import run_import
 from jointbench.station.modal import run_modal
 from jointbench.station.surface import run_surface
@@ -46,15 +46,7 @@ def modes(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, float]]:
     run_import(
         files, session, columns=COLUMNS, point="1", overwrite=False, json_target=None
     )
-    run_modal(
-        [session],
-        columns=None,
-        point="1",
-        band=None,
-        order=None,
-        out=None,
-        json_target=str(found),
-    )
+    run_modal([session], json_target=str(found))
     content: list[dict[str, float]] = json.loads(found.read_text())["modes"]
     return content
 

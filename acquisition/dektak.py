@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""Stylus profiles that Dektak instruments export as CSV.
+
+A block "Scan Parameters" of keys and values, then "Scan Data", a row with the units,
+and x and z a line. The x are rounded to a tenth of a micrometre, so the spacing is the
+scanned length over the number of steps.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.errors import FormatError, SamplingError, UnitError
+from jointbench.acquisition.even_steps import fit_even_steps
+from jointbench.acquisition.grids import length_of, masked, parse_cells
+from jointbench.acquisition.records import Step, step
+from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
+from jointbench.acquisition.text_files import named, shown
+from jointbench.acquisition.units import to_si
+
+_PARAMETERS = "Scan Parameters"
+_DATA = "Scan Data"
+_WORDS = {"micrometer": "um", "nanometer": "nm", "angstrom": "angstrom"}
+_ANGSTROM = 1e-10
+
+
+def is_dektak(lines: Sequence[str]) -> bool:
+    """Tell by its first line whether a text is such an export."""
+    return bool(lines) and lines[0].strip().startswith(_PARAMETERS)
+
+
+def parse_dektak(lines: Sequence[str], path: Path, origin: Step, name: str) -> Profile:
+    """Read a Dektak profile.
+
+    Args:
+        lines: of the file.
+        path: the file, for messages.
+        origin: what is known of the file, put first into the provenance.
+        name: of the profile.
+
+    Returns:
+        The heights [m], with the stylus radius the file states.
+
+    Raises:
+        FormatError: there is no block of data, or a line of it is none.
+        SamplingError: x are not in even steps.
+        UnitError: the row of units has none.
+    """
+    start = next((i for i, text in enumerate(lines) if text.strip() == _DATA), None)
+    if start is None:
+        raise FormatError(
+            f"{named(path)} has {_PARAMETERS!r} and no {_DATA!r}; it is cut short, "
+            "export it again"
+        )
+    header = _header(lines[:start])
+    rows = [(i, text) for i, text in enumerate(lines) if i > start and text.strip()]
+    units = _units(rows[0][1] if rows else "", path)
+    pairs = [_pair(text, i + 1, path) for i, text in rows[1:]]
+    if len(pairs) < 2:
+        raise FormatError(f"{named(path)} holds {len(pairs)} points; export it again")
+    numbers = [i + 1 for i, _ in rows[1:]]
+    x = parse_cells([pair[0] for pair in pairs], numbers[0], path, each_own_line=True)
+    z = parse_cells([pair[1] for pair in pairs], numbers[0], path, each_own_line=True)
+    decimals = [len(pair[0].partition(".")[2]) for pair in pairs]
+    try:
+        steps = fit_even_steps(
+            x,
+            what="x",
+            unit="in its unit",
+            where=lambda i: f"line {numbers[i]}",
+            printed=lambda: 10.0 ** -np.array(decimals, dtype=np.float64),
+        )
+    except SamplingError as error:
+        raise SamplingError(f"{named(path)}: {error}") from error
+    heights, valid = masked(z * units[1], path)
+    radius = header.get("Stylus", "").partition("Radius:")[2].strip()
+    return Profile(
+        name=name,
+        heights=heights,
+        spacing=steps.step * units[0],
+        valid=valid,
+        instrument=SurfaceInstrument(
+            name="Dektak",
+            stylus_radius=length_of(radius, "Stylus", path) if radius else None,
+        ),
+        provenance=(origin, _describe(header, int((~valid).sum()))),
+    )
+
+
+def _header(lines: Sequence[str]) -> dict[str, str]:
+    pairs = (text.partition(",") for text in lines)
+    return {key.strip(): value.strip() for key, _, value in pairs if key.strip()}
+
+
+def _units(line: str, path: Path) -> tuple[float, float]:
+    """Read a row like ``Lateral um,Raw Micrometer,``."""
+    words = [cell.split()[-1] if cell.split() else "" for cell in line.split(",")[:2]]
+    if len(words) < 2:
+        raise UnitError(
+            f"{named(path)}: {shown(line.strip())} below {_DATA!r} names no two units; "
+            "export it again"
+        )
+    return _factor(words[0], path), _factor(words[1], path)
+
+
+def _factor(word: str, path: Path) -> float:
+    unit = _WORDS.get(word.lower(), word)
+    if unit == "angstrom":
+        return _ANGSTROM
+    try:
+        return to_si(unit, "length")
+    except UnitError as error:
+        raise UnitError(f"{named(path)}: {error}") from error
+
+
+def _pair(line: str, number: int, path: Path) -> tuple[str, str]:
+    cells = [cell.strip() for cell in line.strip().rstrip(",").split(",")]
+    if len(cells) != 2:
+        raise FormatError(
+            f"{named(path)}: line {number}: {shown(line.strip())} is no pair of x and "
+            "height; the file is cut short or mixed, export it again"
+        )
+    return cells[0], cells[1]
+
+
+def _describe(header: dict[str, str], missing: int) -> Step:
+    kept = {"resolution": "Resolution", "scan_length": "Length", "scan": "Scan Type"}
+    known = {new: header[old] for new, old in kept.items() if old in header}
+    return step(
+        "recognise",
+        format="Dektak CSV",
+        reason=f"begins with {_PARAMETERS!r}",
+        missing_points=missing,
+        **known,
+    )

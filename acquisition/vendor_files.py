@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""Vendor binaries, SDF and X3P through SurfaceTopography, an optional extra.
+
+Its 40 readers are not repeated here; what comes out of them is checked, because the
+scale of some of its formats is wrong by orders of magnitude.
+"""
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointbench.acquisition.arrays import BoolArray, FloatArray
+from jointbench.acquisition.errors import FormatError, HostileFile, UnitError
+from jointbench.acquisition.even_steps import fit_even_steps
+from jointbench.acquisition.grids import masked
+from jointbench.acquisition.records import Step, step
+from jointbench.acquisition.surfaces import Areal, Profile, Surface
+from jointbench.acquisition.tables import MAX_CELLS
+from jointbench.acquisition.text_files import named, shown
+from jointbench.acquisition.units import to_si
+
+MOST_BYTES = 512 * 2**20
+WIDEST = 1.0
+"""No profilometer scans a metre: a larger map has a wrong scale [m]."""
+SUFFIXES = frozenset(
+    ".vk3 .vk4 .vk6 .vk7 .zon .zag .plu .plux .sur .pro .opd .opdx .x3p .sdf .al3d"
+    " .dat .datx .nms .nmm .mnt .os3d .lext .oir .poir .frt .gwy .xlsx".split()
+)
+
+
+def is_vendor_name(path: Path) -> bool:
+    """Tell by its ending whether a file may be one of a maker's formats."""
+    return path.suffix.lower() in SUFFIXES
+
+
+def read_vendor(path: Path, origin: Step, name: str) -> Surface:
+    """Read the height channel of a vendor file.
+
+    Args:
+        path: the file.
+        origin: what is known of the file, put first into the provenance.
+        name: of the surface.
+
+    Returns:
+        A map, or a profile where the file holds a line.
+
+    Raises:
+        FormatError: the extra is not installed, no reader knows the file, or what
+            it read is no surface.
+        UnitError: the file does not state its units.
+        HostileFile: it is larger than any map.
+    """
+    if path.stat().st_size > MOST_BYTES:
+        raise HostileFile(f"{named(path)} is larger than {MOST_BYTES} bytes; cut it")
+    topography, reader = _open(path)
+    unit = topography.unit
+    if unit is None:
+        raise UnitError(
+            f"{named(path)} does not state its unit of length; export it in a format "
+            "that does, for example X3P"
+        )
+    scale = to_si(str(unit).replace("Å", "angstrom"), "length")
+    heights = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan) * scale
+    plain, valid = masked(heights, path)
+    sizes = [float(size) * scale for size in topography.physical_sizes]
+    if not all(0 < size < WIDEST for size in sizes):
+        raise FormatError(
+            f"{named(path)}: {reader} gives a size of {max(sizes):.3g} m, beyond "
+            f"{WIDEST:g} m: its scale is wrong for this file; export it as X3P or text"
+        )
+    said = step(
+        "recognise",
+        format=f"{reader} through SurfaceTopography",
+        reason=f"{reader} reader accepts it",
+        missing_points=int((~valid).sum()),
+    )
+    return _surface(topography, plain, valid, sizes, scale, (origin, said), name, path)
+
+
+def _open(path: Path) -> tuple[Any, str]:
+    """Return the default channel of a file and the name of its format."""
+    try:
+        import SurfaceTopography.IO
+    except ImportError as error:
+        raise FormatError(
+            f"{named(path)} looks like a maker's own format, which the extra "
+            "'surfaces' reads: pip install 'jointbench[surfaces]'; or export it as text"
+        ) from error
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            reader = SurfaceTopography.IO.open_topography(str(path))
+            _require_sane_grid(reader, path)
+            return reader.topography(), type(reader).__name__.removesuffix("Reader")
+        except HostileFile:
+            raise
+        except Exception as error:
+            raise FormatError(
+                f"{named(path)} is read by no reader of SurfaceTopography "
+                f"({shown(str(error).strip() or type(error).__name__)}); export it as "
+                "text or X3P"
+            ) from error
+
+
+def _require_sane_grid(reader: Any, path: Path) -> None:
+    """Refuse what declares more points than any map before it is read."""
+    grid = reader.channels[0].nb_grid_pts if reader.channels else (0,)
+    if np.prod([float(n) for n in grid]) > MAX_CELLS:
+        raise HostileFile(f"{named(path)} declares {grid} points; cut it")
+
+
+def _surface(
+    topography: Any,
+    heights: FloatArray,
+    valid: BoolArray,
+    sizes: list[float],
+    scale: float,
+    provenance: tuple[Step, ...],
+    name: str,
+    path: Path,
+) -> Surface:
+    """Make a record; SurfaceTopography counts x first and cells, not gaps."""
+    if heights.ndim == 2:
+        columns, rows = heights.shape
+        return Areal(
+            name=name,
+            heights=np.ascontiguousarray(heights.T),
+            spacing=(sizes[1] / rows, sizes[0] / columns),
+            valid=np.ascontiguousarray(valid.T),
+            provenance=provenance,
+        )
+    spacing = sizes[0] / heights.size
+    if not topography.is_uniform:
+        stamps = np.asarray(topography.positions(), float)
+        steps = fit_even_steps(stamps, what="x", unit="", where=lambda i: f"point {i}")
+        spacing = steps.step * scale
+    if heights.size < 2:
+        raise FormatError(f"{named(path)} holds {heights.size} points, no surface")
+    return Profile(
+        name=name,
+        heights=heights,
+        spacing=spacing,
+        valid=valid,
+        provenance=provenance,
+    )

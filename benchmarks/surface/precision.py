@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""How precise D is on exact self-affine profiles, clean and through an instrument.
+
+python -m benchmarks.surface.precision writes one line of a table for each setting.
+"""
+
+import argparse
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.ndimage
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.surfaces import Profile
+from jointbench.signal.fractal import fit_fractal
+from jointbench.signal.structure_function import structure_function
+from jointbench.simulators.rough_surface import rough_profile
+
+POINTS = 20_000
+SPACING = 1e-7  # [m]
+STEP = 20e-9  # standard deviation of neighbouring heights' difference [m]
+NOISE = 10e-9  # [m]
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """An instrument: blur [samples], noise [m], and the model that is right."""
+
+    blur: float
+    noise: float
+    right: str
+
+
+SETTINGS = {
+    "clean": Setting(0.0, 0.0, "none"),
+    "noise": Setting(0.0, STEP, "noise"),
+    "point spread": Setting(4.0, 0.0, "point spread"),
+    "both": Setting(4.0, 5e-9, "point spread and noise"),
+}
+
+
+def cramer_rao(dimension: float, points: int) -> float:
+    """Return the least standard deviation of D with the amplitude unknown.
+
+    Whittle's information of the increments of fractional Brownian motion: the spread
+    of d ln f / dH over the frequencies, f being their aliased spectrum.
+    """
+
+    def log_spectrum(hurst: float) -> FloatArray:
+        omega = (np.arange(8000) + 0.5) / 8000 * np.pi
+        waves = omega[:, None] + 2 * np.pi * np.arange(-300, 301)
+        aliased = np.sum(np.abs(waves) ** (-1 - 2 * hurst), axis=1)
+        return np.asarray(np.log(4 * np.sin(omega / 2) ** 2 * aliased))
+
+    hurst = 2 - dimension
+    slope = (log_spectrum(hurst + 1e-4) - log_spectrum(hurst - 1e-4)) / 2e-4
+    return float(np.sqrt(2 / (points * np.var(slope))))
+
+
+def measured(dimension: float, setting: Setting, seed: int) -> Profile:
+    """Return an exact profile as the instrument shows it."""
+    profile = rough_profile(
+        POINTS, spacing=SPACING, dimension=dimension, roughness=1e-10, seed=seed
+    )
+    heights = profile.heights * STEP / np.std(np.diff(profile.heights))
+    if setting.blur > 0:
+        heights = scipy.ndimage.gaussian_filter1d(heights, setting.blur)
+    noise = np.random.default_rng([seed, 77]).standard_normal(POINTS)
+    return replace(profile, heights=heights + setting.noise * noise)
+
+
+def line(name: str, dimension: float, seeds: range) -> str:
+    """Return one line of the table."""
+    setting, found, models = SETTINGS[name], [], Counter[str]()
+    for seed in seeds:
+        profile = measured(dimension, setting, seed)
+        fit = fit_fractal(structure_function(profile))
+        models[fit.instrument] += 1
+        if fit.scaling is not None:
+            found.append((fit.scaling.dimension, fit.scaling.dimension_sd))
+    value, stated = np.array(found).T
+    bound = cramer_rao(dimension, POINTS) if name == "clean" else float("nan")
+    cells = (
+        name,
+        f"{dimension}",
+        f"{len(seeds)}",
+        f"{value.mean() - dimension:+.4f}",
+        f"{value.std(ddof=1):.5f}",
+        f"{bound:.5f}" if name == "clean" else "-",
+        f"{value.std(ddof=1) / bound:.3f}" if name == "clean" else "-",
+        f"{stated.mean():.5f}",
+        f"{100 * np.mean(np.abs(value - dimension) < 2 * stated):.1f} %",
+        f"{100 * models[setting.right] / len(seeds):.1f} %",
+        f"{len(seeds) - len(found)}",
+    )
+    return "| " + " | ".join(cells) + " |"
+
+
+def main() -> None:
+    """Print the lines that are asked for."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--setting", choices=list(SETTINGS), default="clean")
+    parser.add_argument("--dimension", type=float, nargs="+", default=[1.3, 1.5, 1.7])
+    parser.add_argument("--seeds", type=int, default=100)
+    asked = parser.parse_args()
+    for dimension in asked.dimension:
+        print(line(asked.setting, dimension, range(asked.seeds)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

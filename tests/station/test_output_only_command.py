@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench modal --output-only`` as a user types it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+from scipy.signal import lfilter
+
+RATE = 1000.0
+
+
+def jointbench(*words: object) -> subprocess.CompletedProcess[str]:
+    """Run the command line in a process of its own."""
+    code = "from jointbench.station.main import run; run()"
+    return subprocess.run(
+        [sys.executable, "-c", code, *map(str, words)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def shaken(path: Path, seconds: float) -> Path:
+    """Write the response of one mode at 90 Hz, 1 %, to noise that nobody measured."""
+    noise = np.random.default_rng(0).normal(size=round(seconds * RATE))
+    pole = np.exp(2 * np.pi * 90.0 * (-0.01 + 1j * np.sqrt(1 - 1e-4)) / RATE)
+    response = lfilter([1.0, -1.0], [1.0, -2 * pole.real, abs(pole) ** 2], noise)
+    time = np.arange(noise.size) / RATE
+    np.save(path, np.stack([time, response]))
+    return path
+
+
+def test_modes_come_without_a_force_channel(tmp_path: Path) -> None:
+    """The frequency within 0.2 %, and its uncertainty beside it."""
+    path = shaken(tmp_path / "run.npy", 60.0)
+    done = jointbench(
+        "modal", path, "--output-only", "--columns", "time:s,acceleration:m/s^2",
+        "--json", "-",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    (mode,) = found["modes"]
+    assert found["output_only"] is True
+    assert abs(mode["frequency_hz"] / 90.0 - 1.0) < 2e-3
+    assert abs(mode["damping_ratio"] - 0.01) < 3.0 * mode["damping_ratio_sd"]
+    assert "responses alone" in done.stderr
+
+
+def test_a_short_run_is_refused_in_one_line(tmp_path: Path) -> None:
+    """With the time it would take."""
+    path = shaken(tmp_path / "run.npy", 3.0)
+    columns = "time:s,acceleration:m/s^2"
+    done = jointbench("modal", path, "--output-only", "--columns", columns)
+    assert done.returncode == 3
+    assert "record longer" in done.stderr
+    assert len(done.stderr.strip().splitlines()) == 1
