@@ -16,6 +16,7 @@ from jointbench.station.exit_codes import EXIT_QUALITY, exit_code
 from jointbench.station.options import (
     GAP_HELP,
     Band,
+    Cache,
     Columns,
     Debug,
     Drop,
@@ -28,9 +29,11 @@ from jointbench.station.options import (
     Model,
     Order,
     OutputOnly,
+    Page,
     Point,
     Preload,
     Results,
+    Sessions,
     Universal,
 )
 
@@ -204,22 +207,23 @@ app.command(name="contact")(contact_command)
 
 @app.command(name="identify")
 def identify_command(
-    model: Annotated[Path, typer.Argument(help="Bench model, TOML.")],
-    sessions: Annotated[list[Path], typer.Argument(help="Session files.")],
-    band: Annotated[
-        str | None, typer.Option(help="Band of the rigid-body modes, '50:900' [Hz].")
-    ] = None,
+    model: Annotated[Path, typer.Argument(help="Bench or structure model, TOML.")],
+    sessions: Sessions = None,
+    band: Band = None,
+    cache: Cache = None,
+    report: Page = None,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Identify the links of a lumped bench from its measured modes.
+    """Identify joints: of a lumped bench [links], or of meshed bodies [joints].
 
     Example: jointbench identify bench.toml session.h5 --json joint.json
     """
-    from jointbench.station.identify import fits, run_identify
+    from jointbench.station.identify import identify_any
 
-    found = run_identify(model, sessions, band=band, json_target=json)
-    return 0 if fits(found) else EXIT_QUALITY
+    places = {"cache": cache, "report": report}
+    fits = identify_any(model, sessions or [], band=band, json_target=json, **places)
+    return 0 if fits else EXIT_QUALITY
 
 
 @app.command(name="gap")
@@ -235,7 +239,7 @@ def gap_command(
         list[Path] | None,
         typer.Option(help="Python file of your own effects, which is run."),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
+    report: Page = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
