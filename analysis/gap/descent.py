@@ -23,6 +23,9 @@ LONGEST = 1.5
 """Longest step of a coordinate; most are logarithms."""
 CORRECTIONS = 2
 """Steps back into the valley, by the slopes at hand, before a step is shortened."""
+LEAST_DAMPING = 1e-11
+"""A first step is all but Gauss and Newton's: where hits scatter, the scale of all
+masses and stiffnesses is so soft that a damping of 1e-6 would hold it."""
 STIFF = 1e-3
 """Damping under which only what the data fix well moves."""
 OLDEST = 2
@@ -98,7 +101,7 @@ def minimise(
     r, cost = _looked_at(problem, x, stage)
     if not np.isfinite(cost):
         return _hopeless(problem, x, r)
-    damping, age, j = 1e-6, 0, slopes(x, r)
+    damping, age, j = LEAST_DAMPING, 0, slopes(x, r)
     for k in range(iterations):
         moved, damping = _step(problem, x, r, j, cost, damping, stage)
         if moved is None:
@@ -209,7 +212,7 @@ def _step(
             trial = _moved(problem, trial, step / size)
             try_r, try_cost = _looked_at(problem, trial, stage)
         if np.isfinite(try_cost) and try_cost < cost:
-            return (trial, try_r, try_cost), max(damping / 10, 1e-9)
+            return (trial, try_r, try_cost), max(damping / 10, LEAST_DAMPING)
         damping = max(damping * 8, 1e-6)
         if damping > 1e7:
             break
