@@ -98,7 +98,7 @@ def open_guarded(
     path = Path(path)
     _require_signature(path)
     try:
-        file = h5py.File(path, "r")
+        file = _open(path)
     except (OSError, RuntimeError, ValueError) as error:
         raise FormatError(
             f"{named(path)} cannot be opened as HDF5 ({shown(error)}); it is cut short "
@@ -107,6 +107,14 @@ def open_guarded(
     with file:
         _inspect(file, path, limits or Limits())
         yield file
+
+
+def _open(path: Path) -> h5py.File:
+    """Open a file; one whose recording was killed opens as its reader would."""
+    try:
+        return h5py.File(path, "r")
+    except OSError:
+        return h5py.File(path, "r", libver="latest", swmr=True)
 
 
 def _require_signature(path: Path) -> None:

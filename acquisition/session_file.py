@@ -33,6 +33,9 @@ from jointbench.acquisition.session_extras import (
     write_setup,
     write_surface,
 )
+from jointbench.acquisition.session_live import LIVE_SCHEMA
+from jointbench.acquisition.session_live_read import read_live
+from jointbench.acquisition.session_recover import session_from_live
 from jointbench.acquisition.session_streams import (
     in_order,
     recording_from_group,
@@ -78,8 +81,11 @@ def write_session(
 def read_session(path: Path | str) -> Session:
     """Read a session, bit for bit as it was written.
 
+    A recording that was killed, or still goes on, opens as the session that is in it
+    so far; its file is not touched.
+
     Args:
-        path: of a file that `write_session` made.
+        path: of a file that `write_session` or `LiveSession` made.
 
     Raises:
         BadData: it cannot be opened.
@@ -87,6 +93,8 @@ def read_session(path: Path | str) -> Session:
         HostileFile: it asks for more than a measurement would.
     """
     with open_guarded(path) as file, damage_named(path):
+        if read_attribute(file, "schema") == LIVE_SCHEMA:
+            return session_from_live(read_live(file))
         require_schema(file, SESSION_SCHEMA, path)
         return _read(file)
 

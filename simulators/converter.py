@@ -71,11 +71,13 @@ class Digitiser:
         Returns:
             What the driver delivers [SI unit], same shape.
         """
+        return self.round(values + self.noise * rng.standard_normal(values.shape))
+
+    def round(self, values: FloatArray) -> FloatArray:
+        """Clip at the range and round to the nearest count, without adding noise."""
         count = self.range / 2 ** (self.bits - 1)
-        noisy = values + self.noise * rng.standard_normal(values.shape)
-        top = self.range - count
-        counts = np.round(noisy / count) * count
-        return np.asarray(np.clip(counts, -self.range, top), dtype=float)
+        counts = np.round(values / count) * count
+        return np.asarray(np.clip(counts, -self.range, self.range - count), dtype=float)
 
 
 def decimate(chunks: Iterable[FloatArray], filter_: AntiAlias) -> Iterator[FloatArray]:

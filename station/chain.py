@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
+from jointbench.acquisition.errors import NoHitFound
 from jointbench.acquisition.records import Provenance, Recording
 from jointbench.signal.frf import Frf, estimate_frf
 from jointbench.signal.frf_estimators import Estimator
@@ -54,11 +55,25 @@ class ModalChain:
 def judge_hits(
     recordings: Sequence[Recording], settings: ChainSettings
 ) -> tuple[Recording, ...]:
-    """Find and judge the hits of recordings that carry none yet."""
-    return tuple(
-        recording if recording.hits else find_hits(recording, settings.hits)
-        for recording in recordings
-    )
+    """Find and judge the hits of recordings that carry none yet.
+
+    Where others were judged as they were recorded, one without a hit is a quiet
+    stretch between them, and is left out.
+
+    Raises:
+        NoHitFound: there is no hit in a recording, and none was judged before.
+    """
+    some = any(recording.hits for recording in recordings)
+    found = []
+    for recording in recordings:
+        try:
+            found.append(
+                recording if recording.hits else find_hits(recording, settings.hits)
+            )
+        except NoHitFound:
+            if not some:
+                raise
+    return tuple(found)
 
 
 def run_chain(

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """``jointbench identify``: the links of a lumped bench from its measured modes."""
 
+import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.analysis.identification import (
     Identification,
     IdentificationVerdict,
@@ -48,6 +49,55 @@ def run_identify(
     show_joint(result, json_target)
     write_json(json_target, identification_json(result))
     return result
+
+
+def identify_any(
+    model: Path,
+    sessions: Sequence[Path],
+    *,
+    band: str | None,
+    cache: Path | None,
+    report: Path | None,
+    json_target: str | None,
+) -> bool:
+    """Identify the joints of whatever the model file describes.
+
+    Returns:
+        Whether the model can have what was measured.
+
+    Raises:
+        UsageError: a lumped bench without a session, or with a page of its own.
+    """
+    if describes_structure(model):
+        from jointbench.station.identify_structure import run_identify_structure
+
+        return run_identify_structure(
+            model,
+            sessions,
+            band=band,
+            cache=cache,
+            report=report,
+            json_target=json_target,
+        )
+    if not sessions:
+        raise UsageError(
+            f"'{model}' is a lumped bench; give the sessions it was hit in"
+        )
+    if report is not None:
+        raise UsageError(
+            "--report of identify is for structures [joints]; of a lumped bench write "
+            "'jointbench report SESSION --model MODEL --out PAGE'"
+        )
+    return fits(run_identify(model, sessions, band=band, json_target=json_target))
+
+
+def describes_structure(model: Path) -> bool:
+    """Tell whether a model file has meshed bodies; what cannot be read has none."""
+    try:
+        content = tomllib.loads(model.read_text(encoding="utf-8-sig"))
+    except (OSError, ValueError):
+        return False  # the reader of lumped benches says what is wrong
+    return "joints" in content
 
 
 def fits(result: Identification) -> bool:

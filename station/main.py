@@ -4,6 +4,7 @@
 Every command imports what it needs when it runs, so that ``--help`` stays instant.
 """
 
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -15,6 +16,7 @@ from jointbench.station.exit_codes import EXIT_QUALITY, exit_code
 from jointbench.station.options import (
     GAP_HELP,
     Band,
+    Cache,
     Columns,
     Debug,
     Drop,
@@ -27,9 +29,11 @@ from jointbench.station.options import (
     Model,
     Order,
     OutputOnly,
+    Page,
     Point,
     Preload,
     Results,
+    Sessions,
     Universal,
 )
 
@@ -84,6 +88,31 @@ def record_command(
     from jointbench.station.record_command import run_record
 
     run_record(source, out, overwrite=force, json_target=json)
+
+
+@app.command(name="measure")
+def measure_command(
+    plan: Annotated[Path, typer.Argument(help="Plan of the measurement, TOML.")],
+    out: Annotated[Path, typer.Option(help="Session file to write.")],
+    source: Annotated[
+        str | None,
+        typer.Option(help="ni:, ni+grpc://host:port or sim:plates; else the plan's."),
+    ] = None,
+    force: Force = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Measure hammer hits by a plan: points x levels x torques, each repeated.
+
+    Example: jointbench measure plan.toml --out session.h5 --source
+    'sim:plates?seed=1'
+    """
+    # gRPC writes of every lost connection to standard error; the session says it.
+    os.environ.setdefault("GRPC_VERBOSITY", "NONE")
+    from jointbench.station.measure import run_measure
+
+    measured = run_measure(plan, out, source=source, overwrite=force, json_target=json)
+    return 0 if measured.whole else EXIT_QUALITY
 
 
 @app.command(name="import")
@@ -178,22 +207,23 @@ app.command(name="contact")(contact_command)
 
 @app.command(name="identify")
 def identify_command(
-    model: Annotated[Path, typer.Argument(help="Bench model, TOML.")],
-    sessions: Annotated[list[Path], typer.Argument(help="Session files.")],
-    band: Annotated[
-        str | None, typer.Option(help="Band of the rigid-body modes, '50:900' [Hz].")
-    ] = None,
+    model: Annotated[Path, typer.Argument(help="Bench or structure model, TOML.")],
+    sessions: Sessions = None,
+    band: Band = None,
+    cache: Cache = None,
+    report: Page = None,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Identify the links of a lumped bench from its measured modes.
+    """Identify joints: of a lumped bench [links], or of meshed bodies [joints].
 
     Example: jointbench identify bench.toml session.h5 --json joint.json
     """
-    from jointbench.station.identify import fits, run_identify
+    from jointbench.station.identify import identify_any
 
-    found = run_identify(model, sessions, band=band, json_target=json)
-    return 0 if fits(found) else EXIT_QUALITY
+    places = {"cache": cache, "report": report}
+    fits = identify_any(model, sessions or [], band=band, json_target=json, **places)
+    return 0 if fits else EXIT_QUALITY
 
 
 @app.command(name="gap")
@@ -209,7 +239,7 @@ def gap_command(
         list[Path] | None,
         typer.Option(help="Python file of your own effects, which is run."),
     ] = None,
-    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
+    report: Page = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
@@ -265,3 +295,53 @@ def inspect_command(
     from jointbench.station.inspect_file import run_inspect
 
     run_inspect(file, json_target=json)
+
+
+@app.command(name="verify")
+def verify_command(
+    file: Annotated[Path, typer.Argument(help="Session file.")],
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Read a session through, checksums and continuity included.
+
+    Example: jointbench verify session.h5
+    """
+    from jointbench.station.verify import run_verify
+
+    return 0 if run_verify(file, json_target=json) else EXIT_QUALITY
+
+
+@app.command(name="recover")
+def recover_command(
+    file: Annotated[Path, typer.Argument(help="File of a recording that was cut off.")],
+    out: Annotated[
+        Path | None, typer.Option(help="Session file; *.recovered.h5 by default.")
+    ] = None,
+    force: Force = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Save what is left of a recording that was killed; the file itself stays.
+
+    Example: jointbench recover session.h5
+    """
+    from jointbench.station.verify import run_recover
+
+    run_recover(file, out=out, overwrite=force, json_target=json)
+
+
+@app.command(name="simulate")
+def simulate_command(
+    bench: Annotated[
+        str, typer.Argument(help="What stands on the bench.", metavar="URL")
+    ] = "sim:plates?speed=1&interval=2&port=31763",
+    debug: Debug = False,
+) -> None:
+    """Serve a simulated NI chassis for any program that uses nidaqmx over gRPC.
+
+    Example: jointbench simulate 'sim:plates?speed=1&interval=2&port=31763'
+    """
+    from jointbench.station.simulate import run_simulate
+
+    run_simulate(bench)

@@ -16,6 +16,7 @@ from jointbench.station.chain import ChainSettings, ModalChain, run_chain
 from jointbench.station.inputs import is_session_name, read_recordings
 from jointbench.station.output import console, progress_bar, table, with_sd, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.preloads import by_preload, join_pages, of_preload
 from jointbench.station.results_file import results_path, write_results
 from jointbench.station.universal_file import write_universal
 
@@ -64,19 +65,37 @@ def run_modal(
     universal: Path | None = None,
     json_target: str | None = None,
 ) -> ModalChain:
-    """Identify the modes in `files`, show them and keep them beside the session."""
+    """Identify the modes in `files`, show them and keep them beside the session.
+
+    Recordings under different preloads are never averaged: each preload has modes, a
+    table and a results file of its own.
+
+    Returns:
+        What was found at the first preload.
+    """
     target = out or _beside(files)
     check_outputs(files, [target, universal, json_target])
     recordings = read_recordings(files, columns=columns, point=point)
-    with progress_bar("judging hits, estimating FRFs") as progress:
-        chain = run_chain(recordings, settings, progress=progress)
-    if target is not None:
-        write_results(target, chain, files)
-    if universal is not None:
-        write_universal(universal, chain.frf, chain.result.model)
-    show_modal(chain, json_target)
-    write_json(json_target, modal_json(chain) | {"results": str(target or "")})
-    return chain
+    groups = by_preload(recordings)
+    chains = []
+    for preload, group in groups:
+        with progress_bar("judging hits, estimating FRFs") as progress:
+            chain = run_chain(group, settings, progress=progress)
+        own, shared = target, universal
+        if len(groups) > 1:
+            console(json_target).print(f"\nPreload {preload} N")
+            own = None if target is None else of_preload(target, preload)
+            shared = None if universal is None else of_preload(universal, preload)
+        if own is not None:
+            write_results(own, chain, files)
+        if shared is not None:
+            write_universal(shared, chain.frf, chain.result.model)
+        show_modal(chain, json_target)
+        chains.append(chain)
+    pages = [modal_json(chain) for chain in chains]
+    content = join_pages([preload for preload, _ in groups], pages)
+    write_json(json_target, content | {"results": str(target or "")})
+    return chains[0]
 
 
 def parse_band(text: str | None) -> tuple[float, float] | None:

@@ -61,3 +61,6 @@ GeometryFile = Annotated[
     Path | None,
     typer.Option("--geometry", help="Points and lines to draw shapes on (TOML)."),
 ]
+Page = Annotated[Path | None, typer.Option(help="HTML page to write.")]
+Cache = Annotated[Path | None, typer.Option(help="Folder of reduced structures.")]
+Sessions = Annotated[list[Path] | None, typer.Argument(help="Session files.")]

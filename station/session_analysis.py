@@ -12,6 +12,7 @@ from jointbench.station.chain import ChainSettings, ModalChain, judge_hits, run_
 from jointbench.station.identify import identify_joint
 from jointbench.station.joint import ContactPrediction, predict_joint
 from jointbench.station.output import working
+from jointbench.station.preloads import by_preload
 from jointbench.station.surface import SurfaceChain, analyse_surface
 
 
@@ -68,8 +69,16 @@ def _judged(session: Session, remarks: list[str]) -> tuple[Recording, ...]:
 def _modal(recordings: tuple[Recording, ...], remarks: list[str]) -> ModalChain | None:
     if not recordings:
         return None
+    groups = by_preload(recordings)
+    if len(groups) > 1:
+        remarks.append(
+            f"The recordings have {len(groups)} preloads; shown are the modes at "
+            f"{groups[0][0]:g} N. `jointbench modal` shows those at each."
+            if groups[0][0] is not None
+            else "Shown are the modes of the recordings that state no preload."
+        )
     try:
-        return run_chain(recordings)
+        return run_chain(groups[0][1])
     except BadData as error:
         remarks.append(f"No modes: {error}")
         return None

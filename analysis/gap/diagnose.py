@@ -11,9 +11,10 @@ from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.checks import campaign_limits, flat_tops
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
+from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import Candidate, Reported, Term
 from jointbench.analysis.gap.exhibit import make_exhibit
-from jointbench.analysis.gap.fit import Fit, make_problem, minimise
+from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.lumped import LumpedBench

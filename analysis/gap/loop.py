@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
 from jointbench.analysis.gap.effects import Candidate
-from jointbench.analysis.gap.fit import Fit, fit_stages, make_problem, minimise
+from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import Progress, finish, race, score
 from jointbench.analysis.gap.screening import Screening, screen
@@ -98,7 +99,7 @@ def _apart(fit: Fit) -> bool:
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     """Fit the base coarse to fine, estimate the noise there, and settle."""
     problem = make_problem(bench, ())
-    fit = fit_stages(problem, np.zeros(problem.n_base))
+    fit = fit_stages(problem, np.zeros(problem.n_base), BASE_STAGES)
     for _ in range(REFINEMENTS):
         before = fit.cost
         bench = bench.refine(fit.base, ())

@@ -129,13 +129,26 @@ class LumpedBench:
             r = self.response(base, terms, oversampling)
             r -= self.campaign.response
             return r
+        mean = self.mean_stiffness(base, self.settled)
         moved = base.copy()
-        moved[self.joint_at] = self.settled.anchor
+        moved[self.joint_at] = mean
         r = self.response(moved, terms, oversampling)
         r -= self.campaign.response
-        share = base[self.joint_at] - self.settled.anchor - settling
+        share = base[self.joint_at] - mean - settling
         r += share[:, None, None] * self.settled.slope
         return r
+
+    def mean_stiffness(self, base: FloatArray, settled: Settled) -> float:
+        """Return the log of the joint's stiffness that the settling was added to.
+
+        It goes with the scale of all other masses and stiffnesses: one scale for all
+        changes no frequency, and so must not bend either.
+        """
+        model = self.campaign.model
+        count = len(model.bodies) + len(model.links)
+        others = np.arange(count) != self.joint_at
+        scale = np.mean((base - settled.anchor)[:count][others])
+        return float(settled.anchor[self.joint_at] + scale)
 
     @property
     def joint_at(self) -> int:

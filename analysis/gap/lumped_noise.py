@@ -46,11 +46,11 @@ class Settled:
     the scatter; what does not bend cannot leave the base stuck.
 
     Attributes:
-        anchor: log(stiffness / nominal) to which the settling was added.
+        anchor: base at which the model was expanded, shape (n_base,).
         slope: change of the response with it, shape of the response.
     """
 
-    anchor: float
+    anchor: FloatArray
     slope: FloatArray
 
 
@@ -94,7 +94,8 @@ def _centred(bench: "LumpedBench", base: FloatArray) -> "LumpedBench":
     settling = bench.excitation.conditions.settling
     if bench.settled is None or settling is None:
         return bench
-    return _settle(bench, settling + bench.settled.anchor - base[bench.joint_at])
+    mean = bench.mean_stiffness(base, bench.settled)
+    return _settle(bench, settling + mean - base[bench.joint_at])
 
 
 def _channel_noise(
@@ -145,7 +146,7 @@ def _expanded(
     ways = _scatter_ways(there, base, terms, moved, sigma)
     slope = ways[:, 1].reshape(*sigma.shape, -1) * sigma[:, :, None]
     whitened = _with_noise(there, bench.noise, columns, ways)
-    settled = Settled(float(base[bench.joint_at]), slope)
+    settled = Settled(base.copy(), slope)
     return replace(whitened, settled=settled)
 
 

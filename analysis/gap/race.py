@@ -8,15 +8,9 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import FULL, Bench, Stage
+from jointbench.analysis.gap.descent import BASE_STAGES, cost_at, minimise
 from jointbench.analysis.gap.effects import Candidate, Term
-from jointbench.analysis.gap.fit import (
-    BASE_STAGES,
-    Fit,
-    Problem,
-    cost_at,
-    make_problem,
-    minimise,
-)
+from jointbench.analysis.gap.fit import Fit, Problem, make_problem
 from jointbench.analysis.gap.screening import Direction, Screening
 
 Progress = Callable[[str], None]

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.analysis.gap.fit import Fit, make_problem, minimise
+from jointbench.analysis.gap.descent import minimise
+from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.loop import Outcome, fit_base
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench

@@ -10,8 +10,9 @@ import pytest
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import Blocks, Stage
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
+from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import Candidate, Effect, Parameter, Site, Term
-from jointbench.analysis.gap.fit import Fit, make_problem, minimise
+from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.screening import null_threshold

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""What the driver says: modules, TEDS, and the two ways in which a stream breaks."""
+
+from dataclasses import dataclass
+
+from jointbench.acquisition.errors import InstrumentError
+
+
+class ConnectionLost(InstrumentError):
+    """The server or the device went away; it may come back."""
+
+
+class Overrun(InstrumentError):
+    """Samples were overwritten in the buffer before they were read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Module:
+    """One device of a chassis.
+
+    Attributes:
+        name: for example ``"cDAQ1Mod1"``.
+        product: for example ``"NI 9234"``.
+        simulated: True where no hardware is behind it.
+        analogue_trigger: whether it can trigger on a signal.
+        inputs: its analogue inputs.
+    """
+
+    name: str
+    product: str
+    simulated: bool
+    analogue_trigger: bool
+    inputs: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Teds:
+    """What a sensor says of itself.
+
+    Attributes:
+        manufacturer: number of the maker.
+        model: number of the model.
+        serial: serial number.
+    """
+
+    manufacturer: int
+    model: int
+    serial: int

@@ -1,0 +1,339 @@
+# SPDX-License-Identifier: MIT
+"""The NI-DAQmx driver: the one module that talks to `nidaqmx`.
+
+The same calls serve a driver on this computer and a device server on another, real or
+simulated; only the channel behind them differs.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import grpc
+import nidaqmx
+import numpy as np
+from nidaqmx.constants import (
+    AccelSensitivityUnits,
+    AccelUnits,
+    AcquisitionType,
+    Coupling,
+    ExcitationSource,
+    ForceIEPESensorSensitivityUnits,
+    ForceUnits,
+    ReadRelativeTo,
+)
+from nidaqmx.errors import DaqError, DaqNotFoundError, DaqNotSupportedError, RpcError
+from nidaqmx.stream_readers import AnalogMultiChannelReader
+from nidaqmx.system import System
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import InstrumentError, UsageError
+from jointbench.acquisition.ni.answers import (
+    ConnectionLost,
+    Module,
+    Overrun,
+    Teds,
+)
+from jointbench.acquisition.ni.sensors import Axis, Sensor, channel_name
+from jointbench.acquisition.records import Quantity
+
+STANDARD_GRAVITY = 9.80665  # [m/s^2]
+OVERRUN = -200279
+# The task is unknown, the device is away, or its clock has stopped.
+_GONE = {-200088, -88709, -201003, -50405, -200284}
+_TEDS_SILENT = {-200709, -200725, -200739, -200233}
+_OPTIONS = (
+    ("grpc.max_receive_message_length", -1),
+    ("grpc.max_send_message_length", -1),
+    ("grpc.keepalive_time_ms", 10_000),
+    ("grpc.keepalive_timeout_ms", 5_000),
+    ("grpc.min_reconnect_backoff_ms", 100),
+    ("grpc.initial_reconnect_backoff_ms", 100),
+    ("grpc.max_reconnect_backoff_ms", 1_000),
+)
+
+
+class Chassis:
+    """A driver, here or behind a device server; close it when done."""
+
+    def __init__(self, address: str | None) -> None:
+        """Reach a driver.
+
+        Args:
+            address: ``host:port`` of a device server, None for this computer.
+        """
+        self.address = address
+        self._channel = (
+            None if address is None else grpc.insecure_channel(address, _OPTIONS)
+        )
+
+    def close(self) -> None:
+        """Let go of the server."""
+        if self._channel is not None:
+            self._channel.close()
+
+    def modules(self) -> tuple[Module, ...]:
+        """Return the devices that have analogue inputs.
+
+        Raises:
+            InstrumentError: there is no driver, or the server does not answer.
+        """
+        with _named_errors(self.address):
+            system = (
+                System.local()
+                if self._channel is None
+                else System.remote(self._options(""))
+            )
+            return tuple(
+                Module(
+                    device.name,
+                    device.product_type,
+                    device.is_simulated,
+                    device.anlg_trig_supported,
+                    tuple(device.ai_physical_chans.channel_names),
+                )
+                for device in system.devices
+                if device.ai_physical_chans.channel_names
+            )
+
+    def teds(self, physical: str) -> Teds | None:
+        """Return the TEDS of the sensor at an input, None where none answers."""
+        device = physical.partition("/")[0]
+        with _named_errors(self.address):
+            system = (
+                System.local()
+                if self._channel is None
+                else System.remote(self._options(""))
+            )
+            channel = system.devices[device].ai_physical_chans[physical]
+            try:
+                return Teds(
+                    channel.teds_mfg_id, channel.teds_model_num, channel.teds_serial_num
+                )
+            except DaqError as error:
+                if error.error_code in _TEDS_SILENT:
+                    return None
+                raise
+
+    def task(self, name: str, sensors: Sequence[Sensor]) -> "AnalogTask":
+        """Make a task with a channel for each axis of the sensors.
+
+        Raises:
+            InstrumentError: a channel is refused.
+        """
+        with _named_errors(self.address):
+            task = nidaqmx.Task(name, grpc_options=self._options(name))
+            try:
+                for sensor in sensors:
+                    for axis in sensor.axes:
+                        _add_channel(task, sensor, axis)
+            except Exception:
+                task.close()
+                raise
+            return AnalogTask(task, self.address)
+
+    def hand(self, wishes: bytes) -> bytes | None:
+        """Ask the hand of a simulated bench to strike; None where there is none."""
+        if self._channel is None:
+            return None
+        call = self._channel.unary_unary("/jointbench.Hand/Strike")
+        try:
+            answer: bytes = call(wishes, timeout=5.0)
+        except grpc.RpcError as error:
+            code = error.code()
+            if code is grpc.StatusCode.UNIMPLEMENTED:
+                return None
+            if code is grpc.StatusCode.INVALID_ARGUMENT:
+                raise UsageError(str(error.details())) from error
+            raise ConnectionLost(_lost(self.address)) from error
+        return answer
+
+    def _options(self, name: str) -> Any:
+        if self._channel is None:
+            return None
+        return nidaqmx.GrpcSessionOptions(self._channel, name)
+
+
+class AnalogTask:
+    """A task that streams; its calls raise this package's errors."""
+
+    def __init__(self, task: Any, address: str | None) -> None:
+        self._task, self._address = task, address
+        self._reader = AnalogMultiChannelReader(task.in_stream)
+        # The shape is made right here; asking the server for it at every read is not.
+        self._reader.verify_array_shape = False
+        self._count = len(task.channel_names)
+
+    def start(self, sample_rate: float, *, buffer: int) -> float:
+        """Start streaming and return the rate that the device really runs at [Hz].
+
+        Args:
+            sample_rate: asked for [Hz].
+            buffer: samples per channel that the driver keeps until they are read.
+        """
+        with _named_errors(self._address):
+            self._task.timing.cfg_samp_clk_timing(
+                sample_rate,
+                sample_mode=AcquisitionType.CONTINUOUS,
+                samps_per_chan=buffer,
+            )
+            self._task.in_stream.input_buf_size = buffer
+            rate = float(self._task.timing.samp_clk_rate)
+            self._task.start()
+            return rate
+
+    def start_triggered(
+        self,
+        sample_rate: float,
+        *,
+        samples: int,
+        source: str,
+        before: int,
+        level: float,
+    ) -> float:
+        """Start a finite block around a rising edge that the hardware looks for.
+
+        Args:
+            sample_rate: asked for [Hz].
+            samples: of the whole block.
+            source: name of the channel that triggers.
+            before: samples kept before the edge.
+            level: [SI unit of the channel].
+        """
+        with _named_errors(self._address):
+            self._task.timing.cfg_samp_clk_timing(
+                sample_rate, sample_mode=AcquisitionType.FINITE, samps_per_chan=samples
+            )
+            self._task.triggers.reference_trigger.cfg_anlg_edge_ref_trig(
+                source, before, trigger_level=level
+            )
+            rate = float(self._task.timing.samp_clk_rate)
+            self._task.start()
+            return rate
+
+    def read(self, count: int, *, timeout: float) -> FloatArray:
+        """Return the next samples in SI units, shape (n_channels, count).
+
+        Raises:
+            Overrun: some of them were overwritten.
+            ConnectionLost: the server or the device went away.
+            InstrumentError: anything else went wrong.
+        """
+        samples = np.empty((self._count, count))
+        with _named_errors(self._address):
+            self._reader.read_many_sample(samples, count, timeout)
+        return samples
+
+    def acquired(self) -> int:
+        """Return how many samples per channel the device has made since the start."""
+        with _named_errors(self._address):
+            return int(self._task.in_stream.total_samp_per_chan_acquired)
+
+    def position(self) -> int:
+        """Return the next sample that a read returns, as the driver counts them."""
+        with _named_errors(self._address):
+            return int(self._task.in_stream.curr_read_pos)
+
+    def resume_at(self, sample: int, count: int, *, timeout: float) -> FloatArray:
+        """Read from a sample counted from the start, and go on from there.
+
+        Args:
+            sample: index of the first sample wanted.
+            count: samples to read.
+            timeout: [s].
+        """
+        stream = self._task.in_stream
+        with _named_errors(self._address):
+            stream.relative_to = ReadRelativeTo.FIRST_SAMPLE
+            stream.offset = sample
+        samples = self.read(count, timeout=timeout)
+        with _named_errors(self._address):
+            stream.relative_to = ReadRelativeTo.CURRENT_READ_POSITION
+            stream.offset = 0
+        return samples
+
+    def open_loops(self) -> tuple[str, ...]:
+        """Return the channels whose IEPE loop is open: a cable or a sensor is off.
+
+        Empty where the device cannot tell.
+        """
+        stream = self._task.in_stream
+        try:
+            if not stream.open_current_loop_chans_exist:
+                return ()
+            return tuple(stream.open_current_loop_chans)
+        except DaqError:
+            return ()
+
+    def close(self) -> None:
+        """Stop and clear the task, if it is still there."""
+        with suppress(DaqError, RpcError):
+            self._task.stop()
+        with suppress(DaqError, RpcError):
+            self._task.close()
+
+
+def _add_channel(task: Any, sensor: Sensor, axis: Axis) -> None:
+    name = channel_name(sensor, axis)
+    excitation = {
+        "current_excit_source": ExcitationSource.INTERNAL
+        if sensor.excitation
+        else ExcitationSource.NONE,
+        "current_excit_val": sensor.excitation,
+    }
+    limits = {"min_val": -sensor.range, "max_val": sensor.range}
+    if sensor.quantity is Quantity.FORCE:
+        channel = task.ai_channels.add_ai_force_iepe_chan(
+            axis.physical,
+            name,
+            units=ForceUnits.NEWTONS,
+            sensitivity=1e3 * axis.sensitivity,
+            sensitivity_units=ForceIEPESensorSensitivityUnits.MILLIVOLTS_PER_NEWTON,
+            **limits,
+            **excitation,
+        )
+    elif sensor.quantity is Quantity.ACCELERATION:
+        channel = task.ai_channels.add_ai_accel_chan(
+            axis.physical,
+            name,
+            units=AccelUnits.METERS_PER_SECOND_SQUARED,
+            sensitivity=1e3 * axis.sensitivity * STANDARD_GRAVITY,
+            sensitivity_units=AccelSensitivityUnits.MILLIVOLTS_PER_G,
+            **limits,
+            **excitation,
+        )
+    else:
+        raise UsageError(
+            f"channel {name!r} measures {sensor.quantity.value}; the NI driver takes "
+            "hammers (force) and accelerometers (acceleration)"
+        )
+    channel.ai_coupling = Coupling[sensor.coupling]
+
+
+@contextmanager
+def _named_errors(address: str | None) -> Iterator[None]:
+    """Turn what `nidaqmx` raises into one line that says what to do."""
+    try:
+        yield
+    except (DaqNotFoundError, DaqNotSupportedError) as error:
+        raise InstrumentError(
+            "no NI-DAQmx driver on this computer; install it from ni.com/downloads, or "
+            "name a device server with ni+grpc://host:31763"
+        ) from error
+    except RpcError as error:
+        raise ConnectionLost(_lost(address)) from error
+    except DaqError as error:
+        words = str(error).split("\n\nStatus Code")[0]
+        message = f"NI-DAQmx {error.error_code}: {words}"
+        if error.error_code == OVERRUN:
+            raise Overrun(message) from error
+        if error.error_code in _GONE:
+            raise ConnectionLost(message) from error
+        raise InstrumentError(message) from error
+
+
+def _lost(address: str | None) -> str:
+    return (
+        f"the device server at {address or 'this computer'} does not answer; check "
+        "cable, power and the server program"
+    )

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""The channel table: which sensor is plugged in where, and what is known of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import date
+
+from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.records import Channel, Quantity
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """One direction of a sensor, on one input of the chassis.
+
+    Attributes:
+        physical: input, for example ``"cDAQ1Mod1/ai0"``.
+        direction: ``"+z"`` and the like, in the axes of the structure.
+        sensitivity: [V per SI unit].
+    """
+
+    physical: str
+    direction: str
+    sensitivity: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sensor:
+    """A sensor of one axis or of three.
+
+    Attributes:
+        name: its channels are called so; with several axes a direction is added.
+        quantity: what it measures.
+        point: where it sits; for a hammer empty.
+        axes: one for each input it takes.
+        unit: unit of the table, for example ``"g"``; samples are SI throughout.
+        range: largest value expected [SI unit].
+        excitation: current of its built-in amplifier [A], 0 for none.
+        coupling: ``"AC"`` or ``"DC"``.
+        serial: serial number, empty if not stated.
+        calibrated: day of the last calibration, None if not stated.
+        calibration_months: how long a calibration holds.
+    """
+
+    name: str
+    quantity: Quantity
+    point: str
+    axes: tuple[Axis, ...]
+    unit: str
+    range: float
+    excitation: float = 0.004
+    coupling: str = "AC"
+    serial: str = ""
+    calibrated: date | None = None
+    calibration_months: int = 12
+
+
+def require_table(sensors: Sequence[Sensor]) -> None:
+    """Check that a table makes sense as a whole.
+
+    Raises:
+        UsageError: there is not exactly one force channel, no response, or a name or
+            an input is used twice.
+    """
+    names = [channel.name for channel in table_channels(sensors)]
+    inputs = [axis.physical for sensor in sensors for axis in sensor.axes]
+    for what, words in (("channel name", names), ("input", inputs)):
+        twice = sorted({word for word in words if words.count(word) > 1})
+        if twice:
+            raise UsageError(
+                f"{what} {twice[0]!r} is used twice in the channel table; each sensor "
+                "and axis needs its own"
+            )
+    forces = sum(len(s.axes) for s in sensors if s.quantity is Quantity.FORCE)
+    if forces != 1 or len(names) < 2:
+        raise UsageError(
+            f"the channel table has {forces} force channels and "
+            f"{len(names) - forces} others; a hammer session needs one hammer and at "
+            "least one response"
+        )
+
+
+def table_channels(sensors: Sequence[Sensor]) -> tuple[Channel, ...]:
+    """Return the channels of a table, in its order."""
+    return tuple(
+        Channel(
+            name=channel_name(sensor, axis),
+            quantity=sensor.quantity,
+            point=sensor.point,
+            direction=axis.direction,
+            unit=sensor.unit,
+            sensitivity=axis.sensitivity,
+            range=sensor.range,
+        )
+        for sensor in sensors
+        for axis in sensor.axes
+    )
+
+
+def channel_name(sensor: Sensor, axis: Axis) -> str:
+    """Return the name of the channel of one axis, ``"a3x"`` for a triaxial ``a3``."""
+    if len(sensor.axes) == 1:
+        return sensor.name
+    return sensor.name + axis.direction.lstrip("+-")
+
+
+def calibration_warning(sensor: Sensor, today: date) -> str | None:
+    """Return what is wrong with the calibration of a sensor, None if nothing is."""
+    if sensor.calibrated is None:
+        return f"sensor {sensor.name!r}: no calibration date is stated"
+    months = sensor.calibrated.month - 1 + sensor.calibration_months
+    year, month = sensor.calibrated.year + months // 12, months % 12 + 1
+    # The last day of February stands in for the days that a month lacks.
+    due = date(year, month, min(sensor.calibrated.day, 28))
+    if today <= due:
+        return None
+    return (
+        f"sensor {sensor.name!r} ({sensor.serial or 'no serial number'}): calibrated "
+        f"{sensor.calibrated.isoformat()}, due {due.isoformat()}; have it calibrated"
+    )

@@ -1,0 +1,231 @@
+# SPDX-License-Identifier: MIT
+"""Continuous acquisition that survives its cable: blocks, and the gaps between."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import InstrumentError
+from jointbench.acquisition.ni.answers import ConnectionLost, Overrun
+from jointbench.acquisition.ni.driver import AnalogTask, Chassis
+from jointbench.acquisition.ni.sensors import Sensor
+
+_RETRY = 0.2  # [s] between attempts to come back
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Block:
+    """Successive samples of one segment.
+
+    Attributes:
+        samples: SI units, shape (n_channels, n).
+        segment: number of the uninterrupted task they come from, from 0.
+        first: index of the first of them since that task began.
+    """
+
+    samples: FloatArray
+    segment: int
+    first: int
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """What is missing between two blocks.
+
+    Attributes:
+        kind: ``"overrun"``, ``"lost"`` (the connection, just now) or ``"back"``.
+        segment: number of the segment that ends or goes on.
+        first: index of the first sample that is missing in it.
+        samples: how many are known to be missing.
+        seconds: how long nothing was measured [s]; 0 where that is not known yet.
+        words: what the driver said.
+    """
+
+    kind: str
+    segment: int
+    first: int
+    samples: int
+    seconds: float
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class StreamSettings:
+    """How to stream.
+
+    Attributes:
+        sample_rate: asked for [Hz].
+        block: samples per channel of a block.
+        buffer: seconds that the driver keeps until they are read [s].
+        patience: how long to wait for a connection that is lost [s].
+        now: clock [s].
+        sleep: waits [s].
+    """
+
+    sample_rate: float
+    block: int
+    buffer: float = 20.0
+    patience: float = 120.0
+    now: Callable[[], float] = time.monotonic
+    sleep: Callable[[float], None] = time.sleep
+
+
+@dataclass(slots=True)
+class Counters:
+    """What the device made against what was read, over all segments.
+
+    Attributes:
+        acquired: samples per channel made by the device, as its counter says.
+        unread: of those, still in its buffer when the counter was read.
+        delivered: samples per channel read.
+    """
+
+    acquired: int = 0
+    unread: int = 0
+    delivered: int = 0
+
+    @property
+    def lost(self) -> int:
+        """Samples per channel that were made, are not waiting, and were not read."""
+        return self.acquired - self.unread - self.delivered
+
+
+@dataclass(slots=True)
+class NiStream:
+    """A stream of blocks and gaps from a chassis.
+
+    Attributes:
+        chassis: an open one.
+        sensors: the channel table.
+        settings: rate, block, patience.
+        counters: kept up to date while the stream is read.
+        sample_rate: at which the device really runs [Hz]; 0 before `start`.
+    """
+
+    chassis: Chassis
+    sensors: Sequence[Sensor]
+    settings: StreamSettings
+    counters: Counters = field(default_factory=Counters)
+    sample_rate: float = 0.0
+    _task: AnalogTask | None = None
+    _segment: int = 0
+    _position: int = 0
+    _made_before: int = 0
+
+    def start(self) -> None:
+        """Make the task and start its clock.
+
+        Raises:
+            InstrumentError: a channel or the rate is refused, or nobody answers.
+        """
+        task = self.chassis.task(f"jointbench-{self._segment}", self.sensors)
+        try:
+            buffer = round(self.settings.buffer * self.settings.sample_rate)
+            self.sample_rate = task.start(
+                self.settings.sample_rate, buffer=max(buffer, 4 * self.settings.block)
+            )
+        except InstrumentError:
+            task.close()
+            raise
+        self._task, self._position = task, 0
+        self._made_before = self.counters.acquired
+
+    def items(self) -> Iterator[Block | Gap]:
+        """Yield blocks and gaps for as long as the stream is read.
+
+        Raises:
+            InstrumentError: the device refuses for another reason than those two, or
+                does not come back.
+        """
+        while True:
+            try:
+                yield self._read()
+            except Overrun as error:
+                yield from self._overrun(str(error))
+            except ConnectionLost as error:
+                yield Gap("lost", self._segment, self._position, 0, 0.0, str(error))
+                yield self._reconnect(str(error))
+
+    def open_loops(self) -> tuple[str, ...]:
+        """Return the channels whose cable or sensor is off, if the device can tell."""
+        try:
+            return () if self._task is None else self._task.open_loops()
+        except InstrumentError:
+            return ()
+
+    def count(self) -> None:
+        """Bring the counters up to date with the device's own."""
+        if self._task is not None:
+            acquired, position = self._task.acquired(), self._task.position()
+            self.counters.acquired = self._made_before + max(acquired, position)
+            self.counters.unread = max(0, acquired - position)
+
+    def count_if_there(self) -> None:
+        """Bring the counters up to date unless the device went away."""
+        with suppress(InstrumentError):
+            self.count()
+
+    def close(self) -> None:
+        """Stop the task, if it is still there."""
+        if self._task is not None:
+            self._task.close()
+            self._task = None
+
+    def _read(self) -> Block:
+        assert self._task is not None, "start() comes first"
+        count = self.settings.block
+        samples = self._task.read(count, timeout=count / self.sample_rate + 5.0)
+        return self._took(samples)
+
+    def _took(self, samples: FloatArray) -> Block:
+        block = Block(samples, self._segment, self._position)
+        self._position += samples.shape[1]
+        self.counters.delivered += samples.shape[1]
+        made = self._made_before + self._position
+        self.counters.acquired = max(self.counters.acquired, made)
+        return block
+
+    def _overrun(self, words: str) -> Iterator[Block | Gap]:
+        """Go on at a sample that is still there, and say what lies between."""
+        assert self._task is not None
+        newest = self._task.acquired()
+        # The newest quarter of the buffer is safe from being overwritten meanwhile.
+        keep = round(0.25 * self.settings.buffer * self.sample_rate)
+        resume = max(self._position, newest - keep)
+        if resume == self._position:
+            resume = newest
+        samples = self._task.resume_at(
+            resume,
+            self.settings.block,
+            timeout=self.settings.block / self.sample_rate + 5.0,
+        )
+        lost, first = resume - self._position, self._position
+        seconds = lost / self.sample_rate
+        yield Gap("overrun", self._segment, first, lost, seconds, words)
+        self._position = resume
+        self.counters.acquired = max(
+            self.counters.acquired, self._made_before + self._position
+        )
+        yield self._took(samples)
+
+    def _reconnect(self, words: str) -> Gap:
+        settings = self.settings
+        since = settings.now()
+        first = self._position
+        self.close()
+        self._segment += 1
+        while True:
+            try:
+                self.start()
+            except ConnectionLost as error:
+                if settings.now() - since > settings.patience:
+                    raise InstrumentError(
+                        f"{error}; gave up after {settings.patience:g} s, what was "
+                        "recorded is safe"
+                    ) from error
+                settings.sleep(_RETRY)
+            else:
+                away = settings.now() - since
+                return Gap("back", self._segment, first, 0, away, words)

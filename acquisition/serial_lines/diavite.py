@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""Diavite DH-8 roughness tester: ESC command ETX, answered by ACK payload EOT.
+
+115200 baud, 8N1. Codes 04 and 06 occur inside a binary profile, so its end is found by
+its count, never by looking for EOT.
+
+Source:
+    Public protocol notes of the DH-8. They do not say whether heights are signed, nor
+    at which end of the traverse the last point lies: `signed` is an option, and the
+    spacing is taken as traverse over number of points.
+"""
+
+import struct
+
+import numpy as np
+
+from jointbench.acquisition.errors import FormatError, UsageError
+from jointbench.acquisition.records import step
+from jointbench.acquisition.serial_lines.line import Line, LineBroken
+from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
+
+BAUD = 115_200
+TRAVERSES = (0.48e-3, 1.5e-3, 4.8e-3, 15e-3)
+"""Traverse by its index [m]."""
+CUTOFFS = (None, 0.08e-3, 0.25e-3, 0.8e-3, 2.5e-3)
+"""Cut-off by its index [m]."""
+HEIGHT_STEP = 1e-6 / 128
+"""Height of one count [m]."""
+_ESC, _ETX, _EOT, _ACK = b"\x1b", b"\x03", b"\x04", b"\x06"
+_MOST_TEXT = 4096
+_LETTERS = {
+    "name": b"0",
+    "version": b"1",
+    "unit": b"2",
+    "values": b"@",
+    "start": b">",
+}
+
+
+def ask_text(line: Line, what: str) -> str:
+    """Ask for a text, or start a measurement.
+
+    Args:
+        line: of the instrument.
+        what: ``"name"``, ``"version"``, ``"unit"``, ``"values"`` (the R values, two
+            lines) or ``"start"``.
+
+    Raises:
+        UsageError: there is no such question.
+        FormatError: the answer does not begin with ACK.
+        LineBroken: it does not come to its end.
+    """
+    if what not in _LETTERS:
+        raise UsageError(f"the DH-8 knows no {what!r}; ask for {', '.join(_LETTERS)}")
+    _request(line, _LETTERS[what])
+    answer = line.receive_to(_EOT, limit=_MOST_TEXT)
+    return answer[:-1].decode("cp1252")
+
+
+def set_traverse(line: Line, index: int) -> None:
+    """Set the traverse by its index in `TRAVERSES`.
+
+    Raises:
+        UsageError: there is no such index.
+    """
+    if not 0 <= index < len(TRAVERSES):
+        raise UsageError(f"traverse index is {index}; give 0 to {len(TRAVERSES) - 1}")
+    _request(line, b"P" + bytes([index]))
+    _end(line)
+
+
+def set_cutoff(line: Line, index: int) -> None:
+    """Set the cut-off by its index in `CUTOFFS`.
+
+    Raises:
+        UsageError: there is no such index.
+    """
+    if not 0 <= index < len(CUTOFFS):
+        raise UsageError(f"cut-off index is {index}; give 0 to {len(CUTOFFS) - 1}")
+    _request(line, b"Q" + bytes([index]))
+    _end(line)
+
+
+def read_profile(
+    line: Line,
+    *,
+    name: str,
+    traverse: float,
+    filtered: bool = False,
+    signed: bool = True,
+) -> Profile:
+    """Fetch the profile of the last measurement.
+
+    Args:
+        line: of the instrument.
+        name: of the profile.
+        traverse: that was measured [m].
+        filtered: the roughness profile instead of the one as traced.
+        signed: whether heights are signed; the public notes do not say.
+
+    Raises:
+        FormatError: the answer is not framed as the notes say, or holds no point.
+        LineBroken: it breaks off; the error keeps the bytes that came.
+    """
+    _request(line, b"U0")
+    _end(line)
+    _request(line, b"+" if filtered else b"<")
+    head = line.receive(4)
+    gain, count = struct.unpack("<HH", head)
+    try:
+        body = line.receive(2 * count)
+    except LineBroken as error:
+        points = len(error.received) // 2
+        raise LineBroken(
+            f"{error}; {points} of {count} points came and are kept in this error",
+            head + error.received,
+        ) from error
+    _end(line)
+    if count == 0:
+        raise FormatError("the DH-8 sent a profile without points; measure first")
+    counts = np.frombuffer(body, dtype="<i2" if signed else "<u2")
+    return Profile(
+        name=name,
+        heights=HEIGHT_STEP * counts.astype(float),
+        spacing=traverse / count,
+        valid=np.ones(count, dtype=bool),
+        instrument=SurfaceInstrument(name="Diavite DH-8"),
+        provenance=(
+            step("diavite", gain=gain, points=count, signed=signed, filtered=filtered),
+        ),
+    )
+
+
+def _request(line: Line, command: bytes) -> None:
+    line.send(_ESC + command + _ETX)
+    first = line.receive(1)
+    if first != _ACK:
+        raise FormatError(
+            f"the DH-8 answered {first!r} to {command!r} where ACK is expected; check "
+            f"the baud rate, it is {BAUD}"
+        )
+
+
+def _end(line: Line) -> None:
+    last = line.receive(1)
+    if last != _EOT:
+        raise FormatError(
+            f"the DH-8 ended its answer with {last!r} instead of EOT; the profile was "
+            "not taken, ask again"
+        )

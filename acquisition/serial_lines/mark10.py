@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""Mark-10 torque testers and force gauges: ``?`` CR, answered by a number and its unit.
+
+Source:
+    Public protocol of Mark-10 gauges: 8N1, ``4.285 Nm`` CR LF, errors ``*10`` and the
+    like. The sign follows the instrument's own display, clockwise or compression
+    positive as it is set there.
+"""
+
+import re
+from dataclasses import dataclass
+
+from jointbench.acquisition.errors import FormatError, InstrumentError
+from jointbench.acquisition.serial_lines.line import Line
+from jointbench.acquisition.units import is_unit, to_si
+
+BAUD = 115_200
+_MOST = 64
+_READING = re.compile(r"\s*([+-]?\d+\.?\d*)\s*(\S.*?)\s*")
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """One reading.
+
+    Attributes:
+        value: in SI [N m or N].
+        kind: ``"torque"`` or ``"force"``.
+        raw: as the instrument sent it.
+    """
+
+    value: float
+    kind: str
+    raw: str
+
+
+def read_gauge(line: Line) -> Reading:
+    """Read what the gauge shows.
+
+    Raises:
+        InstrumentError: the gauge answers with an error.
+        FormatError: the answer is no number with a unit of torque or force.
+        LineBroken: it does not come to its end.
+    """
+    line.send(b"?\r")
+    raw = line.receive_to(b"\r\n", limit=_MOST)[:-2].decode("cp1252")
+    if raw.startswith("*"):
+        raise InstrumentError(f"the Mark-10 answers error {raw!r}; see its manual")
+    match = _READING.fullmatch(raw)
+    if match is not None:
+        for kind in ("torque", "force"):
+            unit = match[2].replace("lbFin", "lbfin").replace("lbFft", "lbfft")
+            if is_unit(unit, kind):
+                return Reading(float(match[1]) * to_si(unit, kind), kind, raw)
+    raise FormatError(
+        f"the Mark-10 answered {raw!r}; a number with a unit of torque or force is "
+        "expected"
+    )

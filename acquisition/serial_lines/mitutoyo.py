@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""Mitutoyo SJ-210 and SJ-410 roughness testers.
+
+A command is a header of two letters, a sub-field of three, data and CR; the answer is
+``OK`` data CR, or ``NG`` code CR. 9600 to 57600 baud, 8 data bits.
+
+Source:
+    User's manuals 99MBB122A, ch. 17.12 (SJ-210), and 99MBB765A, ch. 22.14 (SJ-410).
+    Their public pages do not print the sub-fields that start and stop a measurement:
+    there is no function for it here, press the key on the instrument. Nor do they
+    print what parts the heights of one file: both a separator and none are read.
+"""
+
+import re
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.errors import FormatError, InstrumentError
+from jointbench.acquisition.records import step
+from jointbench.acquisition.serial_lines.line import Line
+from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
+
+BAUD = 9600
+_CR = b"\r"
+_MOST = 65_536
+_DIGITS = 9
+_MOST_FILES = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """How the instrument is set, by the codes of its manual.
+
+    Attributes:
+        standard: of roughness.
+        profile: kind of profile.
+        cutoff: code of the cut-off.
+        sampling_lengths: how many.
+        length: of evaluation [m].
+        filter: code of the filter.
+    """
+
+    standard: str
+    profile: str
+    cutoff: str
+    sampling_lengths: int
+    length: float
+    filter: str
+
+
+def ask(line: Line, field: str, data: str = "") -> str:
+    """Read a sub-field, ``"STU"``, ``"CON"``, ``"PAR"``, ``"RES"`` or ``"EVA"``.
+
+    Raises:
+        InstrumentError: the instrument answers NG.
+        FormatError: the answer is neither OK nor NG.
+        LineBroken: it does not come to its end.
+    """
+    line.send(f"RD{field}{data}".encode("ascii") + _CR)
+    answer = line.receive_to(_CR, limit=_MOST)[:-1].decode("cp1252")
+    if answer.startswith("OK"):
+        return answer[2:]
+    if answer.startswith("NG"):
+        raise InstrumentError(
+            f"the Mitutoyo refuses {field!r} with code {answer[2:]!r}; its manual "
+            "lists the codes"
+        )
+    raise FormatError(
+        f"the Mitutoyo answered {answer[:20]!r} where OK or NG is expected; check the "
+        "baud rate"
+    )
+
+
+def read_conditions(line: Line) -> Conditions:
+    """Read how the instrument is set.
+
+    Raises:
+        FormatError: the answer is shorter than the manual's.
+    """
+    text = ask(line, "CON")
+    try:
+        return Conditions(
+            standard=text[0],
+            profile=text[1],
+            cutoff=text[2],
+            sampling_lengths=int(text[3:5]),
+            length=1e-3 * float(text[5:10]),
+            filter=text[11],
+        )
+    except (IndexError, ValueError) as error:
+        raise FormatError(
+            f"the Mitutoyo's conditions {text!r} do not read as its manual says"
+        ) from error
+
+
+def read_profile(line: Line, *, name: str) -> Profile:
+    """Fetch the evaluated profile of an SJ-410, file by file.
+
+    Args:
+        line: of the instrument.
+        name: of the profile.
+
+    Returns:
+        Heights over the evaluation length that its conditions state.
+
+    Raises:
+        FormatError: a file is missing, out of turn or no list of heights.
+    """
+    length = read_conditions(line).length
+    count = _number_of_files(ask(line, "EVA", "00"))
+    heights: list[float] = []
+    for number in range(1, count + 1):
+        heights += parse_heights(ask(line, "EVA", f"{number:02d}"), number)
+    if not heights:
+        raise FormatError("the Mitutoyo sent a profile without points; measure first")
+    return Profile(
+        name=name,
+        heights=1e-6 * np.array(heights),
+        spacing=length / len(heights),
+        valid=np.ones(len(heights), dtype=bool),
+        instrument=SurfaceInstrument(name="Mitutoyo Surftest"),
+        provenance=(step("mitutoyo", files=count, points=len(heights)),),
+    )
+
+
+def parse_heights(text: str, number: int) -> list[float]:
+    """Read the heights of one file [um].
+
+    Args:
+        text: ``NN;`` and heights of nine characters each, parted or not.
+        number: of the file, as asked for.
+
+    Raises:
+        FormatError: it is another file, or no list of heights.
+    """
+    head, _, body = text.partition(";")
+    try:
+        found = int(head)
+        parted = [word for word in re.split(r"[,;\s]+", body.strip()) if word]
+        words = [
+            word[i : i + _DIGITS]
+            for word in parted
+            for i in range(0, len(word), _DIGITS)
+        ]
+        heights = [float(word) for word in words]
+    except ValueError as error:
+        raise FormatError(
+            f"the Mitutoyo's profile file {number} begins {text[:20]!r}; heights of "
+            "nine characters after its number are expected"
+        ) from error
+    if found != number:
+        raise FormatError(
+            f"the Mitutoyo sent profile file {found} where {number} was asked for; ask "
+            "for the profile again"
+        )
+    return heights
+
+
+def _number_of_files(text: str) -> int:
+    digits = re.search(r"\d+", text.rpartition(";")[2])
+    count = int(digits[0]) if digits else -1
+    if not 0 <= count <= _MOST_FILES:
+        raise FormatError(
+            f"the Mitutoyo's number of profile files is {text!r}, 0 to {_MOST_FILES} "
+            "are expected"
+        )
+    return count

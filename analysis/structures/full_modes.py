@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Modes of a whole structure by one factor: the reference that others are held to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray, freeze
+from jointbench.acquisition.errors import BadData
+from jointbench.analysis.structures.assembly import Sparse
+from jointbench.analysis.structures.factor import Solver, factorise
+from jointbench.analysis.structures.structure import Structure
+from jointbench.analysis.structures.subspace import largest_of_inverse
+
+# The shift lies so far below the waves that fit once into the structure.
+_SHIFT_SHARE = 0.3
+# Modes below this share of the shift frequency move no material: rigid, or mechanisms.
+RIGID_SHARE = 0.01
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StructureModes:
+    """Undamped modes of a structure, the lowest first.
+
+    Attributes:
+        natural_frequency: [Hz], shape (n_modes,); zero for rigid motions.
+        shapes: mass-normalised, shape (n_modes, n_free) [kg^-1/2].
+        residual: ||K phi - lambda M phi|| over ||K phi||, largest of all [-].
+    """
+
+    natural_frequency: FloatArray
+    shapes: FloatArray
+    residual: float
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "natural_frequency", "shapes")
+
+
+def shift_of(stiffness: Sparse, mass: Sparse) -> float:
+    """Return a shift [1/s^2] in the range of the lowest elastic modes.
+
+    K + shift M is positive definite even where bodies are free.
+
+    Args:
+        stiffness: of the bodies [N/m].
+        mass: [kg].
+    """
+    # A mesh carries waves up to about sqrt(k/m) of one node; n^(1/3) nodes in a row.
+    highest = stiffness.diagonal().sum() / mass.diagonal().sum()
+    in_a_row = (stiffness.shape[0] / 3.0) ** (1.0 / 3.0)
+    return float(highest * (_SHIFT_SHARE / in_a_row) ** 2)
+
+
+def solve_full(
+    structure: Structure,
+    stiffness: FloatArray,
+    count: int,
+    *,
+    solver: Solver = Solver.AUTO,
+) -> StructureModes:
+    """Find the lowest modes with the whole structure in one factor.
+
+    Args:
+        structure: bodies and joints.
+        stiffness: total of every joint and direction [N/m], shape (3 n_joints,).
+        count: how many modes, rigid ones included.
+        solver: who factors.
+
+    Returns:
+        The modes.
+
+    Raises:
+        BadData: a stiffness is negative, or the matrices cannot be factored.
+
+    Source:
+        Grimes, Lewis and Simon 1994, SIAM J. Matrix Anal. Appl. 15, 228-272 (block
+        Lanczos, shift and invert).
+    """
+    values = np.asarray(stiffness, float)
+    if values.size and not values.min() >= 0:
+        raise BadData(f"a joint's stiffness is {values.min():g} N/m; it must be >= 0")
+    return lowest_modes(structure.with_joints(values), structure.mass, count, solver)
+
+
+def lowest_modes(
+    stiffness: Sparse, mass: Sparse, count: int, solver: Solver = Solver.AUTO
+) -> StructureModes:
+    """Find the lowest modes of sparse matrices; see `solve_full`."""
+    size = stiffness.shape[0]
+    if not 0 < count < size - 1:
+        raise BadData(f"{count} modes of {size} degrees of freedom; ask for fewer")
+    shift = shift_of(stiffness, mass)
+    solve = factorise(Sparse(stiffness + shift * mass), solver)
+    inverse, vector = largest_of_inverse(solve, mass, count)
+    value = 1.0 / inverse - shift
+    load = stiffness @ vector
+    left = np.linalg.norm(load - mass @ vector * value, axis=0)
+    scale = np.linalg.norm(load, axis=0) + shift * np.linalg.norm(mass @ vector, axis=0)
+    return StructureModes(
+        frequency_of(value, shift), vector.T, float((left / scale).max())
+    )
+
+
+def frequency_of(eigenvalue: FloatArray, shift: float) -> FloatArray:
+    """Return natural frequencies [Hz]; rounding around zero becomes zero."""
+    floor = RIGID_SHARE**2 * shift
+    clean = np.where(np.abs(eigenvalue) < floor, 0.0, np.maximum(eigenvalue, 0.0))
+    return np.asarray(np.sqrt(clean) / (2.0 * np.pi))

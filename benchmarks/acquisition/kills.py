@@ -1,0 +1,163 @@
+"""Kill a measurement at random moments and see what is left of it.
+
+    python benchmarks/acquisition/kills.py --kills 60 > docs/bench-kills.md
+
+Each child measures the same seeded plan on the simulated chassis; samples depend on
+their index alone, so the session of a child that was left alive tells every sample
+that a killed one may hold. A quarter of the kills fall while the file is finished.
+"""
+
+import argparse
+import multiprocessing
+import os
+import random
+import signal
+import tempfile
+import time
+from multiprocessing.connection import Connection
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.session import Session
+from jointbench.acquisition.session_file import read_session
+from jointbench.station.measure import measure
+from jointbench.station.measure_lines import Lines
+from jointbench.station.measure_plan import MeasurePlan, read_plan
+from jointbench.station.measure_source import open_chassis
+from jointbench.station.output import console
+
+PLAN = Path(__file__).parents[2] / "examples" / "plates.toml"
+SOURCE = "sim:plates?seed=5"
+
+
+class Telling(Lines):
+    """Tell the parent how many samples were handed to the store."""
+
+    def __init__(self, parent: Connection) -> None:
+        super().__init__(console("-"))
+        self.parent, self.count = parent, 0
+
+    def begin(self, channels: object, sample_rate: float) -> None:
+        """Tell that recording has begun."""
+        self.parent.send(0)
+
+    def say(self, line: str) -> None:
+        """Say nothing."""
+
+    def ask(self, condition: object, done: int, total: int) -> None:
+        """Say nothing."""
+
+    def hit(self, news: object) -> None:
+        """Say nothing."""
+
+    def block(self, samples: np.ndarray) -> None:
+        """Tell how many samples were handed over."""
+        self.count += samples.shape[1]
+        self.parent.send(self.count)
+
+
+def short_plan(folder: Path) -> MeasurePlan:
+    """Return the example's plan with one torque and two points."""
+    text = PLAN.read_text(encoding="utf-8")
+    text = text.replace('["1", "2", "3", "4", "5"]', '["1", "2"]')
+    text = text.replace('["20 N m", "50 N m", "80 N m"]', '["20 N m"]')
+    text = text.replace("repeats = 3", "repeats = 2\ntrial_hits = 1")
+    path = folder / "plan.toml"
+    path.write_text(text, encoding="utf-8")
+    return read_plan(path)
+
+
+def child(plan: MeasurePlan, out: Path, parent: Connection) -> None:
+    """Measure until killed."""
+    with open_chassis(SOURCE) as opened:
+        measure(plan, opened, out, Telling(parent))
+    parent.send(-1)
+
+
+def stream(session: Session) -> np.ndarray:
+    """Return all samples of a session in their order."""
+    return np.concatenate([r.samples for r in session.recordings], axis=1)
+
+
+def one(plan: MeasurePlan, out: Path, stop_at: int | None, delay: float) -> int:
+    """Start a child, kill it at a count and a delay; return the last count told."""
+    here, there = multiprocessing.Pipe(duplex=False)
+    process = multiprocessing.get_context("fork").Process(
+        target=child, args=(plan, out, there)
+    )
+    process.start()
+    there.close()
+    told = 0
+    while True:
+        try:
+            count = here.recv()
+        except EOFError:
+            break
+        if count < 0:
+            break
+        told = count
+        if stop_at is not None and told >= stop_at:
+            time.sleep(delay)
+            os.kill(process.pid, signal.SIGKILL)
+            while here.poll(0.2):
+                try:
+                    told = max(told, here.recv())
+                except EOFError:
+                    break
+            break
+    process.join()
+    return told
+
+
+def main() -> None:
+    """Print a page of figures."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--kills", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    draw = random.Random(options.seed)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        plan = short_plan(folder)
+        block = round(plan.acquisition.block * plan.acquisition.sample_rate)
+        whole = folder / "whole.h5"
+        total = one(plan, whole, None, 0.0)
+        truth = stream(read_session(whole))
+        assert truth.shape[1] == total
+        opened = wrong = finished = 0
+        lost: list[int] = []
+        for number in range(options.kills):
+            out = folder / f"{number}.h5"
+            late = number % 4 == 3
+            stop = total if late else draw.randrange(1, total)
+            told = one(plan, out, stop, draw.uniform(0.0, 0.6 if late else 0.05))
+            try:
+                session = read_session(out)
+            except BadData as error:
+                print(f"kill {number}: NOT OPENED: {error}")
+                continue
+            opened += 1
+            if not session.recordings:
+                lost.append(told)
+                continue
+            found = stream(session)
+            wrong += not np.array_equal(found, truth[:, : found.shape[1]])
+            lost.append(max(0, told - found.shape[1]))
+            finished += any(s.name == "end" for s in session.provenance)
+            out.unlink()
+    print("# Killed while recording\n")
+    print(f"- kills (`kill -9`): {options.kills}")
+    print(f"- files that open: {opened}")
+    print(f"- of those, recordings that had already logged their end: {finished}")
+    print(f"- files with a sample that differs from the unkilled session: {wrong}")
+    print(
+        f"- samples handed over and not found: at most {max(lost)}, "
+        f"that is {max(lost) / block:.2f} blocks of {block}"
+    )
+    print(f"- kills that lost nothing: {sum(n == 0 for n in lost)}")
+
+
+if __name__ == "__main__":
+    main()

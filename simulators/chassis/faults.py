@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""What goes wrong at the simulated chassis, and when: a short script of faults."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from jointbench.acquisition.errors import UsageError
+
+
+class FaultKind(StrEnum):
+    """What can go wrong; `at` and `value` are explained with each."""
+
+    OVERRUN = "overrun"
+    """At a sample, `value` samples are overwritten before they are read."""
+    DROP = "drop"
+    """At a sample, the server goes away for `value` seconds."""
+    SLOW = "slow"
+    """From a sample on, every read takes `value` seconds longer."""
+    OPEN = "open"
+    """From a sample on, the IEPE loop of input number `value` is open."""
+    CLOSE = "close"
+    """From a sample on, the IEPE loop of input number `value` is whole again."""
+    REFUSE = "refuse"
+    """From the start, input number `value` does not exist."""
+    WRONG_TEDS = "wrong_teds"
+    """From the start, another sensor's TEDS answers at input number `value`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """One fault.
+
+    Attributes:
+        kind: what goes wrong.
+        at: sample at which it happens, counted over all streams of the chassis.
+        value: how much, as `FaultKind` explains.
+    """
+
+    kind: FaultKind
+    at: int
+    value: float
+
+
+def parse_faults(text: str) -> tuple[Fault, ...]:
+    """Read a script of faults, ``"drop@40000:0.5,open@90000:2"``.
+
+    Args:
+        text: faults joined by commas: kind, ``@`` sample, ``:`` value.
+
+    Raises:
+        UsageError: a fault does not read so.
+    """
+    return tuple(_parse(word) for word in text.split(",") if word.strip())
+
+
+def _parse(word: str) -> Fault:
+    kind, _, rest = word.strip().partition("@")
+    at, _, value = rest.partition(":")
+    try:
+        return Fault(FaultKind(kind), int(at), float(value))
+    except ValueError:
+        known = ", ".join(each.value for each in FaultKind)
+        raise UsageError(
+            f"fault {word.strip()!r} must read kind@sample:value, for example "
+            f"drop@40000:0.5; kinds are {known}"
+        ) from None

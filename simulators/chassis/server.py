@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""The simulated chassis as a server on the loopback interface.
+
+Beside NI's service it answers a second, small one: where the hammer is to be, and when
+to strike. A real server has none of it, and no measuring program depends on it.
+"""
+
+import json
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass, field
+from types import TracebackType
+from typing import Any
+
+import grpc
+
+from jointbench.acquisition.errors import InstrumentError, UsageError
+from jointbench.simulators.chassis.faults import Fault, FaultKind
+from jointbench.simulators.chassis.inventory import Inventory
+from jointbench.simulators.chassis.protocol import add_servicer
+from jointbench.simulators.chassis.reading import ReadingService
+from jointbench.simulators.chassis.task import Pace, Task
+from jointbench.simulators.plates_bench import LivePlates, PlannedStroke, PlatesBench
+
+HAND_SERVICE = "jointbench.Hand"
+# Every event stream of a client holds a worker for as long as it is open.
+_WORKERS = 24
+_OPTIONS = (
+    ("grpc.max_receive_message_length", -1),
+    ("grpc.max_send_message_length", -1),
+    ("grpc.so_reuseport", 0),
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChassisSetup:
+    """What stands on the bench.
+
+    Attributes:
+        bench: specimen, hand and sensors.
+        speed: seconds of signal per second; infinite for as fast as it is read.
+        modules: of four inputs each.
+        top_rate: samples per second and channel at the most [Hz].
+        analogue_trigger: whether the modules can trigger on a signal.
+        faults: what goes wrong, and when.
+        port: to listen on; 0 for any that is free.
+    """
+
+    bench: PlatesBench = field(default_factory=PlatesBench)
+    speed: float = 1.0
+    modules: int = 1
+    top_rate: float = 51_200.0
+    analogue_trigger: bool = True
+    faults: tuple[Fault, ...] = ()
+    port: int = 0
+
+
+class SimulatedChassis:
+    """A server that can be started, dropped and started again on the same port."""
+
+    def __init__(self, setup: ChassisSetup) -> None:
+        self._setup = setup
+        self._pace = Pace(speed=setup.speed)
+        self._live = LivePlates(setup.bench)
+        self._faults = list(setup.faults)
+        self._delivered = 0
+        self._lock = threading.Lock()
+        self._server: grpc.Server | None = None
+        self._service: ReadingService | None = None
+        self._restart: threading.Timer | None = None
+        self.port = setup.port
+
+    @property
+    def address(self) -> str:
+        """Host and port, as a client types them."""
+        return f"127.0.0.1:{self.port}"
+
+    @property
+    def history(self) -> tuple[PlannedStroke, ...]:
+        """What the hand struck so far."""
+        return tuple(self._live.history)
+
+    def __enter__(self) -> "SimulatedChassis":
+        """Start listening."""
+        self.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Stop for good."""
+        self.close()
+
+    def start(self) -> None:
+        """Listen, with no task yet.
+
+        Raises:
+            InstrumentError: the port is taken.
+        """
+        server = grpc.server(ThreadPoolExecutor(_WORKERS), options=_OPTIONS)
+        try:
+            self.port = server.add_insecure_port(self.address)
+        except RuntimeError as error:
+            raise InstrumentError(
+                f"port {self.port} of this computer is taken; choose another --port"
+            ) from error
+        self._service = self._new_service()
+        add_servicer(self._service, server)
+        server.add_generic_rpc_handlers((_hand_handler(self._live, self._service),))
+        server.start()
+        self._server = server
+
+    def drop(self, away: float) -> None:
+        """Go away without a word, and come back after a while [s]."""
+        with self._lock:
+            if self._server is None:
+                return
+            self._remember()
+            self._server.stop(None)
+            self._server = None
+            self._restart = threading.Timer(away, self.start)
+            self._restart.daemon = True
+            self._restart.start()
+
+    def close(self) -> None:
+        """Stop for good, within half a second."""
+        if self._restart is not None:
+            self._restart.cancel()
+        if self._server is not None:
+            self._server.stop(None).wait(0.5)
+            self._server = None
+
+    def wait(self) -> None:
+        """Serve until interrupted."""
+        threading.Event().wait()
+
+    def _remember(self) -> None:
+        """Keep, over a restart, what was delivered and which faults are spent."""
+        if self._service is not None:
+            self._delivered = self._service.delivered
+            self._faults = [f for f in self._faults if f.at > self._service.reached]
+
+    def _new_service(self) -> ReadingService:
+        setup = self._setup
+        service = ReadingService(
+            _inventory(setup),
+            lambda name: Task(name, self._pace, self._live.volts),
+            begin=self._live.begin,
+            pace=self._pace,
+            faults=tuple(f for f in self._faults if f.kind not in _FROM_THE_START),
+            drop=self.drop,
+        )
+        service.delivered = self._delivered
+        return service
+
+
+_FROM_THE_START = (FaultKind.REFUSE, FaultKind.WRONG_TEDS)
+
+
+def _inventory(setup: ChassisSetup) -> Inventory:
+    def inputs(kind: FaultKind) -> frozenset[int]:
+        return frozenset(int(f.value) for f in setup.faults if f.kind is kind)
+
+    return Inventory(
+        modules=setup.modules,
+        top_rate=setup.top_rate,
+        analogue_trigger=setup.analogue_trigger,
+        sensors=setup.bench.sensors,
+        missing=inputs(FaultKind.REFUSE),
+        swapped_teds=inputs(FaultKind.WRONG_TEDS),
+    )
+
+
+def _hand_handler(live: LivePlates, service: ReadingService) -> grpc.GenericRpcHandler:
+    def strike(request: bytes, context: grpc.ServicerContext) -> bytes:
+        wishes: dict[str, Any] = json.loads(request)
+        try:
+            live.place(**wishes)
+        except (UsageError, TypeError) as error:
+            context.abort(grpc.StatusCode.INVALID_ARGUMENT, str(error))
+        planned = live.strike(position=service.latest())
+        return json.dumps(asdict(planned)).encode()
+
+    return grpc.method_handlers_generic_handler(
+        HAND_SERVICE, {"Strike": grpc.unary_unary_rpc_method_handler(strike)}
+    )

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: MIT
+"""One task of the simulated chassis: channels, clock, buffer, read position."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.simulators.chassis.protocol import Refusal
+from jointbench.simulators.converter import Digitiser
+
+SAMPLES_NO_LONGER_AVAILABLE = -200279
+SAMPLES_NOT_YET_AVAILABLE = -200284
+SAMPLES_WILL_NEVER_BE_AVAILABLE = -200278
+WAIT_TIMED_OUT = -200560
+NO_CHANNELS = -200478
+INPUT_RANGE = 5.0  # [V], either sign
+BITS = 24
+_LONGEST_SLEEP = 0.02  # [s] between looks at the clock
+_NEVER = 2**63
+# Samples searched for a trigger before the search gives way to a read's time-out.
+_SEARCH = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class TaskChannel:
+    """A virtual channel.
+
+    Attributes:
+        name: as the client called it.
+        input: number of the input that it is wired to.
+        sensitivity: that the client believes in [V per unit returned].
+    """
+
+    name: str
+    input: int
+    sensitivity: float
+
+
+@dataclass(frozen=True, slots=True)
+class Trigger:
+    """An analogue edge that ends a finite task.
+
+    Attributes:
+        channel: index of the channel.
+        level: [unit of the channel].
+        before: samples kept before the edge.
+        rising: direction of the edge.
+    """
+
+    channel: int
+    level: float
+    before: int
+    rising: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """How the chassis keeps time.
+
+    Attributes:
+        speed: seconds of signal per second, infinite for as fast as it is read.
+        now: clock [s].
+        sleep: waits [s].
+    """
+
+    speed: float = 1.0
+    now: Callable[[], float] = time.monotonic
+    sleep: Callable[[float], None] = time.sleep
+
+
+Volts = Callable[[int, int, list[int]], FloatArray]
+
+
+class Task:
+    """State of one task; the service serialises the calls."""
+
+    def __init__(self, name: str, pace: Pace, volts: Volts) -> None:
+        self.name = name
+        self.channels: list[TaskChannel] = []
+        self.coupling: dict[str, int] = {}
+        self.rate = 1000.0
+        self.finite: int | None = None
+        self.buffer = 0
+        self.trigger: Trigger | None = None
+        self.relative_to_first = False
+        self.offset = 0
+        self.overwritten_to = 0
+        self.overloaded: set[str] = set()
+        self._pace, self._volts = pace, volts
+        self._started: float | None = None
+        self._position = 0
+        self._end = _NEVER
+        self._found_to = 1
+        self._skipped = 0
+
+    @property
+    def running(self) -> bool:
+        """Whether the task was started."""
+        return self._started is not None
+
+    @property
+    def position(self) -> int:
+        """Next sample that a read returns."""
+        return self.offset if self.relative_to_first else self._position
+
+    def start(self) -> None:
+        """Start the clock at sample 0.
+
+        Raises:
+            Refusal: there is no channel.
+        """
+        if not self.channels:
+            raise Refusal(NO_CHANNELS, "The task has no channels.")
+        self._started = self._pace.now()
+        self._position = self.overwritten_to = self._skipped = 0
+        self._end, self._found_to = _NEVER, 1
+        if self.finite is not None and self.trigger is None:
+            self._end = self.finite
+        self.overloaded.clear()
+
+    def stop(self) -> None:
+        """Stop the clock."""
+        self._started = None
+
+    def acquired(self) -> int:
+        """Return how many samples per channel the converter has made so far."""
+        if self._started is None:
+            return self._position
+        if math.isinf(self._pace.speed):
+            return min(max(self._position, self._skipped), self._end)
+        elapsed = (self._pace.now() - self._started) * self._pace.speed
+        return min(int(elapsed * self.rate), self._end)
+
+    def skip_to(self, sample: int) -> None:
+        """Let the converter run on to a sample, whoever reads or does not."""
+        self._skipped = max(self._skipped, sample)
+
+    def done(self) -> bool:
+        """Tell whether a finite task has made its last sample."""
+        if self.trigger is not None and self._end == _NEVER and self.running:
+            self._look()
+        return self._end != _NEVER and (
+            math.isinf(self._pace.speed) or self.acquired() >= self._end
+        )
+
+    def await_end(self, timeout: float) -> None:
+        """Wait for the last sample of a finite task.
+
+        Raises:
+            Refusal: it does not come in time.
+        """
+        deadline = self._pace.now() + (timeout if timeout >= 0 else math.inf)
+        while not self.done():
+            if self._pace.now() >= deadline:
+                raise Refusal(
+                    WAIT_TIMED_OUT,
+                    "Wait Until Done did not indicate that the task was done "
+                    "within the specified timeout.",
+                )
+            self._pace.sleep(_LONGEST_SLEEP)
+
+    def read(self, count: int, timeout: float) -> FloatArray:
+        """Wait for samples and return them in the client's units, shape (n, count).
+
+        Raises:
+            Refusal: they do not come in time, are overwritten, or never come.
+        """
+        deadline = self._pace.now() + (timeout if timeout >= 0 else math.inf)
+        if self.trigger is not None and self._end == _NEVER:
+            self._await_trigger(deadline)
+        self._await_samples(count, deadline)
+        first = self.position
+        oldest = max(self.overwritten_to, self.acquired() - self.buffer)
+        if self.buffer and self.finite is None and first < oldest:
+            raise Refusal(
+                SAMPLES_NO_LONGER_AVAILABLE,
+                "The application is not able to keep up with the hardware "
+                "acquisition: samples were overwritten before they were read.",
+                read=0,
+            )
+        samples = self._samples(first, count)
+        self._position = first + count
+        return samples
+
+    def _await_samples(self, count: int, deadline: float) -> None:
+        need = self.position + count
+        if need > self._end:
+            raise Refusal(
+                SAMPLES_WILL_NEVER_BE_AVAILABLE,
+                "The specified number of samples will never be available.",
+                read=0,
+            )
+        while not math.isinf(self._pace.speed):
+            missing = (need - self.acquired()) / (self.rate * self._pace.speed)
+            left = deadline - self._pace.now()
+            if missing <= 0:
+                return
+            if left <= 0 or not self.running:
+                raise Refusal(
+                    SAMPLES_NOT_YET_AVAILABLE,
+                    "Some or all of the samples requested have not yet been acquired.",
+                    read=0,
+                )
+            self._pace.sleep(min(max(missing, 1e-3), left, _LONGEST_SLEEP))
+
+    def _await_trigger(self, deadline: float) -> None:
+        """Look for the edge in what was acquired, and fix the end of the task by it."""
+        while not self._look():
+            if self._pace.now() >= deadline:
+                raise Refusal(
+                    SAMPLES_NOT_YET_AVAILABLE,
+                    "The reference trigger did not occur within the timeout.",
+                    read=0,
+                )
+            if not math.isinf(self._pace.speed):
+                self._pace.sleep(_LONGEST_SLEEP)
+
+    def _look(self) -> bool:
+        """Search what was acquired since the last look; True once the edge is found."""
+        fast = math.isinf(self._pace.speed)
+        reach = self._found_to + _SEARCH if fast else self.acquired()
+        if self.trigger is not None and reach > self._found_to:
+            self._search(self.trigger, self._found_to - 1, reach)
+            self._found_to = reach
+        return self._end != _NEVER
+
+    def _search(self, trigger: Trigger, first: int, past: int) -> None:
+        sign = 1 if trigger.rising else -1
+        signal = sign * self._samples(first, past - first)[trigger.channel]
+        level = sign * trigger.level
+        edges = (
+            np.flatnonzero((signal[:-1] < level) & (signal[1:] >= level)) + 1 + first
+        )
+        edges = edges[edges >= trigger.before]
+        if edges.size and self.finite is not None:
+            begin = int(edges[0]) - trigger.before
+            self._position = begin
+            self._end = begin + self.finite
+
+    def _samples(self, first: int, count: int) -> FloatArray:
+        volts = self._volts(first, count, [channel.input for channel in self.channels])
+        digitised = Digitiser(INPUT_RANGE, 0.0, BITS).round(volts)
+        top = INPUT_RANGE * (1 - 2.0 ** (2 - BITS))
+        for row, channel in zip(digitised, self.channels, strict=True):
+            if float(np.abs(row).max(initial=0.0)) >= top:
+                self.overloaded.add(channel.name)
+            row /= channel.sensitivity
+        return digitised

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""Single keys from a terminal, without waiting and without Enter."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+Poll = Callable[[], str]
+"""Returns the key pressed since the last call, empty where there was none."""
+
+if sys.platform == "win32":
+    import msvcrt
+
+    @contextmanager
+    def keyboard() -> Iterator[Poll]:
+        """Give a function that polls the keyboard."""
+        yield lambda: msvcrt.getwch() if msvcrt.kbhit() else ""
+else:
+    import select
+    import termios
+    import tty
+
+    @contextmanager
+    def keyboard() -> Iterator[Poll]:
+        """Give a function that polls the keyboard; the terminal is put back after."""
+        if not sys.stdin.isatty():
+            yield lambda: ""
+            return
+        before = termios.tcgetattr(sys.stdin)
+        tty.setcbreak(sys.stdin)
+        try:
+            yield _pressed
+        finally:
+            termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+
+    def _pressed() -> str:
+        ready, _, _ = select.select([sys.stdin], [], [], 0)
+        return sys.stdin.read(1) if ready else ""

@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench measure``: a bench session by a plan, into one file."""
+
+import uuid
+from collections import Counter
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich.console import Console
+
+from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
+from jointbench.acquisition.ni.stream import Counters, NiStream, StreamSettings
+from jointbench.acquisition.records import Channel, Hit, Verdict
+from jointbench.acquisition.session import software_version
+from jointbench.acquisition.session_file import read_session, write_session
+from jointbench.acquisition.session_live import LiveSession
+from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
+from jointbench.station.measure_record import Record
+from jointbench.station.measure_screen import watching
+from jointbench.station.measure_session import MeasureSession
+from jointbench.station.measure_source import OpenChassis, open_chassis
+from jointbench.station.measure_teds import teds_warnings
+from jointbench.station.measure_watch import Watcher
+from jointbench.station.output import console, table, write_json
+from jointbench.station.outputs import check_outputs
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """What a session came to.
+
+    Attributes:
+        path: of the session file.
+        record: hits, gaps, proposals, checks.
+        counters: what the device made against what was stored.
+        planned: conditions of the plan.
+        sample_rate: at which the device ran [Hz].
+    """
+
+    path: Path
+    record: Record
+    counters: Counters
+    planned: int
+    sample_rate: float
+
+    @property
+    def whole(self) -> bool:
+        """Whether every condition was measured as the plan wanted."""
+        return self.record.done == self.planned and not self.record.incomplete
+
+
+def run_measure(
+    plan_file: Path,
+    out: Path,
+    *,
+    source: str | None,
+    overwrite: bool,
+    json_target: str | None,
+) -> Measured:
+    """Measure by a plan, hands-free.
+
+    Args:
+        plan_file: TOML.
+        out: session file to write.
+        source: URL of the chassis; None for the plan's own.
+        overwrite: replace a session that is there.
+        json_target: where the JSON goes.
+
+    Raises:
+        UsageError: there is no source, or the session is there already.
+        InstrumentError: the chassis refuses or does not come back; what was recorded
+            until then is in the session file.
+    """
+    plan = read_plan(plan_file)
+    url = source or plan.table.source
+    if url is None:
+        raise UsageError(
+            "no source: add --source ni:, ni+grpc://host:31763 or sim:plates?seed=1"
+        )
+    _prepare_out(out, plan_file, overwrite=overwrite, json_target=json_target)
+    screen = console(json_target)
+    with open_chassis(url) as opened, watching(screen) as watcher:
+        measured = measure(plan, opened, out, watcher)
+    _show(measured, screen)
+    write_json(json_target, _summary(measured))
+    return measured
+
+
+def measure(
+    plan: MeasurePlan, opened: OpenChassis, out: Path, watcher: Watcher
+) -> Measured:
+    """Record a session into `out` and finish its file, come what may.
+
+    Raises:
+        InstrumentError: the chassis refuses or does not come back, or the disk is
+            full; the file holds what was recorded until then.
+    """
+    acquisition = plan.acquisition
+    warnings = _warnings(plan, opened)
+    stream = NiStream(
+        opened.chassis,
+        plan.sensors,
+        StreamSettings(
+            sample_rate=acquisition.sample_rate,
+            block=round(acquisition.block * acquisition.sample_rate),
+            buffer=acquisition.buffer,
+            patience=acquisition.patience,
+        ),
+    )
+    stream.start()
+    try:
+        record = _record(plan, opened, out, (stream, watcher, warnings))
+    finally:
+        stream.close()
+        if out.exists():
+            finish_session(out)
+    return Measured(
+        out, record, stream.counters, len(conditions(plan)), stream.sample_rate
+    )
+
+
+def finish_session(path: Path) -> None:
+    """Turn the file of a recording into a finished session, compressed, in its place.
+
+    Until the new file is whole and on the disk, the old one stays.
+    """
+    write_session(read_session(path), path, overwrite=True)
+
+
+def _record(
+    plan: MeasurePlan,
+    opened: OpenChassis,
+    out: Path,
+    running: tuple[NiStream, Watcher, tuple[str, ...]],
+) -> Record:
+    stream, watcher, warnings = running
+    channels = table_channels(plan.sensors)
+    meta = _meta(plan, opened, channels, stream.sample_rate)
+    block = stream.settings.block
+    with LiveSession(out, meta, channels=len(channels), block=block) as live:
+        session = MeasureSession(
+            plan, stream, live, channels=channels, hand=opened.hand, watcher=watcher
+        )
+        watcher.begin(channels, stream.sample_rate)
+        for words in warnings:
+            live.log({"kind": "warning", "words": words})
+            watcher.say(f"warning: {words}")
+        try:
+            session.run()
+        except KeyboardInterrupt:
+            session.record.interrupted = True
+        finally:
+            _close_the_books(live, stream, session.record)
+    return session.record
+
+
+def _close_the_books(live: LiveSession, stream: NiStream, record: Record) -> None:
+    """Log what the device made against what was stored, and that this is the end."""
+    stream.count_if_there()
+    counters = stream.counters
+    live.log(
+        {
+            "kind": "continuity",
+            "acquired": counters.acquired,
+            "unread": counters.unread,
+            "stored_samples": live.samples,
+            "lost": counters.lost,
+        }
+    )
+    live.log({"kind": "end", "interrupted": record.interrupted})
+
+
+def _warnings(plan: MeasurePlan, opened: OpenChassis) -> tuple[str, ...]:
+    today = datetime.now(UTC).date()
+    old = (calibration_warning(sensor, today) for sensor in plan.sensors)
+    expired = (words for words in old if words is not None)
+    return (*expired, *teds_warnings(opened.chassis, plan.sensors))
+
+
+def _meta(
+    plan: MeasurePlan, opened: OpenChassis, channels: tuple[Channel, ...], rate: float
+) -> dict[str, object]:
+    table_ = plan.table
+    notes = [table_.notes]
+    if table_.temperature:
+        notes.append(f"temperature {table_.temperature}")
+    torques = plan.hits.torques
+    return {
+        "uuid": str(uuid.uuid4()),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "software": software_version(),
+        "operator": table_.operator,
+        "notes": "; ".join(note for note in notes if note),
+        "source": opened.name,
+        "simulated": opened.simulated,
+        "sample_rate": rate,
+        "torque": torques[0] if len(torques) == 1 else None,
+        "plan": plan.text,
+        "channels": [
+            {
+                "name": channel.name,
+                "quantity": channel.quantity.value,
+                "point": channel.point,
+                "direction": channel.direction,
+                "unit": channel.unit,
+                "sensitivity": channel.sensitivity,
+                "range": channel.range,
+            }
+            for channel in channels
+        ],
+    }
+
+
+def _prepare_out(
+    out: Path, plan_file: Path, *, overwrite: bool, json_target: str | None
+) -> None:
+    if out.suffix.lower() not in {".h5", ".hdf5"}:
+        raise UsageError(f"'{out}' is no session file; name it *.h5")
+    check_outputs([plan_file], [json_target])
+    if out.exists() and not overwrite:
+        raise UsageError(f"'{out}' is there already; add --force to overwrite it")
+    if not out.exists():
+        check_outputs([plan_file], [out])
+    elif out.is_file():
+        out.unlink()
+
+
+def _show(measured: Measured, screen: Console) -> None:
+    counts = _counts(measured.record.hits)
+    rows = [
+        ("hits", ", ".join(f"{n} {word}" for word, n in counts.items()) or "none"),
+        ("conditions", f"{measured.record.done} of {measured.planned}"),
+        ("samples per channel", f"{measured.counters.delivered}"),
+        ("lost samples", f"{measured.counters.lost}"),
+        ("interruptions", f"{sum(g.kind == 'back' for g in measured.record.gaps)}"),
+    ]
+    screen.print(table(f"{measured.path}", ("session", "holds"), rows))
+    for check in measured.record.checks:
+        word = "good" if check.passed else "LOOK AT IT"
+        screen.print(f"check {check.name}: {word}, {check.words}", soft_wrap=True)
+    screen.print(f"\nnext: jointbench modal {measured.path}")
+
+
+def _counts(hits: list[Hit]) -> dict[str, int]:
+    found = Counter(hit.verdict for hit in hits)
+    return {verdict.value: found[verdict] for verdict in Verdict if found[verdict]}
+
+
+def _summary(measured: Measured) -> dict[str, object]:
+    record, counters = measured.record, measured.counters
+    return {
+        "session": str(measured.path),
+        "complete": measured.whole,
+        "hits": [
+            {
+                "number": number,
+                "time_s": hit.trigger / measured.sample_rate,
+                "point": hit.point,
+                "peak_n": hit.peak_force,
+                "verdict": hit.verdict.value,
+                "measure": hit.measure,
+                "reason": hit.reason,
+            }
+            for number, hit in enumerate(record.hits, 1)
+        ],
+        "verdicts": {v.value: _counts(record.hits).get(v.value, 0) for v in Verdict},
+        "lost_samples": counters.lost,
+        "acquired_samples": counters.acquired,
+        "unread_samples": counters.unread,
+        "stored_samples": counters.delivered,
+        "gaps": [
+            {
+                "kind": g.kind,
+                "samples": g.samples,
+                "seconds": g.seconds,
+                "words": g.words,
+            }
+            for g in record.gaps
+        ],
+        "settings": {p.name: p.value for p in record.proposals},
+        "checks": [
+            {"name": c.name, "value": c.value, "limit": c.limit, "passed": c.passed}
+            for c in record.checks
+        ],
+        "incomplete": list(record.incomplete),
+        "interrupted": record.interrupted,
+    }

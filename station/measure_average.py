@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""The average of one condition while it grows: FRF, coherence, and who spoils it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.records import Channel, Hit, Recording, Verdict
+from jointbench.signal.frf import Frf, estimate_frf
+from jointbench.signal.hit_verdicts import HitLimits
+from jointbench.signal.live_hits import CutHit
+
+_ENOUGH = 3  # hits from which one of them can be told to spoil the others
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Accepted:
+    """A hit in an average.
+
+    Attributes:
+        cut: its samples.
+        hit: as judged.
+    """
+
+    cut: CutHit
+    hit: Hit
+
+
+def average(
+    accepted: Sequence[Accepted], channels: Sequence[Channel], sample_rate: float
+) -> Frf | None:
+    """Return the FRF of the hits of one condition, None where they give none."""
+    if not accepted:
+        return None
+    shortest = min(each.cut.samples.shape[1] for each in accepted)
+    hits = [
+        replace(
+            each.hit,
+            start=i * shortest,
+            trigger=i * shortest + each.cut.trigger,
+            stop=(i + 1) * shortest,
+            verdict=Verdict.OK,
+        )
+        for i, each in enumerate(accepted)
+    ]
+    joined = np.hstack([each.cut.samples[:, :shortest] for each in accepted])
+    recording = Recording(
+        "average", joined, sample_rate, tuple(channels), hits=tuple(hits)
+    )
+    try:
+        return estimate_frf(recording)
+    except BadData:
+        return None
+
+
+def mean_coherence(frf: Frf | None) -> float | None:
+    """Return the coherence over the excited band, each output weighed alike [-].
+
+    The dips at antiresonances, where there is nothing but noise, are left aside: the
+    median over lines is taken of each output.
+    """
+    if frf is None or frf.coherence is None or frf.averages < 2:
+        return None
+    low, high = frf.usable_band or (frf.frequency[0], frf.frequency[-1])
+    inside = (frf.frequency >= low) & (frf.frequency <= high)
+    lines: FloatArray = frf.coherence[:, 0, inside]
+    return float(np.median(lines, axis=1).mean()) if lines.size else None
+
+
+def spoils(
+    new: Accepted,
+    accepted: Sequence[Accepted],
+    channels: Sequence[Channel],
+    *,
+    sample_rate: float,
+    wanted: float,
+) -> tuple[float, str] | None:
+    """Tell whether a hit takes the coherence of the others below what is wanted.
+
+    Args:
+        new: the hit.
+        accepted: those before it.
+        channels: of their rows.
+        sample_rate: [Hz].
+        wanted: coherence [-].
+
+    Returns:
+        The coherence with it and a reason, or None where it may stay.
+    """
+    if len(accepted) + 1 < _ENOUGH:
+        return None
+    without = mean_coherence(average(accepted, channels, sample_rate))
+    together = mean_coherence(average([*accepted, new], channels, sample_rate))
+    if without is None or together is None or without < wanted or together >= wanted:
+        return None
+    return together, (
+        f"coherence falls from {without:.3f} to {together:.3f} with this hit (limit "
+        f"{wanted:g}); it struck another place or direction"
+    )
+
+
+def weak_force(level: float | None, accepted: Sequence[Accepted]) -> float | None:
+    """Return the least useful peak [N]: a third of the level, or of the usual hit.
+
+    Args:
+        level: that was asked for [N], None for any.
+        accepted: hits of the condition so far.
+    """
+    share = HitLimits().weak_ratio
+    if level is not None:
+        return share * level
+    peaks = [each.hit.peak_force for each in accepted]
+    return share * float(np.median(peaks)) if peaks else None

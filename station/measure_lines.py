@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""A session in lines of text, for where there is no terminal."""
+
+from dataclasses import dataclass
+
+from rich.console import Console
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.records import Channel
+from jointbench.station.measure_plan import Condition
+from jointbench.station.measure_watch import Command, HitNews
+
+
+@dataclass(slots=True)
+class Lines:
+    """Print what happens, a line each.
+
+    Attributes:
+        screen: where to.
+    """
+
+    screen: Console
+    _asked: str = ""
+
+    def begin(self, channels: tuple[Channel, ...], sample_rate: float) -> None:
+        """Say that recording has begun."""
+        names = ", ".join(channel.name for channel in channels)
+        self._print(f"recording {names} at {sample_rate:g} Hz")
+
+    def say(self, line: str) -> None:
+        """Print a line."""
+        self._print(line)
+
+    def block(self, samples: FloatArray) -> None:
+        """Print nothing: levels are for a screen."""
+
+    def ask(self, condition: Condition, done: int, total: int) -> None:
+        """Print which condition comes next, once."""
+        if condition.name != self._asked:
+            self._asked = condition.name
+            self._print(f"[{done + 1}/{total}] hit {condition.name}")
+
+    def hit(self, news: HitNews) -> None:
+        """Print a verdict with its reason."""
+        coherence = ""
+        if news.coherence is not None:
+            coherence = f", coherence {news.coherence:.3f}"
+        count = (
+            "" if news.condition is None else f" {news.good}/{news.wanted}{coherence}"
+        )
+        self._print(
+            f"hit {news.number} {news.hit.verdict.value}{count}: {news.hit.reason}"
+        )
+
+    def command(self) -> Command | None:
+        """Return None: nobody is at the keys."""
+        return None
+
+    def _print(self, line: str) -> None:
+        self.screen.print(line, soft_wrap=True, markup=False)

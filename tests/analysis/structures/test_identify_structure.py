@@ -1,0 +1,177 @@
+"""Joints from frequencies, modes and FRFs of simulated plates."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import BadData
+from jointbench.analysis.measured_modes import MeasuredModes
+from jointbench.analysis.structures.evidence import Evidence
+from jointbench.analysis.structures.identify_structure import identify_structure
+from jointbench.analysis.structures.predict import (
+    JointValues,
+    predict_frf,
+    predict_modes,
+)
+from jointbench.analysis.structures.reduced import ReducedModel
+from jointbench.analysis.structures.search import pose_problem, residuals
+from jointbench.analysis.structures.structure import Structure
+from jointbench.signal.frf import Frf, FrfKind
+
+
+def modal_evidence(
+    model: ReducedModel, rows: FloatArray, values: JointValues, label: str = "rig"
+) -> Evidence:
+    """Return exact modes with the uncertainty of a good hammer test."""
+    found = predict_modes(model, values, rows)
+    size = np.abs(found.shapes).max(axis=1, keepdims=True)
+    measured = MeasuredModes(
+        natural_frequency=found.natural_frequency,
+        frequency_sd=0.002 * found.natural_frequency,
+        damping_ratio=found.damping_ratio,
+        damping_ratio_sd=0.05 * found.damping_ratio,
+        shapes=found.shapes.astype(complex),
+        shape_sd=np.broadcast_to(0.02 * size, found.shapes.shape),
+        outputs=tuple(f"a{at + 1}" for at in range(rows.shape[0])),
+    )
+    return Evidence(label, measured, None, rows, rows[:1])
+
+
+def frf_evidence(
+    model: ReducedModel, rows: FloatArray, values: JointValues
+) -> Evidence:
+    """Return accelerances with 1 % noise."""
+    frequency = np.linspace(300.0, 2000.0, 41)
+    laplace = 2j * np.pi * frequency
+    exact = predict_frf(model, values, laplace, rows, rows[:1]).response * laplace**2
+    sd = 0.01 * np.sqrt((np.abs(exact) ** 2).mean(axis=2, keepdims=True))
+    random = np.random.default_rng(5)
+    noise = random.standard_normal((2, *exact.shape)) / np.sqrt(2)
+    frf = Frf(
+        frequency=frequency,
+        response=exact + sd * (noise[0] + 1j * noise[1]),
+        kind=FrfKind.ACCELERANCE,
+        variance=np.broadcast_to(sd**2, exact.shape),
+    )
+    return Evidence("rig", None, frf, rows, rows[:1])
+
+
+def test_sensitivities_agree_with_differences(
+    reduced: ReducedModel, rows: FloatArray, truth: JointValues
+) -> None:
+    """Frequencies, damping, shapes and FRFs, by every stiffness and damping."""
+    for evidence, limit in (
+        (modal_evidence(reduced, rows, truth), 2e-3),
+        (frf_evidence(reduced, rows, truth), 2e-3),
+    ):
+        problem = pose_problem(reduced, [evidence])
+        at = np.log(np.concatenate([truth.stiffness, truth.damping])) + 0.02
+        _, slopes = residuals(problem, at)
+        for column in range(problem.size):
+            step = np.zeros(problem.size)
+            step[column] = 1e-5
+            ahead, _ = residuals(problem, at + step)
+            behind, _ = residuals(problem, at - step)
+            numeric = (ahead - behind) / 2e-5
+            scale = np.abs(numeric).max()
+            assert np.abs(numeric - slopes[:, column]).max() < limit * scale
+
+
+def test_modes_with_shapes_and_damping_give_all_six_parameters(
+    plates: Structure, reduced: ReducedModel, rows: FloatArray, truth: JointValues
+) -> None:
+    """Exact data: the truth to rounding, checked by one full solve."""
+    evidence = modal_evidence(reduced, rows, truth)
+    found = identify_structure(
+        reduced, [evidence], starts=6, profiles=False, structure=plates
+    )
+    wanted = np.concatenate([truth.stiffness, truth.damping])
+    np.testing.assert_allclose([p.value for p in found.parameters], wanted, rtol=1e-6)
+    assert all(one.identifiable for one in found.parameters)
+    assert found.full_check[0].agrees
+
+
+def test_frfs_give_all_six_parameters_within_their_uncertainty(
+    reduced: ReducedModel, rows: FloatArray, truth: JointValues
+) -> None:
+    """One per cent of noise: each within four standard deviations."""
+    evidence = frf_evidence(reduced, rows, truth)
+    found = identify_structure(reduced, [evidence], starts=4, profiles=False)
+    wanted = np.concatenate([truth.stiffness, truth.damping])
+    for one, true in zip(found.parameters, wanted, strict=True):
+        assert one.identifiable
+        assert one.sd is not None
+        assert one.sd < 0.01 * true
+        assert abs(one.value - true) < 4 * one.sd
+
+
+def test_three_frequencies_leave_the_normal_stiffness_open(
+    reduced: ReducedModel, truth: JointValues
+) -> None:
+    """Exact solutions over a decade, and the mode that would decide is named."""
+    frequency = predict_modes(reduced, truth).natural_frequency[:3]
+    none = np.zeros((0, reduced.size))
+    measured = MeasuredModes(frequency, 0.002 * frequency)
+    evidence = Evidence("rig", measured, None, none, none)
+    found = identify_structure(reduced, [evidence], profiles=False)
+    normal = found.parameter("joint.normal_stiffness")
+    assert not normal.identifiable
+    assert "mode" in normal.reason
+    exact = [
+        one.parameters["joint.normal_stiffness"]
+        for one in found.solutions
+        if one.chi2 < 1e-10
+    ]
+    assert len(exact) >= 3
+    assert max(exact) > 10 * min(exact)
+
+
+def test_swapped_modes_are_paired_by_shape(
+    reduced: ReducedModel, rows: FloatArray, truth: JointValues
+) -> None:
+    """The search passes joints whose modes come in another order."""
+    evidence = modal_evidence(reduced, rows, truth)
+    other = JointValues(truth.stiffness[[0, 2, 1]], truth.damping)
+    problem = pose_problem(reduced, [evidence])
+    away, _ = residuals(
+        problem, np.log(np.concatenate([other.stiffness, other.damping]))
+    )
+    at_truth, _ = residuals(
+        problem, np.log(np.concatenate([truth.stiffness, truth.damping]))
+    )
+    assert np.abs(at_truth).max() < 1e-6
+    assert np.abs(away).max() > 10.0
+    found = identify_structure(reduced, [evidence], starts=6, profiles=False)
+    assert found.solutions[0].chi2 < 1e-9
+
+
+def test_several_torques_share_what_they_have_in_common(
+    reduced: ReducedModel, rows: FloatArray, truth: JointValues
+) -> None:
+    """Two states: own normal and first tangent, one second tangent for both."""
+    tighter = replace(truth, stiffness=truth.stiffness * np.array([1.5, 2.0, 1.0]))
+    evidence = [
+        modal_evidence(reduced, rows, truth, "20 N m"),
+        modal_evidence(reduced, rows, tighter, "50 N m"),
+    ]
+    problem = pose_problem(reduced, evidence, shared=["joint.tangential_2"])
+    assert problem.size == 10
+    found = identify_structure(
+        reduced, evidence, shared=["joint.tangential_2"], starts=4, profiles=False
+    )
+    value = found.parameter("50 N m:joint.normal_stiffness").value
+    assert value == pytest.approx(9e8, rel=1e-5)
+    assert found.parameter("joint.tangential_2_stiffness").value == pytest.approx(2e8)
+
+
+def test_more_modes_than_the_model_predicts_are_refused(
+    reduced: ReducedModel,
+) -> None:
+    """Eight elastic modes cannot stand for nine measured ones."""
+    frequency = np.linspace(100.0, 900.0, 9)
+    none = np.zeros((0, reduced.size))
+    evidence = Evidence("rig", MeasuredModes(frequency, frequency), None, none, none)
+    with pytest.raises(BadData, match="reduce for more modes"):
+        identify_structure(reduced, [evidence], starts=1)
