@@ -269,7 +269,7 @@ QUADRATIC_DAMPING = LumpedEffect(
 SATURATION = LumpedEffect(
     Effect(
         "saturation",
-        "sensor",
+        "converter",
         (Parameter("inverse_limit", "-", "1/peak", 0.0, 50.0, (1.002, 1.03), off=0.0),),
         "ISO 7626-5:2019: overload of a measuring channel",
         {"jenkins": "lower the gain and hit again: flat tops vanish"},

@@ -112,7 +112,8 @@ class Effect:
 
     Attributes:
         name: snake case, for example ``"cubic_stiffness"``.
-        family: stiffness, friction, contact, mass, damping, mode, sensor or preload.
+        family: stiffness, friction, contact, mass, damping, mode, sensor,
+            converter or preload.
         parameters: amplitude first, then shape.
         source: paper and equation.
         separates: rival name to the experiment that tells the two apart.

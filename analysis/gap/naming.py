@@ -35,9 +35,10 @@ MODEL_ERROR = {
     "stiffness": 2e-5,
     "contact": 2e-5,
     "damping": 1e-6,
+    "converter": 2e-5,
 }
 """Share of the base's excess chi2 that a right law may leave, by its family: sliders
-are never quite those of the joint, and kinks fall between steps."""
+are never quite those of the joint, and kinks fall between steps, or samples."""
 EXACT = 1e-9
 """The same for what is linear or acts on a channel: it is as exact as the base, and
 any more would hide a second effect behind a great first one."""
