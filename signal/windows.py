@@ -11,7 +11,7 @@ rate): a pole moves by the decay rate, and moving it back removes the damping ad
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -50,6 +50,42 @@ class HammerWindow:
     decay_rate: float | None = None
     lead: float | None = None
     reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class WindowRequest:
+    """What was asked of the windows; None chooses by the hits, 0 leaves one out.
+
+    Attributes:
+        force_width: time after the trigger in which the force is kept whole [s].
+        decay_rate: rate of the exponential window on all channels [1/s].
+        lead: time kept before the trigger [s].
+    """
+
+    force_width: float | None = None
+    decay_rate: float | None = None
+    lead: float | None = None
+
+
+def requested_window(
+    recordings: Sequence[Recording], request: WindowRequest
+) -> HammerWindow:
+    """Return the one window of several recordings, with what was asked for put in.
+
+    Args:
+        recordings: with hits found; those without an accepted hit have no say.
+        request: what is not left to the hits.
+    """
+    chosen = join_windows([choose_window(r) for r in recordings if accepted_hits(r)])
+    given = {
+        name: value or None
+        for name in ("force_width", "decay_rate", "lead")
+        if (value := getattr(request, name)) is not None
+    }
+    if not given:
+        return chosen
+    words = ", ".join(f"{name} by request" for name in given)
+    return replace(chosen, **given, reason=f"{words}; {chosen.reason}")
 
 
 def choose_window(recording: Recording) -> HammerWindow:

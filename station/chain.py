@@ -13,6 +13,7 @@ from jointbench.signal.kalman import KalmanSettings, smooth_recording
 from jointbench.signal.lscf import Progress
 from jointbench.signal.modes import ModalResult, ModalSettings, identify_modes
 from jointbench.signal.oscillator_bank import repair_dropouts
+from jointbench.signal.windows import WindowRequest, requested_window
 
 # A gap spoils the modes that fill it; what a second round leaves is below the noise.
 _REPAIRS = 2
@@ -27,12 +28,14 @@ class ChainSettings:
         kalman: the smoother, run on all channels alike; None leaves it out.
         modal: band, order and stability limits of the extraction.
         estimator: of the FRF.
+        window: what is asked of the windows; by default nothing, the hits choose.
     """
 
     hits: HitCriteria = field(default_factory=HitCriteria)
     kalman: KalmanSettings | None = field(default_factory=KalmanSettings)
     modal: ModalSettings = field(default_factory=ModalSettings)
     estimator: Estimator = Estimator.H1
+    window: WindowRequest = field(default_factory=WindowRequest)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,31 +104,55 @@ def run_chain(
     """
     settings = settings or ChainSettings()
     judged = judge_hits(recordings, settings)
-    frf, result = _modes(judged, settings, progress)
-    whole: Sequence[Recording] = judged
+    frf = chain_frf([smoothed(r, settings) for r in judged], settings)
+    result = identify_modes(frf, settings.modal, progress=progress)
+    filled = fill_and_repeat(judged, result, settings, progress=progress)
+    if filled is not None:
+        return filled
+    return ModalChain(judged, frf, result, result.model.provenance)
+
+
+def fill_and_repeat(
+    judged: Sequence[Recording],
+    result: ModalResult,
+    settings: ChainSettings,
+    *,
+    progress: Progress | None = None,
+) -> ModalChain | None:
+    """Fill lost samples with what the modes make of the good ones, and fit again.
+
+    Args:
+        judged: with judged hits.
+        result: modes found with the losses in them.
+        settings: of the chain.
+        progress: told what is done, and the share of it; None for nobody.
+
+    Returns:
+        The chain with the losses filled, or None where nothing was lost.
+    """
+    chain = None
     for _ in range(_REPAIRS):
         model = result.model
-        repaired = [
+        repaired = tuple(
             repair_dropouts(r, model.natural_frequency, model.damping_ratio)
             for r in judged
-        ]
+        )
         if all(new is old for new, old in zip(repaired, judged, strict=True)):
-            break
-        whole = repaired
-        frf, result = _modes(whole, settings, progress)
-    return ModalChain(tuple(whole), frf, result, result.model.provenance)
+            return chain
+        frf = chain_frf([smoothed(r, settings) for r in repaired], settings)
+        result = identify_modes(frf, settings.modal, progress=progress)
+        chain = ModalChain(repaired, frf, result, result.model.provenance)
+    return chain
 
 
-def _modes(
-    judged: Sequence[Recording], settings: ChainSettings, progress: Progress | None
-) -> tuple[Frf, ModalResult]:
-    """Return the FRF of judged recordings and its modes."""
-    smoothed = [_smoothed(recording, settings) for recording in judged]
-    frf = estimate_frf(smoothed, estimator=settings.estimator)
-    return frf, identify_modes(frf, settings.modal, progress=progress)
-
-
-def _smoothed(recording: Recording, settings: ChainSettings) -> Recording:
+def smoothed(recording: Recording, settings: ChainSettings) -> Recording:
+    """Put a recording through the Kalman stage, if there is one; hits are kept."""
     if settings.kalman is None:
         return recording
     return replace(smooth_recording(recording, settings.kalman), hits=recording.hits)
+
+
+def chain_frf(recordings: Sequence[Recording], settings: ChainSettings) -> Frf:
+    """Estimate the FRF of recordings that have been through the Kalman stage."""
+    window = requested_window(recordings, settings.window)
+    return estimate_frf(recordings, window=window, estimator=settings.estimator)

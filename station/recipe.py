@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""The recipe (TOML): how recorded sessions are read again, stage by stage.
+
+Numbers carry their unit as text ("2 ms") and are parsed once, here. What is left out
+is chosen by the data, as `jointbench modal` chooses it.
+"""
+
+import json
+from hashlib import sha256
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from jointbench.acquisition.errors import UnitError
+from jointbench.acquisition.units import parse_value
+from jointbench.station.bench_model import BenchModel, Force, Pressure
+from jointbench.station.toml_file import read_toml
+
+AUTO, NONE = "auto", "none"
+
+
+def _quantity(kind: str, *words: str) -> BeforeValidator:
+    """Read text with a unit; of the words, "auto" stands for None and "none" for 0."""
+
+    def parse(value: object) -> object:
+        if isinstance(value, str) and value in words:
+            return None if value == AUTO else 0.0
+        if not isinstance(value, str):
+            # pydantic turns a ValueError, not a TypeError, into a named problem.
+            raise ValueError(  # noqa: TRY004
+                f"write the number with its unit, as text: '{value} ...'"
+            )
+        try:
+            return parse_value(value, kind)
+        except UnitError as error:
+            also = f"; or {' or '.join(map(repr, words))}" if words else ""
+            raise ValueError(f"{error}{also}") from error
+
+    return BeforeValidator(parse)
+
+
+Seconds = Annotated[float, _quantity("time"), Field(gt=0)]
+Hertz = Annotated[float, _quantity("frequency"), Field(gt=0)]
+Share = Annotated[float, _quantity("ratio"), Field(ge=0, le=1)]
+WindowTime = Annotated[float | None, _quantity("time", AUTO, NONE), Field(ge=0)]
+WindowRate = Annotated[float | None, _quantity("frequency", AUTO, NONE), Field(ge=0)]
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class HitsPart(_Strict):
+    """How hits are found and judged again; see `HitCriteria` and `HitLimits`."""
+
+    trigger_level: Force | None = None
+    pretrigger: Seconds | None = None
+    dead_time: Seconds | None = None
+    rearm_fraction: Share | None = None
+    noise_factor: Annotated[float, Field(gt=0)] | None = None
+    peak_fraction: Share | None = None
+    minimum_length: Seconds | None = None
+    overload_fraction: Share | None = None
+    flat_samples: Annotated[int, Field(ge=2)] | None = None
+    double_ratio: Share | None = None
+    weak_ratio: Share | None = None
+    weak_force: Force | None = None
+    again: bool = True
+    keep_operator: bool = True
+
+
+class WindowsPart(_Strict):
+    """Windows: a time or a rate, "auto" (chosen by the hits) or "none"."""
+
+    force_width: WindowTime = None
+    exponential: WindowRate = None
+    lead: WindowTime = None
+
+
+class FrfPart(_Strict):
+    """The estimator of the FRF."""
+
+    estimator: Literal["H1", "H2", "Hv"] = "H1"
+
+
+class KalmanPart(_Strict):
+    """The Kalman stage; see `KalmanSettings`."""
+
+    use: bool = True
+    model: Literal["level_slope", "oscillator"] = "level_slope"
+    cutoff: Hertz | None = None
+    smooth: bool = True
+    frequency: Hertz | None = None
+    damping_ratio: Share | None = None
+
+    @model_validator(mode="after")
+    def _oscillator_has_a_frequency(self) -> "KalmanPart":
+        if self.model == "oscillator" and self.frequency is None:
+            raise ValueError("an oscillator needs its frequency, as '310 Hz'")
+        return self
+
+
+class ModesPart(_Strict):
+    """Band, order and choices by hand; see `ModalSettings`."""
+
+    band: tuple[Hertz, Hertz] | None = None
+    highest_order: Annotated[int, Field(ge=2, le=200)] | None = None
+    refine: bool = True
+    keep: tuple[Hertz, ...] = ()
+    drop: tuple[Hertz, ...] = ()
+
+    @model_validator(mode="after")
+    def _band_ascends(self) -> "ModesPart":
+        if self.band is not None and not self.band[0] < self.band[1]:
+            raise ValueError(f"band is {self.band} Hz; write the lower end first")
+        return self
+
+
+class SurfacePart(_Strict):
+    """Whether surfaces are fitted, and with which frequency ratio gamma."""
+
+    use: bool = True
+    gamma: Annotated[float, Field(gt=1)] | None = None
+
+
+class ContactPart(_Strict):
+    """What the contact law needs to predict the joint from the session's faces."""
+
+    modulus: Pressure
+    hardness: Pressure
+    preload: Force | None = None
+    poisson: Annotated[float, Field(ge=0, lt=0.5)] = 0.25
+    model: str = "ke_3d_modified"
+
+
+class IdentificationPart(_Strict):
+    """The bench model whose links are identified, beside the recipe."""
+
+    model: str
+
+
+class GapPart(_Strict):
+    """The bench model whose gap is examined, and effects left out."""
+
+    model: str
+    without: tuple[str, ...] = ()
+
+
+class Recipe(_Strict):
+    """A recipe as written; `models` holds what its model files say, by their names."""
+
+    name: str = ""
+    hits: HitsPart = HitsPart()
+    windows: WindowsPart = WindowsPart()
+    frf: FrfPart = FrfPart()
+    kalman: KalmanPart = KalmanPart()
+    modes: ModesPart = ModesPart()
+    surface: SurfacePart = SurfacePart()
+    contact: ContactPart | None = None
+    identification: IdentificationPart | None = None
+    gap: GapPart | None = None
+    models: dict[str, BenchModel] = Field(default_factory=dict, exclude=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _models_are_ours(cls, content: Any) -> Any:
+        if isinstance(content, dict) and "models" in content:
+            raise ValueError("'models' is no table of a recipe")
+        return content
+
+
+def read_recipe(path: Path) -> Recipe:
+    """Read a recipe and the model files that it names.
+
+    Args:
+        path: of the TOML file; model files lie beside it.
+
+    Returns:
+        The recipe, called after its file where it has no name.
+
+    Raises:
+        BadData: it or a model file breaks a rule; the message names file, key, value
+            and rule.
+    """
+    recipe = read_toml(path, Recipe)
+    named = {
+        part.model for part in (recipe.identification, recipe.gap) if part is not None
+    }
+    models = {name: read_toml(path.parent / name, BenchModel) for name in named}
+    name = recipe.name or path.stem
+    return recipe.model_copy(update={"models": models, "name": name})
+
+
+def recipe_content(recipe: Recipe) -> dict[str, object]:
+    """Return all that a result depends on: not the name, but what the models say."""
+    content = recipe.model_dump(mode="json", exclude={"name"})
+    return content | {
+        "models": {
+            name: model.model_dump(mode="json")
+            for name, model in sorted(recipe.models.items())
+        }
+    }
+
+
+def recipe_digest(recipe: Recipe) -> str:
+    """Return the SHA-256 of what a recipe says, however it is written."""
+    text = json.dumps(recipe_content(recipe), sort_keys=True)
+    return sha256(text.encode()).hexdigest()

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""What a recipe says, as the settings that the chain takes."""
+
+from jointbench.signal.choices import Choices
+from jointbench.signal.frf_estimators import Estimator
+from jointbench.signal.hit_verdicts import HitLimits
+from jointbench.signal.hits import HitCriteria
+from jointbench.signal.kalman_model import KalmanModel, KalmanSettings
+from jointbench.signal.modes import ModalSettings
+from jointbench.signal.windows import WindowRequest
+from jointbench.station.chain import ChainSettings
+from jointbench.station.recipe import HitsPart, KalmanPart, Recipe
+
+_LIMITS = (
+    "overload_fraction",
+    "flat_samples",
+    "double_ratio",
+    "weak_ratio",
+    "weak_force",
+)
+_HOW = ("again", "keep_operator")
+
+
+def chain_settings(recipe: Recipe) -> ChainSettings:
+    """Return the settings of hits, windows, FRF, Kalman stage and modes."""
+    modes, windows = recipe.modes, recipe.windows
+    return ChainSettings(
+        hits=hit_criteria(recipe.hits),
+        kalman=_kalman(recipe.kalman),
+        modal=ModalSettings(
+            band=modes.band,
+            highest_order=modes.highest_order,
+            refine=modes.refine,
+            choices=Choices(modes.keep, modes.drop),
+        ),
+        estimator=Estimator(recipe.frf.estimator),
+        window=WindowRequest(windows.force_width, windows.exponential, windows.lead),
+    )
+
+
+def hit_criteria(part: HitsPart) -> HitCriteria:
+    """Return the criteria of hits; what the recipe leaves out has its default."""
+    given = part.model_dump(exclude_none=True, exclude={*_LIMITS, *_HOW})
+    limits = part.model_dump(exclude_none=True, include=set(_LIMITS))
+    return HitCriteria(**given, limits=HitLimits(**limits))
+
+
+def _kalman(part: KalmanPart) -> KalmanSettings | None:
+    if not part.use:
+        return None
+    given = part.model_dump(exclude_none=True, exclude={"use", "model"})
+    return KalmanSettings(model=KalmanModel(part.model), **given)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: MIT
+"""Stages kept by content: a stage is run again only if what it depends on changed.
+
+The key of a stage is the SHA-256 of its name, its settings, the version of this program
+and the keys of the stages before it. A kept stage that is damaged is run again.
+"""
+
+import json
+import os
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, is_dataclass
+from enum import Enum
+from hashlib import sha256
+from pathlib import Path
+from typing import Any, TypeVar
+
+from jointbench.acquisition.errors import FormatError
+from jointbench.acquisition.session import software_version
+from jointbench.station.record_codec import decode_record, encode_record
+
+Record = TypeVar("Record")
+SUFFIX = ".stage"
+STAGE_LAYOUT = 1
+"""Counts up when a stage computes something else from the same settings."""
+
+
+def stage_key(name: str, settings: object, *inputs: str) -> str:
+    """Return the key of a stage.
+
+    Args:
+        name: of the stage.
+        settings: all it depends on besides its inputs: records and plain data.
+        inputs: keys of the stages before it, or digests of files.
+    """
+    content = [STAGE_LAYOUT, software_version(), name, _text(settings), *inputs]
+    return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _text(settings: object) -> Any:
+    plain: Any = settings
+    if is_dataclass(settings) and not isinstance(settings, type):
+        plain = asdict(settings)
+    return json.loads(json.dumps(plain, default=_plain, sort_keys=True))
+
+
+def _plain(value: object) -> Any:
+    if isinstance(value, Enum):
+        return value.value
+    if is_dataclass(value) and not isinstance(value, type):
+        return asdict(value)
+    raise TypeError(f"no key can be made of a {type(value).__name__}")
+
+
+@dataclass(slots=True)
+class StageStore:
+    """Runs stages, and keeps what they give.
+
+    Attributes:
+        folder: where stages are kept; None to keep none.
+        computed: names of the stages that were run, in order.
+        reused: names of the stages that were taken from the folder.
+        keys: key of every stage that was asked for, by its name.
+    """
+
+    folder: Path | None = None
+    computed: list[str] = field(default_factory=list)
+    reused: list[str] = field(default_factory=list)
+    keys: dict[str, str] = field(default_factory=dict)
+
+    def run(
+        self, name: str, key: str, kind: type[Record], make: Callable[[], Record]
+    ) -> Record:
+        """Return the record of a stage, kept or made now.
+
+        Args:
+            name: of the stage, for people.
+            key: from `stage_key`.
+            kind: type of the record.
+            make: runs the stage; what it raises passes through and is not kept.
+        """
+        self.keys[name] = key
+        kept = self._kept(key, kind)
+        if kept is not None:
+            self.reused.append(name)
+            return kept
+        record = make()
+        self.computed.append(name)
+        if self.folder is not None:
+            _write(self._path(key), encode_record(record))
+        return record
+
+    def _path(self, key: str) -> Path:
+        assert self.folder is not None
+        return self.folder / key[:2] / f"{key}{SUFFIX}"
+
+    def _kept(self, key: str, kind: type[Record]) -> Record | None:
+        if self.folder is None:
+            return None
+        path = self._path(key)
+        try:
+            data = path.read_bytes()
+            os.utime(path)  # what was used last is dropped last
+            return decode_record(data, kind)
+        except (OSError, FormatError):
+            return None
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write whole or not at all; a disk that is full keeps nothing, and that is fine.
+
+    No fsync: after a power loss the check sum inside tells, and the stage runs again.
+    """
+    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(data)
+        part.replace(path)
+    except OSError:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+def prune_stages(folder: Path, most_bytes: int) -> int:
+    """Drop the stages that were not used for longest until the rest fits.
+
+    Args:
+        folder: of the stages.
+        most_bytes: that may stay [bytes].
+
+    Returns:
+        How many were dropped.
+    """
+    found = []
+    for path in folder.glob(f"*/*{SUFFIX}"):
+        try:
+            info = path.stat()
+        except OSError:
+            continue
+        found.append((info.st_mtime, info.st_size, path))
+    total, dropped = sum(size for _, size, _ in found), 0
+    for _, size, path in sorted(found):
+        if total <= most_bytes:
+            break
+        path.unlink(missing_ok=True)
+        total, dropped = total - size, dropped + 1
+    return dropped
+
+
+def differing(keys: Mapping[str, str], others: Mapping[str, str]) -> Sequence[str]:
+    """Return the names of stages whose keys are not the same, in order."""
+    return [
+        name
+        for name in dict.fromkeys([*keys, *others])
+        if keys.get(name) != others.get(name)
+    ]
