@@ -36,6 +36,7 @@ from jointbench.station.options import (
     Sessions,
     Universal,
 )
+from jointbench.station.process_commands import process_command
 
 __all__ = ["app", "exit_code", "run"]
 
@@ -260,6 +261,9 @@ def gap_command(
         report=report,
         json_target=json,
     )
+
+
+app.command(name="process")(process_command)
 
 
 @app.command(name="report")

@@ -58,11 +58,16 @@ def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None
                 "input_sha256": "\n".join(file_digest(p) for p in inputs),
             },
         )
-        _write_frf(file.create_group("frf"), chain.frf)
-        _write_frf(file.create_group("synthesis"), chain.result.synthesis)
-        _write_stabilisation(file.create_group("stabilisation"), chain.result)
-        _write_modes(file.create_group("modes"), chain.result.model)
-        _write_provenance(file.create_group("provenance"), chain)
+        write_modal(file, chain)
+
+
+def write_modal(group: h5py.Group, chain: ModalChain) -> None:
+    """Write FRF, synthesis, poles of all orders, modes and provenance into a group."""
+    _write_frf(group.create_group("frf"), chain.frf)
+    _write_frf(group.create_group("synthesis"), chain.result.synthesis)
+    _write_stabilisation(group.create_group("stabilisation"), chain.result)
+    _write_modes(group.create_group("modes"), chain.result.model)
+    _write_provenance(group.create_group("provenance"), chain)
 
 
 def _write_frf(group: h5py.Group, frf: Frf) -> None:
