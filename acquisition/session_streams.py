@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import BadData, FormatError
+from jointbench.acquisition.errors import BadData, FormatError, UnitError
 from jointbench.acquisition.netcdf import (
     write_attributes,
     write_axis,
@@ -47,6 +47,7 @@ from jointbench.acquisition.records import (
     Recording,
     Verdict,
 )
+from jointbench.acquisition.text_files import shown
 from jointbench.acquisition.units import example_unit
 
 _LONGEST_NAME = 100
@@ -156,7 +157,11 @@ def read_preload(group: h5py.Group) -> float | None:
 
 
 def read_channels(group: h5py.Group) -> tuple[Channel, ...]:
-    """Read the channels of a recording, not its samples."""
+    """Read the channels of a recording, not its samples.
+
+    Raises:
+        UnitError: samples are stored in another unit than the quantity's own.
+    """
     rows = zip(
         read_texts(group["channel_name"]),
         read_flags(group["quantity"]),
@@ -167,9 +172,16 @@ def read_channels(group: h5py.Group) -> tuple[Channel, ...]:
         _known(group["range"]),
         strict=True,
     )
-    return tuple(
+    channels = tuple(
         Channel(name, Quantity(quantity), *rest) for name, quantity, *rest in rows
     )
+    for channel, stored in zip(channels, read_texts(group["si_unit"]), strict=True):
+        if stored != example_unit(channel.quantity):
+            raise UnitError(
+                f"channel {channel.name!r} is stored in {shown(stored)}, a session "
+                f"keeps {channel.quantity.value} in {example_unit(channel.quantity)}"
+            )
+    return channels
 
 
 def read_hits(file: h5py.File, group: h5py.Group) -> tuple[Hit, ...]:

@@ -36,7 +36,7 @@ from jointbench.station.options import (
     Sessions,
     Universal,
 )
-from jointbench.station.process_commands import process_command
+from jointbench.station.process_commands import process_command, reprocess_command
 
 __all__ = ["app", "exit_code", "run"]
 
@@ -264,6 +264,7 @@ def gap_command(
 
 
 app.command(name="process")(process_command)
+app.command(name="reprocess")(reprocess_command)
 
 
 @app.command(name="report")

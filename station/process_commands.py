@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The commands of offline work: their names and options; the work is done elsewhere."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -40,3 +41,61 @@ def process_command(
     run_process(
         session, recipe=recipe, out=out, stages=stages, again=again, json_target=json
     )
+
+
+def reprocess_command(
+    sessions: Annotated[
+        list[str], typer.Argument(help="Files, folders or quoted patterns.")
+    ],
+    recipe: RecipeFile = None,
+    jobs: Annotated[
+        int | None, typer.Option(help="Worker processes; one a core.", min=1, max=256)
+    ] = None,
+    results: Annotated[
+        Path | None, typer.Option(help="Folder of results; else beside the sessions.")
+    ] = None,
+    ledger: Annotated[
+        Path | None, typer.Option(help="Ledger; RECIPE.ledger.jsonl by default.")
+    ] = None,
+    stages: Stages = None,
+    stages_limit: Annotated[
+        float, typer.Option(help="Space for kept stages [GB]; 0 keeps none.", min=0)
+    ] = 10.0,
+    retries: Annotated[
+        int, typer.Option(help="Tries after a system's fault.", min=0, max=100)
+    ] = 2,
+    time_limit: Annotated[
+        float, typer.Option(help="Longest time for a file [s].", min=1)
+    ] = 1800.0,
+    again: Again = False,
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Read an archive again under a recipe; resumable: the same command goes on.
+
+    Example: jointbench reprocess 'archive/**/*.h5' --recipe narrow.toml --jobs 2
+    """
+    from jointbench.station.reprocess import (
+        default_places,
+        pool_backend,
+        run_reprocess,
+    )
+    from jointbench.station.worker_pool import PoolSettings
+
+    workers = jobs or os.cpu_count() or 1
+    pool = PoolSettings(jobs=workers, retries=retries, time_limit=time_limit)
+    summary = run_reprocess(
+        sessions,
+        recipe=recipe,
+        places=default_places(
+            results,
+            ledger,
+            stages,
+            keep_stages=stages_limit > 0,
+            stages_bytes=round(stages_limit * 1e9),
+        ),
+        backend=pool_backend(pool),
+        again=again,
+        json_target=json,
+    )
+    return EXIT_QUALITY if summary.failed else 0

@@ -115,7 +115,9 @@ def _processed(file: h5py.File, path: Path) -> StoredResult:
         changes=tuple(_changes(find_group(file, "hits"))),
         recipe=json.loads("".join(read_texts(file["recipe/text"]))),
         stages=dict(
-            zip(read_texts(stages["stage_name"]), read_texts(stages["key"]), strict=True)
+            zip(
+                read_texts(stages["stage_name"]), read_texts(stages["key"]), strict=True
+            )
         ),
         remarks=() if remarks is None else read_texts(remarks["text"]),
     )

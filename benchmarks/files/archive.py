@@ -1,0 +1,190 @@
+"""Make an archive of simulated sessions, some of them poisoned.
+
+    python benchmarks/files/archive.py FOLDER --sessions 2000 --poisoned 40
+
+Each session is a visit to the simulated two-body bench: its own seed, one of four
+specimens (a folder each) and one of five torques. A poisoned file is in one of ten
+ways unusable; `poison.json` says which is which, for whoever judges the quarantine.
+"""
+
+import argparse
+import json
+import multiprocessing
+import random
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+from jointbench.acquisition.records import Channel, Quantity, Recording
+from jointbench.acquisition.session import Session, new_session
+from jointbench.acquisition.session_file import read_session, write_session
+from jointbench.station.record import record_visit
+from jointbench.station.sources import open_visit
+
+SPECIMENS = 4
+TORQUES = (20, 35, 50, 65, 80)
+RATE = 6400.0
+
+
+def visit(number: int) -> Session:
+    """Return the session of one visit."""
+    torque = TORQUES[number // SPECIMENS % len(TORQUES)]
+    url = (
+        f"sim:two-body?seed={number + 1}&hits=4&interval=0.7&sample_rate={RATE:g}"
+        f"&double_rate=0.05&overload_rate=0.05&torque={torque}"
+    )
+    return record_visit(open_visit(url))
+
+
+def truncated(path: Path) -> None:
+    """Cut the last third off."""
+    data = path.read_bytes()
+    path.write_bytes(data[: 2 * len(data) // 3])
+
+
+def empty(path: Path) -> None:
+    """Leave nothing."""
+    path.write_bytes(b"")
+
+
+def text(path: Path) -> None:
+    """Put a table under the name of a session."""
+    path.write_text("time;force\n0;1\n", encoding="utf-8")
+
+
+def external(path: Path) -> None:
+    """Point at another file."""
+    with h5py.File(path, "a") as file:
+        file["stream/more"] = h5py.ExternalLink("/etc/hostname", "/")
+
+
+def bomb(path: Path) -> None:
+    """Unpack a few kilobytes into 2 GB."""
+    with h5py.File(path, "a") as file:
+        file.create_dataset(
+            "stream/zeros", (2**28,), "f8", chunks=(2**20,), compression="gzip"
+        )
+
+
+def variable_length(path: Path) -> None:
+    """Hold texts of any length."""
+    with h5py.File(path, "a") as file:
+        texts = np.array(["a", "bb"], dtype=object)
+        file.create_dataset("stream/words", data=texts, dtype=h5py.string_dtype())
+
+
+def wrong_units(path: Path) -> None:
+    """Say that accelerations are stored in g."""
+    with h5py.File(path, "a") as file:
+        units = next(iter(file["stream"].values()))["si_unit"]
+        units[1] = np.frombuffer(b"g".ljust(units.shape[1], b"\0"), "S1")
+
+
+def later_layout(path: Path) -> None:
+    """Claim a layout of the future."""
+    with h5py.File(path, "a") as file:
+        file.attrs["schema"] = np.bytes_("jointbench-session/9")
+
+
+def rewritten(path: Path, change: Callable[[Recording], Recording]) -> None:
+    """Write the session again with changed recordings."""
+    session = read_session(path)
+    recordings = tuple(change(recording) for recording in session.recordings)
+    whole = new_session(
+        source=session.source,
+        simulated=True,
+        recordings=recordings,
+        joint=session.joint,
+    )
+    write_session(whole, path, overwrite=True)
+
+
+def no_hits(path: Path) -> None:
+    """Leave noise where the hits were."""
+
+    def quiet(recording: Recording) -> Recording:
+        rng = np.random.default_rng(1)
+        noise = rng.normal(0.0, 1e-3, recording.samples.shape)
+        return replace(recording, samples=noise, hits=())
+
+    rewritten(path, quiet)
+
+
+def no_response(path: Path) -> None:
+    """Keep the hammer alone."""
+
+    def alone(recording: Recording) -> Recording:
+        force = Channel("force", Quantity.FORCE, "2")
+        return replace(recording, samples=recording.samples[:1], channels=(force,))
+
+    rewritten(path, alone)
+
+
+# What is done to a file, and a word that a true reason for refusing it must hold.
+POISONS: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
+    "truncated": (truncated, ("cut short", "damaged")),
+    "empty": (empty, ("empty",)),
+    "text": (text, ("no HDF5",)),
+    "external link": (external, ("link to another file",)),
+    "bomb": (bomb, ("bytes of values",)),
+    "variable length": (variable_length, ("fixed length",)),
+    "wrong units": (wrong_units, ("stored in 'g'",)),
+    "later layout": (later_layout, ("layout",)),
+    "no hits": (no_hits, ("no force sample", "stand out of the noise", "no hit")),
+    "no response": (no_response, ("no response channel",)),
+}
+
+
+def make(task: tuple[Path, int, str | None]) -> None:
+    """Write one session, and poison it."""
+    path, number, poison = task
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_session(visit(number), path, overwrite=True)
+    if poison is not None:
+        POISONS[poison][0](path)
+
+
+def make_archive(
+    folder: Path, *, sessions: int, poisoned: int, jobs: int = 2, seed: int = 1
+) -> dict[str, str]:
+    """Write an archive; return the kind of poison of each poisoned file."""
+    draw = random.Random(seed)
+    kinds = list(POISONS)
+    sick = dict(
+        zip(
+            sorted(draw.sample(range(sessions), poisoned)),
+            (kinds[i % len(kinds)] for i in range(poisoned)),
+            strict=True,
+        )
+    )
+    tasks = [
+        (folder / f"plate-{i % SPECIMENS}" / f"visit-{i:04d}.h5", i, sick.get(i))
+        for i in range(sessions)
+    ]
+    context = multiprocessing.get_context("forkserver")
+    with context.Pool(jobs) as pool:
+        for _ in pool.imap_unordered(make, tasks, chunksize=8):
+            pass
+    named = {str(path): kind for path, _, kind in tasks if kind is not None}
+    (folder / "poison.json").write_text(json.dumps(named, indent=1), encoding="utf-8")
+    return named
+
+
+def main() -> None:
+    """Write the archive."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--sessions", type=int, default=2000)
+    parser.add_argument("--poisoned", type=int, default=40)
+    options = parser.parse_args()
+    named = make_archive(
+        options.folder, sessions=options.sessions, poisoned=options.poisoned
+    )
+    print(f"{options.sessions} sessions, {len(named)} of them poisoned")
+
+
+if __name__ == "__main__":
+    main()

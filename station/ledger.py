@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""The ledger of a reprocessing run: one JSON line a file, and the quarantine list.
+
+What counts for resuming are the result files themselves. The ledger tells people what
+happened, and remembers which files were refused, so that they are not read again. A
+line that a crash cut short is passed over.
+"""
+
+import csv
+import io
+import json
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import IO, Any
+
+from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.session import software_version
+from jointbench.acquisition.session_lock import drop_lock, hold_lock
+from jointbench.acquisition.text_files import named
+from jointbench.station.outputs import write_text
+from jointbench.station.process import outcome_json
+from jointbench.station.process_file import Outcome, State
+
+LEDGER_SCHEMA = "jointbench-ledger/1"
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+@dataclass(slots=True)
+class Ledger:
+    """An open ledger.
+
+    Attributes:
+        path: of its file.
+        refused: key and reason of files that were refused for their content, by path.
+    """
+
+    path: Path
+    refused: dict[str, tuple[str, str]] = field(default_factory=dict)
+    file: IO[str] | None = None
+
+    def write(self, line: Mapping[str, object]) -> None:
+        """Append a line."""
+        assert self.file is not None
+        self.file.write(json.dumps(line) + "\n")
+        self.file.flush()
+
+    def outcome(self, outcome: Outcome) -> None:
+        """Append what became of a file."""
+        self.write({"kind": "file", "time": now(), **outcome_json(outcome)})
+
+
+def now() -> str:
+    """Return the time in UTC, ISO 8601."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+@contextmanager
+def open_ledger(path: Path, run: Mapping[str, object]) -> Iterator[Ledger]:
+    """Open a ledger to append to; nobody else writes to it meanwhile.
+
+    Args:
+        path: of the file; made where it is not there.
+        run: what this run is about.
+
+    Yields:
+        The ledger, with what earlier runs refused.
+
+    Raises:
+        UsageError: another run holds it, it is no ledger, or cannot be written.
+    """
+    try:
+        lock = hold_lock(path)
+    except UsageError as error:
+        raise UsageError(
+            f"{named(path)} is in use by another run, or its folder cannot be written; "
+            "wait until that has finished, or give --ledger another name"
+        ) from error
+    try:
+        ledger = Ledger(path, _refused(read_ledger(path)))
+        with path.open("a", encoding="utf-8") as file:
+            ledger.file = file
+            if _cut_short(path):
+                file.write("\n")
+            begin = {"kind": "run", "schema": LEDGER_SCHEMA, "time": now()}
+            ledger.write(begin | {"software": software_version()} | dict(run))
+            yield ledger
+            file.flush()
+            os.fsync(file.fileno())
+    finally:
+        drop_lock(path, lock)
+
+
+def read_ledger(path: Path) -> list[dict[str, Any]]:
+    """Return the lines of a ledger that are whole; none where there is no file.
+
+    Raises:
+        UsageError: the file is no ledger.
+    """
+    if not path.exists():
+        return []
+    lines = []
+    for text in path.read_text(encoding="utf-8", errors="replace").splitlines():
+        try:
+            line = json.loads(text)
+        except ValueError:
+            continue
+        if isinstance(line, dict):
+            lines.append(line)
+    if path.stat().st_size and not (
+        lines and str(lines[0].get("schema", "")).startswith("jointbench-ledger/")
+    ):
+        raise UsageError(f"{named(path)} is no ledger; give --ledger another name")
+    return lines
+
+
+def _refused(lines: Sequence[Mapping[str, Any]]) -> dict[str, tuple[str, str]]:
+    """Return the files whose last line says that their content was refused."""
+    found: dict[str, tuple[str, str]] = {}
+    for line in lines:
+        if line.get("kind") != "file":
+            continue
+        name = str(line.get("file"))
+        found.pop(name, None)
+        if line.get("state") == State.FAILED and line.get("lasting"):
+            found[name] = str(line.get("key", "")), str(line.get("reason", ""))
+    return found
+
+
+def _cut_short(path: Path) -> bool:
+    """Tell whether a crash cut the last line."""
+    with path.open("rb") as file:
+        if file.seek(0, os.SEEK_END) == 0:
+            return False
+        file.seek(-1, os.SEEK_END)
+        return file.read(1) != b"\n"
+
+
+def write_quarantine(path: Path, failed: Sequence[Outcome]) -> None:
+    """Write the files that could not be processed, each with its reason, as CSV.
+
+    The files themselves stay where they are. Cells that a spreadsheet would run as a
+    formula are escaped.
+    """
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(("file", "reason", "comes again"))
+    for outcome in sorted(failed, key=lambda o: o.path):
+        again = "yes" if outcome.lasting else "perhaps not: run again"
+        writer.writerow([escaped(str(outcome.path)), escaped(outcome.reason), again])
+    write_text(path, buffer.getvalue())
+
+
+def escaped(cell: str) -> str:
+    """Return a cell that no spreadsheet takes for a formula."""
+    return f"'{cell}" if cell.startswith(_FORMULA) else cell

@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench reprocess``: an archive under a recipe, resumable, in a pool or beyond.
+
+What is done is known by the results that are there, so that Ctrl-C, a kill or a power
+loss cost at most the files in hand; call again and it goes on.
+"""
+
+import signal
+import time
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import FrameType
+
+from jointbench.acquisition.errors import UsageError
+from jointbench.station.archive_files import common_folder, session_files
+from jointbench.station.ledger import Ledger, open_ledger, write_quarantine
+from jointbench.station.output import console, table, write_json
+from jointbench.station.outputs import check_outputs
+from jointbench.station.process import STAGES_FOLDER, outcome_json, recipe_or_default
+from jointbench.station.process_file import Outcome, State, Task
+from jointbench.station.processed_file import processed_path
+from jointbench.station.recipe import Recipe, recipe_digest
+from jointbench.station.reprocess_progress import run_progress, time_words
+from jointbench.station.stage_store import prune_stages
+from jointbench.station.worker_pool import PoolSettings, run_pool
+
+MOST_SHOWN = 10
+PRUNE_EVERY = 500
+Backend = Callable[[Sequence[Task], Recipe], Iterator[Outcome]]
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where a run writes.
+
+    Attributes:
+        results: folder of the results, None for beside the sessions.
+        ledger: of the run.
+        stages: folder of kept stages, or None to keep none.
+        stages_bytes: that kept stages may take [bytes].
+    """
+
+    results: Path | None
+    ledger: Path
+    stages: Path | None
+    stages_bytes: int
+
+    @property
+    def quarantine(self) -> Path:
+        """List of the files that could not be processed."""
+        return self.ledger.with_suffix(".quarantine.csv")
+
+
+@dataclass(slots=True)
+class RunSummary:
+    """What a run has come to.
+
+    Attributes:
+        outcomes: one a file, as they came in.
+        interrupted: whether it was stopped.
+        unwritable: why results could not be written, or empty.
+        seconds: that it took [s].
+    """
+
+    outcomes: list[Outcome] = field(default_factory=list)
+    interrupted: bool = False
+    unwritable: str = ""
+    seconds: float = 0.0
+
+    @property
+    def counts(self) -> dict[State, int]:
+        """Number of files by what became of them."""
+        counts = dict.fromkeys(State, 0)
+        for outcome in self.outcomes:
+            counts[outcome.state] += 1
+        return counts
+
+    @property
+    def failed(self) -> list[Outcome]:
+        """Those that go into the quarantine list."""
+        return [one for one in self.outcomes if one.state is State.FAILED]
+
+
+def pool_backend(settings: PoolSettings) -> Backend:
+    """Return the pool of processes as a backend."""
+    return lambda tasks, recipe: run_pool(tasks, recipe, settings)
+
+
+def make_tasks(
+    files: Sequence[Path], recipe: Recipe, places: Places, *, again: bool = False
+) -> list[Task]:
+    """Return one task a file, each with the place of its result.
+
+    Raises:
+        UsageError: two files would have the same result.
+    """
+    root = common_folder(files)
+    tasks = []
+    for path in files:
+        result = processed_path(path, recipe)
+        if places.results is not None:
+            result = places.results / result.absolute().relative_to(root)
+        tasks.append(Task(path, result, places.stages, again=again))
+    taken: dict[Path, Path] = {}
+    for task in tasks:
+        other = taken.setdefault(task.result.absolute(), task.path)
+        if other != task.path:
+            raise UsageError(
+                f"'{other}' and '{task.path}' would both become '{task.result}'; "
+                "rename one of them"
+            )
+    return tasks
+
+
+def reprocess(
+    tasks: Sequence[Task], recipe: Recipe, places: Places, backend: Backend
+) -> RunSummary:
+    """Process all files that have no result yet, and keep the ledger.
+
+    Args:
+        tasks: see `make_tasks`.
+        recipe: how to read them.
+        places: where to write.
+        backend: what runs them.
+
+    Returns:
+        What became of every file met; not all of them where it was interrupted.
+    """
+    summary, begun = RunSummary(), time.monotonic()
+    run = {"recipe": recipe.name, "recipe_sha256": recipe_digest(recipe)}
+    with (
+        open_ledger(places.ledger, run | {"files": len(tasks)}) as ledger,
+        _interruptible(),
+        run_progress(len(tasks)) as tell,
+    ):
+        known = [_remembering(task, ledger) for task in tasks]
+        _make_room(known)
+        try:
+            with closing(_generator(backend(known, recipe))) as outcomes:
+                for outcome in outcomes:
+                    ledger.outcome(outcome)
+                    summary.outcomes.append(outcome)
+                    tell(summary.counts)
+                    _prune(places, len(summary.outcomes))
+                    if outcome.unwritable:
+                        summary.unwritable = outcome.reason
+                        break
+        except KeyboardInterrupt:
+            summary.interrupted = True
+        summary.seconds = time.monotonic() - begun
+        counts = {state.value: n for state, n in summary.counts.items()}
+        end = {"kind": "end", "interrupted": summary.interrupted}
+        ledger.write(end | counts | {"seconds": round(summary.seconds, 3)})
+    _prune(places, 0)
+    write_quarantine(places.quarantine, summary.failed)
+    return summary
+
+
+def _generator(outcomes: Iterator[Outcome]) -> Generator[Outcome, None, None]:
+    yield from outcomes
+
+
+def _remembering(task: Task, ledger: Ledger) -> Task:
+    key, reason = ledger.refused.get(str(task.path), ("", ""))
+    return Task(task.path, task.result, task.stages, key, reason, task.again)
+
+
+def _make_room(tasks: Sequence[Task]) -> None:
+    """Make the folders of the results, and drop what a killed run left half written."""
+    for folder in {task.result.parent for task in tasks}:
+        folder.mkdir(parents=True, exist_ok=True)
+    for task in tasks:
+        task.result.with_name(f"{task.result.name}.part").unlink(missing_ok=True)
+
+
+def _prune(places: Places, met: int) -> None:
+    if places.stages is not None and met % PRUNE_EVERY == 0:
+        prune_stages(places.stages, places.stages_bytes)
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Take a polite kill (SIGTERM) as Ctrl-C: finish the files in hand and stop."""
+
+    def stop(_signal: int, _frame: FrameType | None) -> None:
+        raise KeyboardInterrupt
+
+    try:
+        before = signal.signal(signal.SIGTERM, stop)
+    except ValueError:  # not in the main thread: whoever runs us stops us
+        yield
+        return
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def run_reprocess(
+    patterns: Sequence[str],
+    *,
+    recipe: Path | None,
+    places: Callable[[Path, Recipe], Places],
+    backend: Backend,
+    again: bool,
+    json_target: str | None,
+) -> RunSummary:
+    """Reprocess what patterns name, and show what became of it.
+
+    Args:
+        patterns: files, folders or patterns.
+        recipe: TOML, or None for the defaults.
+        places: makes the places of a run from the common folder and the recipe.
+        backend: what runs the files.
+        again: process files that have a result, too.
+        json_target: where the JSON goes.
+
+    Raises:
+        KeyboardInterrupt: it was stopped, after all was put in order.
+        UsageError: results cannot be written.
+    """
+    check_outputs([recipe] if recipe else [], [json_target])
+    made = recipe_or_default(recipe)
+    files = session_files(patterns)
+    here = places(common_folder(files), made)
+    tasks = make_tasks(files, made, here, again=again)
+    summary = reprocess(tasks, made, here, backend)
+    _show(summary, len(tasks), here, json_target)
+    write_json(json_target, _json(summary, len(tasks), made, here))
+    if summary.interrupted:
+        raise KeyboardInterrupt
+    if summary.unwritable:
+        raise UsageError(summary.unwritable)
+    return summary
+
+
+def default_places(
+    results: Path | None,
+    ledger: Path | None,
+    stages: Path | None,
+    *,
+    keep_stages: bool,
+    stages_bytes: int,
+) -> Callable[[Path, Recipe], Places]:
+    """Return what makes the places of a run; what is None lies beside the results."""
+
+    def places(root: Path, recipe: Recipe) -> Places:
+        home = results or root
+        home.mkdir(parents=True, exist_ok=True)
+        kept = stages or home / STAGES_FOLDER
+        return Places(
+            results,
+            ledger or home / f"{recipe.name}.ledger.jsonl",
+            kept if keep_stages else None,
+            stages_bytes,
+        )
+
+    return places
+
+
+def _show(
+    summary: RunSummary, total: int, places: Places, json_target: str | None
+) -> None:
+    screen = console(json_target)
+    rows = [(state.value, str(count)) for state, count in summary.counts.items()]
+    rows += [("of", str(total)), ("time", time_words(summary.seconds))]
+    changes = sum(outcome.changes for outcome in summary.outcomes)
+    rows.append(("verdicts changed", str(changes)))
+    screen.print(table("Reprocessed", ("files", "number"), rows))
+    failed = summary.failed
+    for outcome in failed[:MOST_SHOWN]:
+        screen.print(f"quarantined: {outcome.path}: {outcome.reason}", soft_wrap=True)
+    if len(failed) > MOST_SHOWN:
+        screen.print(f"and {len(failed) - MOST_SHOWN} more, see the quarantine list")
+    screen.print(f"\nledger: {places.ledger}", soft_wrap=True)
+    if failed:
+        screen.print(f"quarantine: {places.quarantine}", soft_wrap=True)
+    if summary.interrupted:
+        screen.print("interrupted; the same command goes on where it stopped")
+
+
+def _json(
+    summary: RunSummary, total: int, recipe: Recipe, places: Places
+) -> dict[str, object]:
+    return {
+        "recipe": recipe.name,
+        "files": total,
+        **{state.value: count for state, count in summary.counts.items()},
+        "interrupted": summary.interrupted,
+        "seconds": summary.seconds,
+        "ledger": [outcome_json(outcome) for outcome in summary.outcomes],
+        "ledger_file": str(places.ledger),
+        "quarantine_file": str(places.quarantine),
+    }
