@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which files of an archive are meant: patterns, folders and names, results left out."""
+"""Which files of an archive are meant: patterns, folders, names; results apart."""
 
 import glob
 import os

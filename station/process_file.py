@@ -118,11 +118,7 @@ def process_task(task: Task, recipe: Recipe) -> Outcome:
     begun = time.perf_counter()
     key = ""
     try:
-        if file_size(task.path) > MOST_BYTES:
-            raise HostileFile(
-                f"{named(task.path)} has more than {MOST_BYTES} bytes, no session has"
-            )
-        digest = file_digest(task.path)
+        digest = _digest(task.path)
         key = result_key(digest, recipe)
         if not task.again and has_key(task.result, key):
             return Outcome(task.path, task.result, State.SKIPPED, key)
@@ -140,6 +136,14 @@ def process_task(task: Task, recipe: Recipe) -> Outcome:
             f"{Path(place.filename).name}:{place.lineno}; report it"
         )
         return _failed(task, key, reason, begun, lasting=False)
+
+
+def _digest(path: Path) -> str:
+    if file_size(path) > MOST_BYTES:
+        raise HostileFile(
+            f"{named(path)} has more than {MOST_BYTES} bytes, no session has"
+        )
+    return file_digest(path)
 
 
 def _done(task: Task, recipe: Recipe, digest: str, key: str, begun: float) -> Outcome:

@@ -47,7 +47,13 @@ from jointbench.station.recipe_settings import chain_settings
 from jointbench.station.stage_store import StageStore, stage_key
 from jointbench.station.surface import SurfaceChain
 
-Filled = tuple[Frf, ModalResult] | tuple[()]
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Refit:
+    """FRF and modes once lost samples were filled."""
+
+    frf: Frf
+    result: ModalResult
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -221,11 +227,14 @@ def _modes_at(
         lambda: identify_modes(frf, settings.modal),
     )
     fill_key = stage_key("fill", settings, modes_key, digest)
-    filled = stages.run(
-        f"fill{at}", fill_key, Filled, lambda: _filled(group, result, settings)
+    refits = stages.run(
+        f"fill{at}",
+        fill_key,
+        tuple[Refit, ...],
+        lambda: _refits(group, result, settings),
     )
-    if filled:
-        frf, result = filled
+    for refit in refits:
+        frf, result = refit.frf, refit.result
     chain = ModalChain(tuple(group), frf, result, result.model.provenance)
     return PreloadModes(preload, tuple(r.name for r in group), chain, fill_key)
 
@@ -256,8 +265,9 @@ def _smoothed(
     return found
 
 
-def _filled(
+def _refits(
     group: Sequence[Recording], result: ModalResult, settings: ChainSettings
-) -> Filled:
+) -> tuple[Refit, ...]:
+    """Return the fit with lost samples filled; none where nothing was lost."""
     chain = fill_and_repeat(group, result, settings)
-    return () if chain is None else (chain.frf, chain.result)
+    return () if chain is None else (Refit(chain.frf, chain.result),)

@@ -38,8 +38,9 @@ def encode_record(record: object) -> bytes:
     """
     arrays: dict[str, np.ndarray[Any, Any]] = {}
     text = json.dumps(_plain(record, arrays)).encode()
+    content: dict[str, Any] = {_TEXT: np.frombuffer(text, np.uint8), **arrays}
     buffer = io.BytesIO()
-    np.savez(buffer, **{_TEXT: np.frombuffer(text, np.uint8)}, **arrays)
+    np.savez(buffer, **content)
     return buffer.getvalue()
 
 

@@ -124,7 +124,7 @@ class _Pool:
         """Take what a worker has to tell; None where its file is tried again."""
         task = worker.task
         try:
-            outcome = worker.pipe.recv()
+            outcome: Outcome = worker.pipe.recv()
         except (EOFError, OSError):
             self.drop(worker)
             return None if task is None else self.lost(task, "its worker died")

@@ -168,7 +168,7 @@ def make_archive(
     with context.Pool(jobs) as pool:
         for _ in pool.imap_unordered(make, tasks, chunksize=8):
             pass
-    named = {str(path): kind for path, _, kind in tasks if kind is not None}
+    named = {str(path.absolute()): kind for path, _, kind in tasks if kind is not None}
     (folder / "poison.json").write_text(json.dumps(named, indent=1), encoding="utf-8")
     return named
 
