@@ -67,6 +67,16 @@ def reprocess_command(
     time_limit: Annotated[
         float, typer.Option(help="Longest time for a file [s].", min=1)
     ] = 1800.0,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(help="Dask scheduler in place of --jobs: tcp://127.0.0.1:8786."),
+    ] = None,
+    batch: Annotated[
+        int, typer.Option(help="Files a task of the scheduler.", min=1, max=1000)
+    ] = 16,
+    tls_ca: Annotated[Path | None, typer.Option(help="Authority, PEM.")] = None,
+    tls_cert: Annotated[Path | None, typer.Option(help="Our certificate, PEM.")] = None,
+    tls_key: Annotated[Path | None, typer.Option(help="Our key, PEM.")] = None,
     again: Again = False,
     json: Json = None,
     debug: Debug = False,
@@ -75,7 +85,9 @@ def reprocess_command(
 
     Example: jointbench reprocess 'archive/**/*.h5' --recipe narrow.toml --jobs 2
     """
+    from jointbench.station.cluster import ClusterSettings
     from jointbench.station.reprocess import (
+        cluster_backend,
         default_places,
         pool_backend,
         run_reprocess,
@@ -83,7 +95,10 @@ def reprocess_command(
     from jointbench.station.worker_pool import PoolSettings
 
     workers = jobs or os.cpu_count() or 1
-    pool = PoolSettings(jobs=workers, retries=retries, time_limit=time_limit)
+    backend = pool_backend(PoolSettings(workers, retries, time_limit=time_limit))
+    if scheduler is not None:
+        tls = {"authority": tls_ca, "certificate": tls_cert, "private_key": tls_key}
+        backend = cluster_backend(ClusterSettings(scheduler, batch, retries, **tls))
     summary = run_reprocess(
         sessions,
         recipe=recipe,
@@ -94,7 +109,7 @@ def reprocess_command(
             keep_stages=stages_limit > 0,
             stages_bytes=round(stages_limit * 1e9),
         ),
-        backend=pool_backend(pool),
+        backend=backend,
         again=again,
         json_target=json,
     )

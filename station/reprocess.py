@@ -15,6 +15,7 @@ from types import FrameType
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.station.archive_files import common_folder, session_files
+from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, open_ledger, write_quarantine
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
@@ -86,6 +87,12 @@ class RunSummary:
 def pool_backend(settings: PoolSettings) -> Backend:
     """Return the pool of processes as a backend."""
     return lambda tasks, recipe: run_pool(tasks, recipe, settings)
+
+
+def cluster_backend(settings: ClusterSettings) -> Backend:
+    """Return a Dask cluster as a backend; refused at once where it is not safe."""
+    require_safe(settings)
+    return lambda tasks, recipe: run_cluster(tasks, recipe, settings)
 
 
 def make_tasks(

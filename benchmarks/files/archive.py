@@ -2,9 +2,11 @@
 
     python benchmarks/files/archive.py FOLDER --sessions 2000 --poisoned 40
 
-Each session is a visit to the simulated two-body bench: its own seed, one of four
-specimens (a folder each) and one of five torques. A poisoned file is in one of ten
-ways unusable; `poison.json` says which is which, for whoever judges the quarantine.
+The first sessions are visits to the simulated two-body bench, each with its own seed,
+one of four specimens (a folder each) and one of five torques; the others are the same
+visits with fresh sensor noise on top, so that no two files agree. A poisoned file is
+unusable in one of ten ways; `poison.json` says which is which, for whoever judges the
+quarantine.
 """
 
 import argparse
@@ -27,6 +29,8 @@ from jointbench.station.sources import open_visit
 SPECIMENS = 4
 TORQUES = (20, 35, 50, 65, 80)
 RATE = 6400.0
+NOISE = 0.01
+"""Standard deviation of the fresh noise, as of the sensors themselves [N, m/s^2]."""
 
 
 def visit(number: int) -> Session:
@@ -37,6 +41,22 @@ def visit(number: int) -> Session:
         f"&double_rate=0.05&overload_rate=0.05&torque={torque}"
     )
     return record_visit(open_visit(url))
+
+
+def noisier(session: Session, number: int) -> Session:
+    """Return a visit with noise of its own on top, hits as they were judged."""
+    rng = np.random.default_rng(number)
+
+    def louder(recording: Recording) -> Recording:
+        noise = rng.normal(0.0, NOISE, recording.samples.shape)
+        return replace(recording, samples=recording.samples + noise)
+
+    return new_session(
+        source=f"{session.source} and noise of seed {number}",
+        simulated=True,
+        recordings=[louder(recording) for recording in session.recordings],
+        joint=session.joint,
+    )
 
 
 def truncated(path: Path) -> None:
@@ -138,37 +158,40 @@ POISONS: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
 }
 
 
-def make(task: tuple[Path, int, str | None]) -> None:
-    """Write one session, and poison it."""
-    path, number, poison = task
+def make(task: tuple[Path, int, Path | None]) -> None:
+    """Write one session: a visit, or one that is there with other noise."""
+    path, number, base = task
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_session(visit(number), path, overwrite=True)
-    if poison is not None:
-        POISONS[poison][0](path)
+    whole = visit(number) if base is None else noisier(read_session(base), number)
+    write_session(whole, path, overwrite=True)
 
 
 def make_archive(
-    folder: Path, *, sessions: int, poisoned: int, jobs: int = 2, seed: int = 1
+    folder: Path,
+    *,
+    sessions: int,
+    poisoned: int,
+    visits: int = 250,
+    jobs: int = 2,
+    seed: int = 1,
 ) -> dict[str, str]:
     """Write an archive; return the kind of poison of each poisoned file."""
     draw = random.Random(seed)
     kinds = list(POISONS)
-    sick = dict(
-        zip(
-            sorted(draw.sample(range(sessions), poisoned)),
-            (kinds[i % len(kinds)] for i in range(poisoned)),
-            strict=True,
-        )
-    )
-    tasks = [
-        (folder / f"plate-{i % SPECIMENS}" / f"visit-{i:04d}.h5", i, sick.get(i))
-        for i in range(sessions)
+    paths = [
+        folder / f"plate-{i % SPECIMENS}" / f"visit-{i:04d}.h5" for i in range(sessions)
     ]
-    context = multiprocessing.get_context("forkserver")
-    with context.Pool(jobs) as pool:
-        for _ in pool.imap_unordered(make, tasks, chunksize=8):
-            pass
-    named = {str(path.absolute()): kind for path, _, kind in tasks if kind is not None}
+    first = [(path, i, None) for i, path in enumerate(paths[:visits])]
+    rest = [(paths[i], i, paths[i % visits]) for i in range(visits, sessions)]
+    with multiprocessing.get_context("forkserver").Pool(jobs) as pool:
+        for tasks in (first, rest):
+            for _ in pool.imap_unordered(make, tasks, chunksize=4):
+                pass
+    named = {}
+    for number, place in enumerate(sorted(draw.sample(range(sessions), poisoned))):
+        kind = kinds[number % len(kinds)]
+        POISONS[kind][0](paths[place])
+        named[str(paths[place].absolute())] = kind
     (folder / "poison.json").write_text(json.dumps(named, indent=1), encoding="utf-8")
     return named
 
@@ -179,9 +202,13 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--sessions", type=int, default=2000)
     parser.add_argument("--poisoned", type=int, default=40)
+    parser.add_argument("--visits", type=int, default=250)
     options = parser.parse_args()
     named = make_archive(
-        options.folder, sessions=options.sessions, poisoned=options.poisoned
+        options.folder,
+        sessions=options.sessions,
+        poisoned=options.poisoned,
+        visits=options.visits,
     )
     print(f"{options.sessions} sessions, {len(named)} of them poisoned")
 
