@@ -36,7 +36,12 @@ from jointbench.station.options import (
     Sessions,
     Universal,
 )
-from jointbench.station.process_commands import process_command, reprocess_command
+from jointbench.station.process_commands import (
+    archive_command,
+    compare_command,
+    process_command,
+    reprocess_command,
+)
 
 __all__ = ["app", "exit_code", "run"]
 
@@ -265,6 +270,8 @@ def gap_command(
 
 app.command(name="process")(process_command)
 app.command(name="reprocess")(reprocess_command)
+app.command(name="archive")(archive_command)
+app.command(name="compare")(compare_command)
 
 
 @app.command(name="report")

@@ -114,3 +114,44 @@ def reprocess_command(
         json_target=json,
     )
     return EXIT_QUALITY if summary.failed else 0
+
+
+def archive_command(
+    results: Annotated[
+        list[str], typer.Argument(help="Results files, folders or quoted patterns.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option(help="Table to write: .csv, .nc or .parquet.")
+    ] = None,
+    trend: Annotated[
+        str,
+        typer.Option(
+            metavar="torque|preload|day|specimen", help="What trends go over."
+        ),
+    ] = "torque",
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Collect all results of an archive into one table, and show trends.
+
+    Example: jointbench archive 'archive/**/*.narrow.results.h5' --out all.nc
+    """
+    from jointbench.station.archive_table import run_archive
+
+    left_out = run_archive(results, out=out, trend=trend, json_target=json)
+    return EXIT_QUALITY if left_out else 0
+
+
+def compare_command(
+    before: Annotated[str, typer.Argument(help="Results file, folder or pattern.")],
+    after: Annotated[str, typer.Argument(help="Likewise, of the same sessions.")],
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Lay two recipes or versions side by side: what moved beyond its uncertainty.
+
+    Example: jointbench compare 'a/**/*.old.results.h5' 'a/**/*.new.results.h5'
+    """
+    from jointbench.station.compare_results import run_compare
+
+    run_compare(before, after, json_target=json)

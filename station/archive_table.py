@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench archive``: all results in one table, and trends over torque and date."""
+
+import csv
+import io
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import astuple, dataclass, fields
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.acquisition.netcdf import new_file, write_texts, write_variable
+from jointbench.station.archive_files import result_files
+from jointbench.station.ledger import escaped
+from jointbench.station.output import console, table, working, write_json
+from jointbench.station.outputs import check_outputs, write_text
+from jointbench.station.results_read import StoredResult, read_result
+from jointbench.station.trends import Trend, trend_rows, trends_json, trends_of
+
+TABLE_SCHEMA = "jointbench-archive/1"
+PARQUET = "pip install 'jointbench[archive]'"
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One number of one session, with all by which an archive is sorted.
+
+    Numbers that are not known are NaN; `day` counts from 1970 [d].
+    """
+
+    file: str
+    input_sha256: str
+    session: str
+    recorded: str
+    day: float
+    operator: str
+    specimen: str
+    torque: float
+    preload: float
+    recipe: str
+    software: str
+    part: str
+    item: str
+    name: str
+    unit: str
+    value: float
+    sd: float
+    word: str
+
+
+def table_rows(results: Sequence[StoredResult]) -> list[Row]:
+    """Return one row for each number of each result."""
+    return [
+        Row(
+            file=result.facts["input_file"],
+            input_sha256=result.facts["input_sha256"],
+            session=result.facts["session"],
+            recorded=result.facts["recorded"],
+            day=_day(result.facts["recorded"]),
+            operator=result.facts["operator"],
+            specimen=result.facts["specimen"],
+            torque=math.nan if result.torque is None else result.torque,
+            preload=one.preload
+            if not math.isnan(one.preload) or result.preload is None
+            else result.preload,
+            recipe=result.facts["recipe_name"],
+            software=result.facts["software"],
+            part=one.part,
+            item=one.item,
+            name=one.name,
+            unit=one.unit,
+            value=one.value,
+            sd=one.sd,
+            word=one.word,
+        )
+        for result in results
+        for one in result.quantities
+    ]
+
+
+def _day(text: str) -> float:
+    try:
+        return datetime.fromisoformat(text).timestamp() / 86_400
+    except ValueError:
+        return math.nan
+
+
+def read_results(
+    paths: Sequence[Path],
+) -> tuple[list[StoredResult], list[tuple[Path, str]]]:
+    """Read results files; return them, and those that cannot be read with reasons."""
+    found: list[StoredResult] = []
+    refused: list[tuple[Path, str]] = []
+    for path in paths:
+        try:
+            found.append(read_result(path))
+        except BadData as error:
+            refused.append((path, str(error)))
+    return found, refused
+
+
+def write_table(path: Path, rows: Sequence[Row]) -> None:
+    """Write the table as its name says: .csv, .nc or .parquet.
+
+    Raises:
+        UsageError: another ending, or Parquet without its library.
+    """
+    writers: dict[str, Callable[[Path, Sequence[Row]], None]] = {
+        ".csv": _write_csv,
+        ".nc": _write_netcdf,
+        ".parquet": _write_parquet,
+    }
+    writer = writers.get(path.suffix.lower())
+    if writer is None:
+        raise UsageError(f"--out is '{path}'; name it *.csv, *.nc or *.parquet")
+    writer(path, rows)
+
+
+def _columns(rows: Sequence[Row]) -> dict[str, list[Any]]:
+    names = [field.name for field in fields(Row)]
+    return {name: [getattr(row, name) for row in rows] for name in names}
+
+
+def _write_csv(path: Path, rows: Sequence[Row]) -> None:
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow([field.name for field in fields(Row)])
+    for row in rows:
+        cells = (
+            escaped(cell) if isinstance(cell, str) else _number(cell)
+            for cell in astuple(row)
+        )
+        writer.writerow(list(cells))
+    write_text(path, buffer.getvalue())
+
+
+def _number(value: float) -> str:
+    return "" if math.isnan(value) else repr(value)
+
+
+def _write_netcdf(path: Path, rows: Sequence[Row]) -> None:
+    title = "jointbench: all results of an archive, one row a number"
+    with new_file(path, schema=TABLE_SCHEMA, title=title, overwrite=True) as file:
+        for name, values in _columns(rows).items():
+            if isinstance(values[0], str):
+                write_texts(file, name, values, "row", long_name=name)
+            else:
+                write_variable(file, name, values, ("row",), long_name=name)
+
+
+def _write_parquet(path: Path, rows: Sequence[Row]) -> None:
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError as error:
+        raise UsageError(
+            f"Parquet needs pyarrow; type {PARQUET}, or name the table *.nc or *.csv"
+        ) from error
+    part = path.with_name(f"{path.name}.part")
+    parquet.write_table(pyarrow.table(_columns(rows)), part)
+    part.replace(path)
+
+
+def run_archive(
+    patterns: Sequence[str], *, out: Path | None, trend: str, json_target: str | None
+) -> int:
+    """Collect results into one table, and show how each quantity goes with `trend`.
+
+    Args:
+        patterns: results files, folders or patterns.
+        out: table to write, or None.
+        trend: ``torque``, ``preload``, ``day`` or ``specimen``.
+        json_target: where the JSON goes.
+
+    Returns:
+        Number of results files that could not be read.
+    """
+    paths = result_files(patterns)
+    check_outputs(paths, [json_target])
+    with working(f"reading {len(paths)} results"):
+        results, refused = read_results(paths)
+    rows = table_rows(results)
+    if not rows:
+        raise BadData(f"none of {len(paths)} results files holds a number")
+    screen = console(json_target)
+    if out is not None:
+        write_table(out, rows)
+        words = f"{out}: {len(rows)} rows of {len(results)} results"
+        screen.print(words, soft_wrap=True)
+    trends = trends_of(
+        [
+            Trend.point(row, trend)
+            for row in rows
+            if not math.isnan(row.value) and row.part != "hits"
+        ]
+    )
+    title = f"Trends over {trend} ({len(results)} results)"
+    columns = ("quantity", "results", "mean ± scatter", f"over {trend}", "verdict")
+    screen.print(table(title, columns, trend_rows(trends, trend)))
+    for path, reason in refused:
+        screen.print(f"left out: {path}: {reason}", soft_wrap=True)
+    write_json(
+        json_target,
+        {
+            "results": len(results),
+            "rows": len(rows),
+            "table": None if out is None else str(out),
+            "left_out": [{"file": str(p), "reason": r} for p, r in refused],
+            "trend": trend,
+            "trends": trends_json(trends),
+        },
+    )
+    return len(refused)

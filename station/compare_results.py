@@ -1,0 +1,333 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench compare``: two recipes or versions side by side; what moved, and why.
+
+The same samples read in two ways share their noise, so their difference is surer than
+either: a quantity has moved if the difference exceeds the larger of the two standard
+deviations, whoever is right. Of different samples both variances count.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from jointbench.acquisition.errors import BadData
+from jointbench.station.archive_files import result_files
+from jointbench.station.archive_table import read_results
+from jointbench.station.output import console, table, with_sd, working, write_json
+from jointbench.station.outputs import check_outputs
+from jointbench.station.quantities import Quantity
+from jointbench.station.results_read import StoredResult
+from jointbench.station.stage_store import differing
+
+MOVED = 2.0
+"""Standard deviations beyond which a quantity has moved."""
+SAME_MODE = 0.1
+"""Relative distance of two frequencies that may be one mode [-]."""
+MOST_SHOWN = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One quantity in both results; NaN and empty where one has none.
+
+    Attributes:
+        file: name of the session.
+        quantity: part, item and name.
+        unit: of the values.
+        before: in the first result [unit].
+        before_sd: its standard deviation.
+        after: in the second result [unit].
+        after_sd: its standard deviation.
+        words: verdicts before and after, where it is one.
+        moved: by how many standard deviations; infinite for a verdict that changed or
+            a quantity that only one has; NaN where no deviation is known.
+    """
+
+    file: str
+    quantity: str
+    unit: str
+    before: float
+    before_sd: float
+    after: float
+    after_sd: float
+    words: tuple[str, str]
+    moved: float
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two sets of results side by side.
+
+    Attributes:
+        pairs: sessions that are in both.
+        only_before: sessions that are in the first alone.
+        only_after: sessions that are in the second alone.
+        differences: every quantity of every pair.
+        causes: settings and versions that are not the same, a line each.
+        stages: stages whose keys differ, by how many sessions.
+    """
+
+    pairs: int
+    only_before: tuple[str, ...]
+    only_after: tuple[str, ...]
+    differences: tuple[Difference, ...]
+    causes: tuple[str, ...]
+    stages: Mapping[str, int]
+
+    @property
+    def moved(self) -> tuple[Difference, ...]:
+        """Those beyond their uncertainty, furthest first; then what came and went."""
+        far = [one for one in self.differences if one.moved > MOVED]
+        return tuple(sorted(far, key=lambda one: (math.isinf(one.moved), -one.moved)))
+
+
+def compare_results(
+    before: Sequence[StoredResult], after: Sequence[StoredResult]
+) -> Comparison:
+    """Lay results of the same sessions side by side.
+
+    Args:
+        before: one result a session.
+        after: likewise; sessions are paired by the digest of their file.
+
+    Raises:
+        BadData: no session is in both, or one is twice in one of them.
+    """
+    first, second = _by_input(before), _by_input(after)
+    both = [digest for digest in first if digest in second]
+    if not both:
+        raise BadData(
+            "no session is in both: results are paired by the digest of their input; "
+            "compare results of the same files"
+        )
+    stages: dict[str, int] = {}
+    differences: list[Difference] = []
+    for digest in both:
+        one, other = first[digest], second[digest]
+        differences += _differences(one, other)
+        for name in differing(one.stages, other.stages):
+            stages[name] = stages.get(name, 0) + 1
+    return Comparison(
+        len(both),
+        tuple(first[d].facts["input_file"] for d in first if d not in second),
+        tuple(second[d].facts["input_file"] for d in second if d not in first),
+        tuple(differences),
+        _causes(first[both[0]], second[both[0]]),
+        stages,
+    )
+
+
+def _by_input(results: Sequence[StoredResult]) -> dict[str, StoredResult]:
+    found: dict[str, StoredResult] = {}
+    for result in results:
+        digest = result.facts["input_sha256"]
+        other = found.setdefault(digest, result)
+        if other is not result:
+            raise BadData(
+                f"'{other.path}' and '{result.path}' are results of the same file; "
+                "name one recipe's, for example 'archive/**/*.narrow.results.h5'"
+            )
+    return found
+
+
+def _differences(one: StoredResult, other: StoredResult) -> list[Difference]:
+    file = one.facts["input_file"]
+    pairs = [
+        *_same_names(one.quantities, other.quantities),
+        *_same_modes(one.quantities, other.quantities),
+    ]
+    return [_difference(file, a, b) for a, b in pairs if _one_of(a, b).part != "hits"]
+
+
+def _one_of(a: Quantity | None, b: Quantity | None) -> Quantity:
+    there = a or b
+    assert there is not None
+    return there
+
+
+Pairs = list[tuple[Quantity | None, Quantity | None]]
+
+
+def _same_names(one: Sequence[Quantity], other: Sequence[Quantity]) -> Pairs:
+    def named(rows: Sequence[Quantity]) -> dict[object, Quantity]:
+        return {(q.part, q.item, q.name): q for q in rows if q.part != "modes"}
+
+    first, second = named(one), named(other)
+    return [(first.get(k), second.get(k)) for k in dict.fromkeys([*first, *second])]
+
+
+def _same_modes(one: Sequence[Quantity], other: Sequence[Quantity]) -> Pairs:
+    """Pair modes by frequency, at each preload: their numbers shift with each other."""
+    first, second = _modes(one), _modes(other)
+    pairs: Pairs = []
+    for preload in dict.fromkeys([*first, *second]):
+        left, right = first.get(preload, []), second.get(preload, [])
+        partner = match_modes(
+            [mode["natural_frequency"].value for mode in left],
+            [mode["natural_frequency"].value for mode in right],
+        )
+        for index, mode in enumerate(left):
+            match = right[partner[index]] if index in partner else {}
+            pairs += [(mode[name], match.get(name)) for name in mode]
+        for index, mode in enumerate(right):
+            if index not in partner.values():
+                pairs += [(None, quantity) for quantity in mode.values()]
+    return pairs
+
+
+def _modes(rows: Sequence[Quantity]) -> dict[str, list[dict[str, Quantity]]]:
+    found: dict[str, dict[str, dict[str, Quantity]]] = {}
+    for one in rows:
+        if one.part == "modes":
+            at = found.setdefault(f"{one.preload:g}", {})
+            at.setdefault(one.item, {})[one.name] = one
+    return {preload: list(modes.values()) for preload, modes in found.items()}
+
+
+def match_modes(before: Sequence[float], after: Sequence[float]) -> dict[int, int]:
+    """Pair modes whose frequencies are nearest, each with one at the most.
+
+    Args:
+        before: frequencies [Hz].
+        after: frequencies [Hz].
+
+    Returns:
+        Index in `after` by index in `before`, for pairs within a tenth.
+    """
+    if not before or not after:
+        return {}
+    ratio = np.abs(np.log(np.array(after)[None, :] / np.array(before)[:, None]))
+    cost = np.minimum(ratio, SAME_MODE)
+    rows, columns = linear_sum_assignment(cost)
+    return {
+        int(i): int(j)
+        for i, j in zip(rows, columns, strict=True)
+        if ratio[i, j] < SAME_MODE
+    }
+
+
+def _difference(file: str, a: Quantity | None, b: Quantity | None) -> Difference:
+    there = _one_of(a, b)
+    sides = [(q.value, q.sd, q.word) if q else (math.nan, math.nan, "") for q in (a, b)]
+    (before, before_sd, old), (after, after_sd, new) = sides
+    sd = max((s for s in (before_sd, after_sd) if not math.isnan(s)), default=math.nan)
+    if a is None or b is None or old != new:
+        moved = math.inf
+    elif there.word or before == after:
+        moved = 0.0
+    else:
+        moved = abs(after - before) / sd if sd > 0 else math.nan
+    at = "" if math.isnan(there.preload) else f" at {there.preload:g} N"
+    name = f"{there.part} {there.item} {there.name}{at}".replace("  ", " ")
+    words = (old, new)
+    return Difference(
+        file, name, there.unit, before, before_sd, after, after_sd, words, moved
+    )
+
+
+def _causes(one: StoredResult, other: StoredResult) -> tuple[str, ...]:
+    """Say in which settings and versions two results differ."""
+    causes = [
+        f"{name.replace('_', ' ')}: {one.facts[name] or '-'} -> "
+        f"{other.facts[name] or '-'}"
+        for name in ("software", "recipe_name")
+        if one.facts[name] != other.facts[name]
+    ]
+    first, second = _flat(one.recipe), _flat(other.recipe)
+    causes += [
+        f"{key}: {_word(first.get(key))} -> {_word(second.get(key))}"
+        for key in dict.fromkeys([*first, *second])
+        if first.get(key) != second.get(key)
+    ]
+    return tuple(causes)
+
+
+def _word(value: object) -> str:
+    return "chosen by the data" if value is None else str(value)
+
+
+def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, object]:
+    flat: dict[str, object] = {}
+    for key, value in tree.items():
+        if isinstance(value, Mapping):
+            flat |= _flat(value, f"{prefix}{key}.")
+        else:
+            flat[f"{prefix}{key}"] = value
+    return flat
+
+
+def run_compare(before: str, after: str, *, json_target: str | None) -> Comparison:
+    """Compare two results files, folders or patterns, and show what moved."""
+    paths = result_files([before]), result_files([after])
+    check_outputs([*paths[0], *paths[1]], [json_target])
+    with working("reading results"):
+        sets = [read_results(group) for group in paths]
+    found = compare_results(sets[0][0], sets[1][0])
+    screen = console(json_target)
+    screen.print(f"{found.pairs} sessions in both, {len(found.differences)} quantities")
+    for words, names in (
+        ("only in the first", found.only_before),
+        ("only in the second", found.only_after),
+    ):
+        if names:
+            shown = ", ".join(names[:5])
+            screen.print(f"{words}: {len(names)} sessions ({shown} ...)")
+    for path, reason in [*sets[0][1], *sets[1][1]]:
+        screen.print(f"left out: {path}: {reason}", soft_wrap=True)
+    screen.print("what is not the same:" if found.causes else "nothing is different:")
+    for cause in found.causes:
+        screen.print(f"  {cause}", soft_wrap=True)
+    counts = ", ".join(f"{name} ({n})" for name, n in list(found.stages.items())[:12])
+    screen.print(f"stages concerned: {counts or 'none'}", soft_wrap=True)
+    title = f"Moved by more than {MOVED:g} standard deviations: {len(found.moved)}"
+    columns = ("session", "quantity", "before", "after", "unit", "sd")
+    rows = [_row(one) for one in found.moved[:MOST_SHOWN]]
+    screen.print(table(title, columns, rows))
+    if len(found.moved) > MOST_SHOWN:
+        screen.print(f"and {len(found.moved) - MOST_SHOWN} more, see --json")
+    write_json(json_target, _json(found))
+    return found
+
+
+def _row(one: Difference) -> tuple[str, str, str, str, str, str]:
+    return (
+        one.file,
+        one.quantity.replace("_", " "),
+        one.words[0] or _value(one.before, one.before_sd),
+        one.words[1] or _value(one.after, one.after_sd),
+        "" if one.unit == "1" else one.unit,
+        "-" if math.isinf(one.moved) else f"{one.moved:.1f}",
+    )
+
+
+def _value(value: float, sd: float) -> str:
+    return "not there" if math.isnan(value) else with_sd(value, sd)
+
+
+def _json(found: Comparison) -> dict[str, object]:
+    return {
+        "sessions": found.pairs,
+        "only_before": list(found.only_before),
+        "only_after": list(found.only_after),
+        "causes": list(found.causes),
+        "stages": dict(found.stages),
+        "quantities": len(found.differences),
+        "moved": [
+            {
+                "file": one.file,
+                "quantity": one.quantity,
+                "unit": one.unit,
+                "before": one.before,
+                "before_sd": one.before_sd,
+                "after": one.after,
+                "after_sd": one.after_sd,
+                "words": list(one.words),
+                "moved_sd": one.moved,
+            }
+            for one in found.moved
+        ],
+    }
