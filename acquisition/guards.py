@@ -44,6 +44,8 @@ class Limits:
         always_bytes: unpacked size that any file may have [bytes].
         unpacked_ratio: unpacked size of all values over the size of the file, above
             `always_bytes` [-]. Measured samples shrink by 2 to 10.
+        variable_texts: texts of variable length in one row that a dataset may hold;
+            whoever allows some reads them one by one and looks at their length.
     """
 
     objects: int = 20_000
@@ -55,6 +57,7 @@ class Limits:
     unpacked_bytes: int = 8 * 2**30
     always_bytes: int = 64 * 2**20
     unpacked_ratio: float = 64.0
+    variable_texts: int = 0
 
 
 @dataclass(slots=True)
@@ -200,9 +203,10 @@ def _check_dataset(dataset: h5d.DatasetID, name: str, tally: _Tally) -> None:
         raise tally.refuse(name, "keeps its values in another file")
     _check_filters(properties, name, tally)
     kind = dataset.get_type()
-    if kind.get_class() not in _NUMBERS or (
-        isinstance(kind, h5t.TypeStringID) and kind.is_variable_str()
-    ):
+    variable = isinstance(kind, h5t.TypeStringID) and kind.is_variable_str()
+    if variable and len(dataset.shape) == 1:
+        variable = dataset.shape[0] > tally.limits.variable_texts
+    if kind.get_class() not in _NUMBERS or variable:
         raise tally.refuse(
             name, "holds neither numbers nor texts of fixed length (variable, compound)"
         )

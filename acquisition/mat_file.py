@@ -56,6 +56,18 @@ def read_mat_rows(path: Path | str, names: Sequence[str]) -> tuple[FloatArray, .
     )
 
 
+def list_mat_variables(path: Path | str) -> tuple[str, ...]:
+    """Return the names of the variables of a MAT file, none of them read.
+
+    Raises:
+        BadData: see `read_mat_rows`.
+    """
+    path = Path(path)
+    _require_mat(path)
+    _require_sane_unpacked(path)
+    return tuple(_contents(path))
+
+
 def _require_mat(path: Path) -> None:
     size = file_size(path)
     if size > _MOST_BYTES:

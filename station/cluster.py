@@ -8,16 +8,14 @@ machine must be spoken to by TLS with a certificate on both sides, or not at all
 import ipaddress
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import urlsplit
 
 from jointbench.acquisition.errors import InstrumentError, UsageError
 from jointbench.station.process_file import Outcome, State, Task, process_task
 from jointbench.station.recipe import Recipe
-
-if TYPE_CHECKING:
-    from distributed import Client
 
 INSTALL = "pip install 'jointbench[cluster]'"
 _CONNECT = 20.0
@@ -113,10 +111,9 @@ def run_cluster(
 
 
 def _outcomes(
-    client: "Client", tasks: Sequence[Task], recipe: Recipe, settings: ClusterSettings
+    client: Any, tasks: Sequence[Task], recipe: Recipe, settings: ClusterSettings
 ) -> Iterator[Outcome]:
-    from distributed import as_completed
-
+    as_completed = import_module("distributed").as_completed
     pending: dict[Any, Sequence[Task]] = {}
     tries: dict[Task, int] = {}
     waiting = [
@@ -148,7 +145,7 @@ def _outcomes(
 
 
 def _submit(
-    client: "Client", batch: Sequence[Task], recipe: Recipe, settings: ClusterSettings
+    client: Any, batch: Sequence[Task], recipe: Recipe, settings: ClusterSettings
 ) -> Any:
     return client.submit(
         process_batch, batch, recipe, retries=settings.retries, pure=False
@@ -160,21 +157,23 @@ def _given_up(task: Task, reason: str) -> Outcome:
     return Outcome(task.path, task.result, State.FAILED, reason=words)
 
 
-def _connect(settings: ClusterSettings) -> "Client":
+def _connect(settings: ClusterSettings) -> Any:
     try:
-        from distributed import Client, Security
+        distributed = import_module("distributed")
     except ImportError as error:
         raise UsageError(f"--scheduler needs Dask; type {INSTALL}") from error
     security = None
     if settings.scheduler.startswith("tls:"):
-        security = Security(
+        security = distributed.Security(
             tls_ca_file=str(settings.authority),
             tls_client_cert=str(settings.certificate),
             tls_client_key=str(settings.private_key),
             require_encryption=True,
         )
     try:
-        client = Client(settings.scheduler, timeout=_CONNECT, security=security)
+        client: Any = distributed.Client(
+            settings.scheduler, timeout=_CONNECT, security=security
+        )
     except (OSError, TimeoutError) as error:
         raise InstrumentError(
             f"scheduler {settings.scheduler!r} does not answer ({error}); start it "

@@ -22,6 +22,7 @@ def run_import(
     columns: str | None,
     point: str,
     preload: str | None = None,
+    full_scale: float | None = None,
     overwrite: bool,
     json_target: str | None,
 ) -> Session:
@@ -33,6 +34,8 @@ def run_import(
         columns: what the columns of plain tables hold.
         point: where the hammer struck.
         preload: on the joint while all of this was recorded, with unit.
+        full_scale: what the largest number of a WAV file stands for, in the unit of
+            `columns`.
         overwrite: replace a session that is there.
         json_target: where the JSON goes.
 
@@ -48,7 +51,9 @@ def run_import(
     surfaces: list[Surface] = []
     for path in files:
         with working(f"reading {path.name}"):
-            record = read_foreign(path, columns=columns, point=point)
+            record = read_foreign(
+                path, columns=columns, point=point, full_scale=full_scale
+            )
         if isinstance(record, Recording):
             name = _free(record.name, [r.name for r in recordings])
             recordings.append(replace(record, name=name))

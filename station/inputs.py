@@ -8,11 +8,18 @@ from jointbench.acquisition.columns import SURFACE_EXAMPLES, parse_columns
 from jointbench.acquisition.errors import BadData, UnitError, UsageError
 from jointbench.acquisition.import_hits import read_recording
 from jointbench.acquisition.import_surfaces import read_surface
+from jointbench.acquisition.mat_recording import read_mat_recording
+from jointbench.acquisition.rattlesnake import SUFFIXES as RATTLESNAKE_SUFFIXES
+from jointbench.acquisition.rattlesnake import read_rattlesnake
 from jointbench.acquisition.records import Recording
 from jointbench.acquisition.session_file import read_session
 from jointbench.acquisition.surfaces import Surface
+from jointbench.acquisition.tdms_file import read_tdms
 from jointbench.acquisition.text_files import file_digest
 from jointbench.acquisition.units import parse_value
+from jointbench.acquisition.universal_file import SUFFIXES as UNIVERSAL_SUFFIXES
+from jointbench.acquisition.universal_file import read_universal
+from jointbench.acquisition.wave_file import read_wave
 
 SESSION_SUFFIXES = (".h5", ".hdf5")
 
@@ -35,7 +42,40 @@ def is_session_name(path: Path) -> bool:
     return path.suffix.lower() in SESSION_SUFFIXES
 
 
-def read_foreign(path: Path, *, columns: str | None, point: str) -> Recording | Surface:
+def read_samples(
+    path: Path, *, columns: str | None, point: str, full_scale: float | None = None
+) -> Recording | None:
+    """Read a file of a format that holds samples by its nature, told by its ending.
+
+    Args:
+        path: of the file.
+        columns: what its channels hold, where the file does not say.
+        point: where the hammer struck.
+        full_scale: what the largest number of a WAV file stands for.
+
+    Returns:
+        The recording; None where the ending is none of these.
+
+    Raises:
+        BadData: the file is not what it should be, or its units are missing.
+    """
+    suffix = path.suffix.lower()
+    if suffix in UNIVERSAL_SUFFIXES:
+        return read_universal(path, columns=columns, point=point)
+    if suffix == ".tdms":
+        return read_tdms(path, columns=columns, point=point)
+    if suffix == ".mat":
+        return read_mat_recording(path, columns=columns, point=point)
+    if suffix == ".wav":
+        return read_wave(path, columns=columns, point=point, full_scale=full_scale)
+    if suffix in RATTLESNAKE_SUFFIXES:
+        return read_rattlesnake(path, columns=columns, point=point)
+    return None
+
+
+def read_foreign(
+    path: Path, *, columns: str | None, point: str, full_scale: float | None = None
+) -> Recording | Surface:
     """Read one foreign file as hits or as a surface.
 
     Args:
@@ -43,6 +83,7 @@ def read_foreign(path: Path, *, columns: str | None, point: str) -> Recording | 
         columns: what the columns of a plain table hold; a ``time`` makes it hits.
             Formats that state their units do without.
         point: where the hammer struck.
+        full_scale: what the largest number of a WAV file stands for.
 
     Returns:
         A recording or a surface, named after the file.
@@ -51,6 +92,9 @@ def read_foreign(path: Path, *, columns: str | None, point: str) -> Recording | 
         BadData: the file is neither, or its units are missing; the message says what
             to type.
     """
+    samples = read_samples(path, columns=columns, point=point, full_scale=full_scale)
+    if samples is not None:
+        return samples
     if columns is not None and "time" in {c.role for c in parse_columns(columns)}:
         return read_recording(path, columns=columns, point=point)
     try:
@@ -81,7 +125,8 @@ def read_recordings(
         if is_session_name(path):
             found += read_session(path).recordings
         else:
-            found.append(read_recording(path, columns=columns, point=point))
+            samples = read_samples(path, columns=columns, point=point)
+            found.append(samples or read_recording(path, columns=columns, point=point))
     if not found:
         names = ", ".join(path.name for path in files)
         raise BadData(f"no recording in {names}; 'jointbench inspect' shows what is")

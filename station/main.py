@@ -23,6 +23,7 @@ from jointbench.station.options import (
     EstimatorName,
     Files,
     Force,
+    FullScale,
     GeometryFile,
     Json,
     Keep,
@@ -39,6 +40,7 @@ from jointbench.station.options import (
 from jointbench.station.process_commands import (
     archive_command,
     compare_command,
+    export_command,
     process_command,
     reprocess_command,
 )
@@ -128,6 +130,7 @@ def import_command(
     columns: Columns = None,
     point: Point = "1",
     preload: Preload = None,
+    full_scale: FullScale = None,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
@@ -145,6 +148,7 @@ def import_command(
         columns=columns,
         point=point,
         preload=preload,
+        full_scale=full_scale,
         overwrite=force,
         json_target=json,
     )
@@ -272,6 +276,7 @@ app.command(name="process")(process_command)
 app.command(name="reprocess")(reprocess_command)
 app.command(name="archive")(archive_command)
 app.command(name="compare")(compare_command)
+app.command(name="export")(export_command)
 
 
 @app.command(name="report")

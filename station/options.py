@@ -64,3 +64,7 @@ GeometryFile = Annotated[
 Page = Annotated[Path | None, typer.Option(help="HTML page to write.")]
 Cache = Annotated[Path | None, typer.Option(help="Folder of reduced structures.")]
 Sessions = Annotated[list[Path] | None, typer.Argument(help="Session files.")]
+FullScale = Annotated[
+    float | None,
+    typer.Option(help="WAV: what its largest number stands for, in the columns' unit."),
+]

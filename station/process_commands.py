@@ -155,3 +155,21 @@ def compare_command(
     from jointbench.station.compare_results import run_compare
 
     run_compare(before, after, json_target=json)
+
+
+def export_command(
+    file: Annotated[Path, typer.Argument(help="Session or results file.")],
+    to: Annotated[str, typer.Option(metavar="csv|mat|uff", help="Format.")] = "csv",
+    out: Annotated[
+        Path | None, typer.Option(help="Folder to write to; beside the file.")
+    ] = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Write samples, FRFs, modes and quantities for other programs, units included.
+
+    Example: jointbench export session.results.h5 --to mat
+    """
+    from jointbench.station.export_files import run_export
+
+    run_export(file, kind=to, folder=out, json_target=json)

@@ -163,8 +163,10 @@ def fit_with_scatter(
     def solve(scatter: float) -> tuple[FloatArray, FloatArray, float]:
         variance = sd**2 + scatter**2 + (1e-15 * scale) ** 2
         weighted = design / variance[:, None]
-        covariance = np.linalg.pinv(design.T @ weighted)
-        found = covariance @ (weighted.T @ value)
+        covariance: FloatArray = np.asarray(
+            np.linalg.pinv(design.T @ weighted), np.float64
+        )
+        found: FloatArray = np.asarray(covariance @ (weighted.T @ value))
         return (
             found,
             covariance,

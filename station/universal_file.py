@@ -74,7 +74,7 @@ def _shape_set(model: ModalModel, number: int) -> Iterator[str]:
     yield from (_EDGE, "    55")
     frequency = f"{model.natural_frequency[number]:.6g} Hz"
     for text in (f"mode {number + 1}, {frequency}", "jointbench", "", "", "NONE"):
-        yield _printable(text)
+        yield printable(text)
     fields = (_STRUCTURAL, _COMPLEX_MODE, _TRANSLATIONS, _DISPLACEMENT, _COMPLEX, 3)
     yield "".join(f"{value:10d}" for value in fields)
     yield "".join(f"{value:10d}" for value in (2, 6, 1, number + 1))
@@ -93,28 +93,29 @@ def _data_set(frf: Frf, row: int, column: int) -> Iterator[str]:
     output, point = frf.outputs[row], frf.inputs[column]
     yield from (_EDGE, "    58")
     for text in (f"{frf.kind.value} {output} / {point}", "jointbench", "", "", "NONE"):
-        yield _printable(text)
+        yield printable(text)
     yield (
         f"{_FRF:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{row + 1:10d}{0:4d}"
         f" {'NONE':10s}{column + 1:10d}{0:4d}"
     )
     count = frf.frequency.size
     yield f"{_COMPLEX_DOUBLE:10d}{count:10d}{_UNEVEN:10d}" + f"{0.0:13.5e}" * 3
-    yield _axis(_FREQUENCY, "Frequency", "Hz")
-    yield _axis(code, word, unit)
-    yield _axis(_FORCE, "Force", "N")
-    yield _axis(0, "NONE", "NONE")
+    yield axis_line(_FREQUENCY, "Frequency", "Hz")
+    yield axis_line(code, word, unit)
+    yield axis_line(_FORCE, "Force", "N")
+    yield axis_line(0, "NONE", "NONE")
     response: ComplexArray = frf.response[row, column]
     for frequency, value in zip(frf.frequency, response, strict=True):
         yield f"{frequency:20.11e}{value.real:20.11e}{value.imag:20.11e}"
     yield _EDGE
 
 
-def _axis(code: int, name: str, unit: str) -> str:
+def axis_line(code: int, name: str, unit: str) -> str:
+    """Return a record of data set 58 that describes an axis."""
     return f"{code:10d}{0:5d}{0:5d}{0:5d} {name:20s} {unit:20s}"
 
 
-def _printable(text: str) -> str:
+def printable(text: str) -> str:
     """Return one line of 80 plain characters at the most, whatever a file's texts."""
     plain = text.encode("ascii", "replace").decode("ascii")
     return " ".join(plain.split())[:_WIDTH] or "NONE"

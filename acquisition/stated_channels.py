@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: MIT
+"""Channels as a foreign file states them, and the recording that they make.
+
+A unit is taken from the file where the file states it, else from ``--columns``, whose
+labels then are the file's names of the channels. What neither says is refused.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.columns import SKIP, Column, only_roles, parse_columns
+from jointbench.acquisition.errors import (
+    BadData,
+    FormatError,
+    HostileFile,
+    SamplingError,
+    UnitError,
+    UsageError,
+)
+from jointbench.acquisition.records import Channel, Quantity, Recording, step
+from jointbench.acquisition.text_files import file_digest, named, shown
+from jointbench.acquisition.units import example_unit, is_unit
+
+MOST_VALUES = 100_000_000
+MOST_CHANNELS = 4096
+QUANTITIES = tuple(quantity.value for quantity in Quantity)
+
+
+@dataclass(frozen=True, slots=True)
+class StatedChannel:
+    """A channel of a foreign file.
+
+    Attributes:
+        name: as the file calls it.
+        unit: as the file states it; empty where it does not.
+        size: number of samples.
+        read: returns them, in the file's unit, shape (size,).
+        point: where it sits; empty if not stated.
+        direction: ``"+z"`` and the like; empty if not stated.
+        quantity: as the file states it; None where it does not.
+    """
+
+    name: str
+    unit: str
+    size: int
+    read: Callable[[], FloatArray]
+    point: str = ""
+    direction: str = ""
+    quantity: Quantity | None = None
+
+
+def recording_of(
+    path: Path,
+    stated: Sequence[StatedChannel],
+    *,
+    sample_rate: float,
+    columns: str | None,
+    point: str,
+    layout: str,
+) -> Recording:
+    """Make a recording of the channels of a foreign file.
+
+    Args:
+        path: of the file; the recording has its name.
+        stated: its channels, none of them read so far.
+        sample_rate: [Hz].
+        columns: what they hold, or None where the file says it.
+        point: where the hammer struck, unless the file or `columns` says.
+        layout: name of the format, for the provenance.
+
+    Raises:
+        UnitError: a unit is missing, unknown, or not the one that the file states.
+        UsageError: `columns` names a channel that is not there.
+        SamplingError: the channels have no, or not the same number of samples, or a
+            rate that is none.
+        HostileFile: there are more samples than any measurement has.
+        BadData: a sample is not finite.
+    """
+    _require_sane(path, stated, sample_rate)
+    wanted = _as_stated(path, stated) if columns is None else _named(stated, columns)
+    _require_even(path, [channel for channel, _ in wanted])
+    rows = [_samples(path, channel, column) for channel, column in wanted]
+    origin = step(
+        "import",
+        file=path.name,
+        sha256=file_digest(path),
+        layout=layout,
+        columns=columns or "as the file states",
+    )
+    return Recording(
+        name=path.stem,
+        samples=np.stack(rows),
+        sample_rate=sample_rate,
+        channels=tuple(_channel(ch, column, point) for ch, column in wanted),
+        provenance=(origin,),
+    )
+
+
+def _require_sane(
+    path: Path, stated: Sequence[StatedChannel], sample_rate: float
+) -> None:
+    if not stated:
+        raise FormatError(f"{named(path)} holds no channel of samples")
+    if not (np.isfinite(sample_rate) and 0.0 < sample_rate < 1e9):
+        raise SamplingError(
+            f"{named(path)}: the sample rate is {sample_rate:g} Hz; export it with the "
+            "rate it was recorded at"
+        )
+    total = sum(channel.size for channel in stated)
+    if len(stated) > MOST_CHANNELS or total > MOST_VALUES:
+        raise HostileFile(
+            f"{named(path)} claims {len(stated)} channels and {total} samples, at most "
+            f"{MOST_CHANNELS} and {MOST_VALUES} are read; cut it"
+        )
+
+
+def _require_even(path: Path, channels: Sequence[StatedChannel]) -> None:
+    sizes = {channel.size for channel in channels}
+    if len(sizes) != 1 or 0 in sizes:
+        found = ", ".join(f"{shown(c.name)} {c.size}" for c in channels[:8])
+        raise SamplingError(
+            f"{named(path)}: channels must have the same number of samples, more than "
+            f"none; they have {found}"
+        )
+
+
+def _as_stated(
+    path: Path, stated: Sequence[StatedChannel]
+) -> list[tuple[StatedChannel, Column]]:
+    """Return each channel with the column that its own unit makes of it.
+
+    Raises:
+        UnitError: a unit is missing, or belongs to no quantity.
+    """
+    found = []
+    for channel in stated:
+        quantity = channel.quantity or _quantity_of(channel.unit)
+        if quantity is None or not is_unit(channel.unit, quantity.value):
+            raise UnitError(_what_to_type(path, stated, channel))
+        found.append((channel, Column(quantity.value, channel.unit)))
+    return found
+
+
+def _quantity_of(unit: str) -> Quantity | None:
+    """Return the one quantity that a unit belongs to."""
+    found = [quantity for quantity in Quantity if is_unit(unit, quantity.value)]
+    return found[0] if len(found) == 1 else None
+
+
+def _what_to_type(
+    path: Path, stated: Sequence[StatedChannel], channel: StatedChannel
+) -> str:
+    items = []
+    for number, one in enumerate(stated[:6]):
+        role = "force" if number == 0 else "acceleration"
+        items.append(f"{role}.{one.name}:{one.unit or example_unit(role)}")
+    unit = f"the unit {shown(channel.unit)}" if channel.unit else "no unit"
+    return (
+        f"{named(path)}: channel {shown(channel.name)} states {unit}, which is none of "
+        f"{', '.join(QUANTITIES)}; say what the channels are, for example --columns "
+        f"'{','.join(items)}'"
+    )
+
+
+def _named(
+    stated: Sequence[StatedChannel], columns: str
+) -> list[tuple[StatedChannel, Column]]:
+    """Return the channels that the columns name by label, or by order without."""
+    wanted = parse_columns(columns)
+    only_roles(wanted, QUANTITIES, "a recording whose file tells the time")
+    labelled = [column.label for column in wanted if column.role != SKIP]
+    names = [channel.name for channel in stated]
+    if not any(labelled):
+        if len(wanted) != len(stated):
+            raise UsageError(
+                f"--columns names {len(wanted)} channels, the file has {len(stated)} "
+                f"({', '.join(map(shown, names[:12]))}); name each, '-' for one that "
+                "is not wanted"
+            )
+        pairs = list(zip(stated, wanted, strict=True))
+        return [_agreeing(*pair) for pair in pairs if pair[1].role != SKIP]
+    found = []
+    for column in wanted:
+        if column.role == SKIP:
+            continue
+        if names.count(column.label) != 1:
+            raise UsageError(
+                f"--columns names channel {column.label!r}; the file has "
+                f"{', '.join(map(shown, names[:12]))}"
+            )
+        found.append(_agreeing(stated[names.index(column.label)], column))
+    return found
+
+
+def _agreeing(channel: StatedChannel, column: Column) -> tuple[StatedChannel, Column]:
+    """Raise `UnitError` where the file states another unit than the user."""
+    if channel.unit and is_unit(channel.unit, column.role):
+        own = Column(column.role, channel.unit).factor
+        if column.sensitivity is not None or not np.isclose(own, column.factor):
+            raise UnitError(
+                f"channel {channel.name!r} is in {channel.unit!r} by its file, "
+                f"--columns says {column.unit!r}; write {channel.unit!r}, or correct "
+                "the file"
+            )
+    return channel, column
+
+
+def _samples(path: Path, channel: StatedChannel, column: Column) -> FloatArray:
+    values = np.asarray(channel.read(), dtype=np.float64).ravel()
+    if values.size != channel.size:
+        raise FormatError(
+            f"{named(path)}: channel {shown(channel.name)} holds {values.size} of "
+            f"{channel.size} samples; it is cut short: use another copy"
+        )
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise BadData(
+            f"{named(path)}: channel {shown(channel.name)} holds {bad.size} values "
+            f"that are not finite, the first at sample {bad[0]}; cut the record there"
+        )
+    return np.asarray(values * column.factor)
+
+
+def _channel(channel: StatedChannel, column: Column, point: str) -> Channel:
+    quantity = Quantity(column.role)
+    default = point if quantity is Quantity.FORCE else ""
+    return Channel(
+        name=channel.name,
+        quantity=quantity,
+        point=column.point or channel.point or default,
+        direction=channel.direction,
+        unit=column.unit,
+        sensitivity=column.sensitivity,
+    )

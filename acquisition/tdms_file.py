@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Samples from TDMS files by npTDMS, an extra; sizes checked before they are read."""
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import (
+    FormatError,
+    HostileFile,
+    SamplingError,
+    UsageError,
+)
+from jointbench.acquisition.records import Recording
+from jointbench.acquisition.stated_channels import StatedChannel, recording_of
+from jointbench.acquisition.text_files import file_size, named, shown
+
+INSTALL = "pip install 'jointbench[tdms]'"
+_MOST_BYTES = 8 * 2**30
+
+
+def read_tdms(path: Path, *, columns: str | None, point: str) -> Recording:
+    """Read the channels of a TDMS file as one recording.
+
+    Args:
+        path: of the file.
+        columns: what the channels hold, by their names, where the file states no unit.
+        point: where the hammer struck.
+
+    Raises:
+        UsageError: npTDMS is not installed.
+        FormatError: it is no TDMS file, or is damaged.
+        HostileFile: it claims more samples than it has bytes.
+        SamplingError: channels have no rate, or different ones.
+        UnitError: see `recording_of`.
+    """
+    try:
+        from nptdms import TdmsFile
+    except ImportError as error:
+        raise UsageError(f"TDMS needs npTDMS; type {INSTALL}") from error
+    size = file_size(path)
+    with path.open("rb") as opened:
+        if opened.read(4) != b"TDSm":
+            raise FormatError(f"{named(path)} is no TDMS file")
+    if size > _MOST_BYTES:
+        raise HostileFile(f"{named(path)} has {size} bytes; cut it")
+    try:
+        with TdmsFile.open(path) as file:
+            channels = [c for group in file.groups() for c in group.channels()]
+            return _recording(path, size, channels, columns, point)
+    except (FormatError, HostileFile, SamplingError, UsageError):
+        raise
+    except Exception as error:
+        if isinstance(error, _ours()):
+            raise
+        raise FormatError(
+            f"{named(path)} cannot be read as TDMS ({shown(error)}); use another copy"
+        ) from error
+
+
+def _ours() -> tuple[type[Exception], ...]:
+    from jointbench.acquisition.errors import JointbenchError
+
+    return (JointbenchError,)
+
+
+def _recording(
+    path: Path, size: int, channels: list[Any], columns: str | None, point: str
+) -> Recording:
+    numeric = [
+        c for c in channels if c.dtype is not None and c.dtype.kind in "fiu" and len(c)
+    ]
+    claimed = sum(len(channel) * channel.dtype.itemsize for channel in numeric)
+    if claimed > 16 * size:  # raw data of a converter may be scaled up to doubles
+        raise HostileFile(f"{named(path)} claims {claimed} bytes, it has {size}")
+    steps = {float(c.properties.get("wf_increment", 0.0)) for c in numeric}
+    if len(steps) != 1 or not min(steps) > 0:
+        raise SamplingError(
+            f"{named(path)}: channels must share one time step (wf_increment), theirs "
+            f"are {', '.join(f'{s:g} s' for s in sorted(steps)[:5]) or 'none'}"
+        )
+    return recording_of(
+        path,
+        [_stated(channel) for channel in numeric],
+        sample_rate=1.0 / steps.pop(),
+        columns=columns,
+        point=point,
+        layout="TDMS",
+    )
+
+
+def _stated(channel: Any) -> StatedChannel:
+    return StatedChannel(
+        name=str(channel.name),
+        unit=str(channel.properties.get("unit_string", "") or ""),
+        size=len(channel),
+        read=partial(_values, channel),
+    )
+
+
+def _values(channel: Any) -> FloatArray:
+    return np.asarray(channel[:], dtype=np.float64)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""Time histories from universal files (data set 58) by pyuff, headers checked first.
+
+pyuff makes an axis as long as a header says, whatever the file holds. So every header
+is looked at before: none may claim more values than its data set has bytes.
+
+Source:
+    Structural Dynamics Research Laboratory, University of Cincinnati, Universal File
+    Formats, data set 58 (function at nodal degree of freedom).
+"""
+
+import math
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import FormatError, HostileFile, SamplingError
+from jointbench.acquisition.even_steps import roundest
+from jointbench.acquisition.records import Quantity, Recording
+from jointbench.acquisition.stated_channels import StatedChannel, recording_of
+from jointbench.acquisition.text_files import named, read_bytes, shown
+
+SUFFIXES = (".uff", ".unv")
+_EDGE = b"    -1"
+_MOST_SETS = 10_000
+_DIGITS = 5e-6
+"""Half a unit of the last printed digit of a step, relative, at the most."""
+_TIME_RESPONSE = 1
+_COUNT = slice(10, 20)
+_QUANTITIES = {
+    8: Quantity.DISPLACEMENT,
+    11: Quantity.VELOCITY,
+    12: Quantity.ACCELERATION,
+    13: Quantity.FORCE,
+}
+_DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
+
+
+def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
+    """Read all time histories of a universal file as one recording.
+
+    Args:
+        path: of the file.
+        columns: what the channels hold, where the file does not say.
+        point: where the hammer struck.
+
+    Raises:
+        FormatError: it is no universal file, is damaged, or holds no time history.
+        HostileFile: a header claims more than the file holds.
+        SamplingError: the histories have different rates.
+        UnitError: see `recording_of`.
+    """
+    _require_sane_headers(path)
+    sets = [one for one in _read(path) if one.get("func_type") == _TIME_RESPONSE]
+    if not sets:
+        raise FormatError(
+            f"{named(path)} holds no time history (data set 58, function type 1); "
+            "export the samples, not FRFs"
+        )
+    intervals = {float(one["abscissa_inc"]) for one in sets}
+    uneven = any(int(one["abscissa_spacing"]) != 1 for one in sets)
+    if uneven or len(intervals) != 1 or not 0.0 < min(intervals) < math.inf:
+        raise SamplingError(
+            f"{named(path)}: time histories must share one even step above zero, they "
+            f"have {', '.join(f'{i:g} s' for i in sorted(intervals)[:5])}"
+        )
+    return recording_of(
+        path,
+        [_stated(number, one) for number, one in enumerate(sets, 1)],
+        sample_rate=_rate(intervals.pop()),
+        columns=columns,
+        point=point,
+        layout="universal file, data set 58",
+    )
+
+
+def _rate(interval: float) -> float:
+    """Return the roundest rate that the six digits of a header allow [Hz]."""
+    return roundest(
+        1.0 / (interval * (1.0 + _DIGITS)), 1.0 / (interval * (1.0 - _DIGITS))
+    )
+
+
+def _stated(number: int, one: dict[str, Any]) -> StatedChannel:
+    data = np.asarray(one["data"])
+    node = str(one.get("rsp_node") or "")
+    kind = _QUANTITIES.get(int(one["ordinate_spec_data_type"]))
+    unit = str(one["ordinate_axis_units_lab"]).strip()
+    return StatedChannel(
+        name=_name(number, one),
+        unit="" if unit.upper() == "NONE" else unit,
+        size=data.size,
+        read=partial(_real, data),
+        point="" if node == "0" else node,
+        direction=_DIRECTIONS.get(int(one.get("rsp_dir") or 0), ""),
+        quantity=kind,
+    )
+
+
+def _real(data: np.ndarray[Any, Any]) -> FloatArray:
+    return np.asarray(data.real, dtype=np.float64)
+
+
+def _name(number: int, one: dict[str, Any]) -> str:
+    entity = str(one.get("rsp_ent_name") or "").strip()
+    return f"{number}" if entity.upper() in {"", "NONE"} else f"{entity} {number}"
+
+
+def _require_sane_headers(path: Path) -> None:
+    data = read_bytes(path)
+    lines = data.split(b"\n")
+    edges = [i for i, line in enumerate(lines) if line.rstrip() == _EDGE]
+    if len(edges) < 2:
+        raise FormatError(f"{named(path)} is no universal file: it has no data set")
+    if len(edges) > 2 * _MOST_SETS:
+        raise HostileFile(f"{named(path)} has {len(edges) // 2} data sets")
+    for begin, end in zip(edges[::2], edges[1::2], strict=False):
+        block = lines[begin + 1 : end]
+        if len(block) > 8 and block[0].split()[:1] in ([b"58"], [b"58b"]):
+            size = sum(len(line) + 1 for line in block)
+            try:
+                claimed = int(block[7][_COUNT])
+            except ValueError as error:
+                raise FormatError(
+                    f"{named(path)}: a data set 58 has no number of values"
+                ) from error
+            if not 0 <= claimed <= size:
+                raise HostileFile(
+                    f"{named(path)}: a header claims {claimed} values, its data set "
+                    f"has {size} bytes; use another copy"
+                )
+
+
+def _read(path: Path) -> list[dict[str, Any]]:
+    import pyuff
+
+    try:
+        file = pyuff.UFF(str(path))
+        kinds = [int(kind) for kind in file.get_set_types()]
+        return [
+            dict(file.read_sets(number))
+            for number, kind in enumerate(kinds)
+            if kind == 58
+        ]
+    except Exception as error:  # it raises whatever the content makes it raise
+        raise FormatError(
+            f"{named(path)} cannot be read as a universal file ({shown(error)}); use "
+            "another copy"
+        ) from error
