@@ -157,7 +157,8 @@ def _what_to_type(
     items = []
     for number, one in enumerate(stated[:6]):
         role = "force" if number == 0 else "acceleration"
-        items.append(f"{role}.{one.name}:{one.unit or example_unit(role)}")
+        unit = one.unit if is_unit(one.unit, role) else example_unit(role)
+        items.append(f"{role}.{one.name}:{unit}")
     unit = f"the unit {shown(channel.unit)}" if channel.unit else "no unit"
     return (
         f"{named(path)}: channel {shown(channel.name)} states {unit}, which is none of "

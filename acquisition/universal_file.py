@@ -10,6 +10,7 @@ Source:
 """
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -69,7 +70,7 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
         )
     return recording_of(
         path,
-        [_stated(number, one) for number, one in enumerate(sets, 1)],
+        [_stated(name, one) for name, one in zip(_names(sets), sets, strict=True)],
         sample_rate=_rate(intervals.pop()),
         columns=columns,
         point=point,
@@ -79,18 +80,17 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
 
 def _rate(interval: float) -> float:
     """Return the roundest rate that the six digits of a header allow [Hz]."""
-    return roundest(
-        1.0 / (interval * (1.0 + _DIGITS)), 1.0 / (interval * (1.0 - _DIGITS))
-    )
+    low, high = interval * (1.0 - _DIGITS), interval * (1.0 + _DIGITS)
+    return roundest(1.0 / high, 1.0 / low)
 
 
-def _stated(number: int, one: dict[str, Any]) -> StatedChannel:
+def _stated(name: str, one: dict[str, Any]) -> StatedChannel:
     data = np.asarray(one["data"])
     node = str(one.get("rsp_node") or "")
     kind = _QUANTITIES.get(int(one["ordinate_spec_data_type"]))
     unit = str(one["ordinate_axis_units_lab"]).strip()
     return StatedChannel(
-        name=_name(number, one),
+        name=name,
         unit="" if unit.upper() == "NONE" else unit,
         size=data.size,
         read=partial(_real, data),
@@ -104,9 +104,15 @@ def _real(data: np.ndarray[Any, Any]) -> FloatArray:
     return np.asarray(data.real, dtype=np.float64)
 
 
-def _name(number: int, one: dict[str, Any]) -> str:
-    entity = str(one.get("rsp_ent_name") or "").strip()
-    return f"{number}" if entity.upper() in {"", "NONE"} else f"{entity} {number}"
+def _names(sets: Sequence[dict[str, Any]]) -> list[str]:
+    """Return the entity of each set, with its number where that is not its own."""
+    entities = [str(one.get("rsp_ent_name") or "").strip() for one in sets]
+    return [
+        entity
+        if entity.upper() not in {"", "NONE"} and entities.count(entity) == 1
+        else f"{entity} {number}".removeprefix("NONE").strip()
+        for number, entity in enumerate(entities, 1)
+    ]
 
 
 def _require_sane_headers(path: Path) -> None:

@@ -8,6 +8,7 @@ heads of the columns, in variables called ``*_unit``, or in the fields of the fo
 import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -162,7 +163,10 @@ def _write_csv(target: Path, tables: Sequence[Table]) -> Iterator[Path]:
 
 
 def _cell(value: object) -> str:
-    return escaped(value) if isinstance(value, str) else repr(value)
+    """Return a cell; a number that is none is an empty one."""
+    if isinstance(value, str):
+        return escaped(value)
+    return "" if isinstance(value, float) and isnan(value) else repr(value)
 
 
 def _flat(

@@ -1,0 +1,304 @@
+"""Archives: pool, ledger, quarantine, resuming; tables, trends, comparisons."""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.station.archive_files import session_files
+from jointbench.station.archive_table import read_results, table_rows, write_table
+from jointbench.station.cluster import ClusterSettings, require_safe
+from jointbench.station.compare_results import compare_results, match_modes
+from jointbench.station.ledger import escaped, open_ledger, read_ledger
+from jointbench.station.process_file import Outcome, State, Task, process_task
+from jointbench.station.recipe import Recipe, WindowsPart, read_recipe
+from jointbench.station.reprocess import Places, make_tasks, pool_backend, reprocess
+from jointbench.station.reprocess_progress import progress_line, time_words
+from jointbench.station.trends import Trend, TrendPoint, fit_with_scatter, trends_of
+from jointbench.station.worker_pool import PoolSettings
+
+PLAIN = Recipe(name="plain")
+
+
+def serial(tasks, recipe):
+    """Run tasks one after another, here."""
+    return (process_task(task, recipe) for task in tasks)
+
+
+def places(folder: Path) -> Places:
+    """Return places below a folder."""
+    return Places(folder / "out", folder / "plain.ledger.jsonl", None, 0)
+
+
+def run(folder: Path, backend=serial, recipe: Recipe = PLAIN):
+    """Reprocess all sessions below a folder."""
+    here = places(folder)
+    files = session_files([str(folder / "in")])
+    return reprocess(make_tasks(files, recipe, here), recipe, here, backend)
+
+
+def test_an_archive_is_done_once_and_its_bad_files_are_quarantined(
+    make_session, tmp_path: Path
+) -> None:
+    """Two good, one of text: the second pass skips two and remembers the third."""
+    make_session("in/a.h5")
+    make_session("in/deep/b.h5", seed=2)
+    (tmp_path / "in" / "c.h5").write_text("no session", encoding="utf-8")
+    first = run(tmp_path)
+    assert first.counts == {State.DONE: 2, State.SKIPPED: 0, State.FAILED: 1}
+    second = run(tmp_path)
+    assert second.counts == {State.DONE: 0, State.SKIPPED: 2, State.FAILED: 1}
+    listed = (tmp_path / "plain.ledger.quarantine.csv").read_text(encoding="utf-8")
+    assert "c.h5" in listed
+    assert "no HDF5" in listed
+
+
+def test_the_pool_gives_what_one_process_gives(make_session, tmp_path: Path) -> None:
+    """Workers that retire after a file: the same quantities."""
+    for number in range(2):
+        make_session(f"in/{number}.h5", seed=number + 1)
+    files = session_files([str(tmp_path / "in")])
+    tasks = make_tasks(files, PLAIN, places(tmp_path))
+    settings = PoolSettings(jobs=1, recycle=1)
+    summary = run(tmp_path, pool_backend(settings))
+    assert summary.counts[State.DONE] == 2
+    pooled = [table_rows(read_results([t.result])[0]) for t in tasks]
+    for task in tasks:
+        task.result.unlink()
+    run(tmp_path)
+    alone = [table_rows(read_results([t.result])[0]) for t in tasks]
+    assert repr(pooled) == repr(alone)
+
+
+def test_a_killed_run_goes_on_where_it_was(make_session, tmp_path: Path) -> None:
+    """SIGKILL after the first result: called again, all are there, none done twice."""
+    for number in range(6):
+        make_session(f"in/{number}.h5", seed=number + 1)
+    recipe = tmp_path / "plain.toml"
+    recipe.write_text("", encoding="utf-8")
+    ledger = tmp_path / "ledger.jsonl"
+    command = [
+        *(sys.executable, "-c", "from jointbench.station.main import run; run()"),
+        *("reprocess", str(tmp_path / "in"), "--recipe", str(recipe), "--jobs", "1"),
+        *("--results", str(tmp_path / "out"), "--ledger", str(ledger)),
+    ]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    process = subprocess.Popen(command, **quiet)  # type: ignore[call-overload]
+    for _ in range(3000):
+        if process.poll() is not None or list(tmp_path.glob("out/*.results.h5")):
+            break
+        time.sleep(0.02)
+    os.kill(process.pid, signal.SIGKILL)
+    process.wait()
+    there = len(list(tmp_path.glob("out/*.results.h5")))
+    assert 1 <= there < 6
+    here = Places(tmp_path / "out", ledger, None, 0)
+    files = session_files([str(tmp_path / "in")])
+    known = read_recipe(recipe)
+    again = reprocess(make_tasks(files, known, here), known, here, serial)
+    assert again.counts[State.SKIPPED] >= there
+    assert len(list(tmp_path.glob("out/*.results.h5"))) == 6
+    lines = [x for x in read_ledger(ledger) if x.get("kind") == "file"]
+    finished = [x["file"] for x in lines if x["state"] == "done"]
+    assert len(set(finished)) == len(finished)
+    assert not list(tmp_path.rglob("*.part"))
+
+
+def test_a_full_disk_stops_the_run_and_blames_no_file(
+    make_session, tmp_path: Path
+) -> None:
+    """A result that cannot be written is no fault of its session."""
+    make_session("in/a.h5")
+
+    def unwritable(tasks, recipe):
+        for task in tasks:
+            yield Outcome(
+                task.path, task.result, State.FAILED, reason="no space", unwritable=True
+            )
+
+    assert run(tmp_path, unwritable).unwritable == "no space"
+
+
+def test_results_are_no_sessions(make_session, tmp_path: Path) -> None:
+    """A second pattern over the same folder does not meet the results."""
+    make_session("in/a.h5")
+    (tmp_path / "in" / "a.plain.results.h5").write_bytes(b"")
+    assert [p.name for p in session_files([str(tmp_path / "in" / "*.h5")])] == ["a.h5"]
+    with pytest.raises(UsageError, match="quote the pattern"):
+        session_files([str(tmp_path / "none" / "*.h5")])
+
+
+def test_a_ledger_outlives_a_line_that_was_cut(tmp_path: Path) -> None:
+    """The cut line is passed over; the next run begins a line of its own."""
+    path = tmp_path / "l.jsonl"
+    with open_ledger(path, {}):
+        pass
+    with path.open("a", encoding="utf-8") as file:
+        file.write('{"kind": "file", "fi')
+    with open_ledger(path, {}):
+        pass
+    assert [line["kind"] for line in read_ledger(path)] == ["run", "run"]
+
+
+def test_a_ledger_has_one_writer(tmp_path: Path) -> None:
+    """A second run over the same ledger is refused while the first goes on."""
+    path = tmp_path / "l.jsonl"
+    with (
+        open_ledger(path, {}),
+        pytest.raises(UsageError, match="another run"),
+        open_ledger(path, {}),
+    ):
+        pass
+
+
+def test_another_file_is_no_ledger(tmp_path: Path) -> None:
+    """Nothing is appended to somebody's notes."""
+    path = tmp_path / "notes.txt"
+    path.write_text("my notes\n", encoding="utf-8")
+    with pytest.raises(UsageError, match="no ledger"), open_ledger(path, {}):
+        pass
+    assert path.read_text(encoding="utf-8") == "my notes\n"
+
+
+@pytest.mark.parametrize("cell", ["=1+1", "+1", "-1", "@x"])
+def test_a_cell_is_no_formula(cell: str) -> None:
+    """What a spreadsheet would run is escaped."""
+    assert escaped(cell) == f"'{cell}"
+
+
+def test_the_line_of_progress_tells_rate_and_time_left() -> None:
+    """50 of 200 files in 100 s: 2 s a file, 5 minutes left."""
+    counts = {State.DONE: 40, State.SKIPPED: 9, State.FAILED: 1}
+    line = progress_line(counts, 200, 100.0)
+    assert line == ("50/200 files: 40 done, 9 skipped, 1 failed; 2 s/file, 5 min left")
+    assert time_words(3725) == "1 h 2 min"
+
+
+@pytest.mark.parametrize(
+    "address", ["tcp://10.0.0.1:8786", "tcp://example.org:1", "tls://h:1", "h:1"]
+)
+def test_a_scheduler_beyond_this_machine_needs_tls(address: str) -> None:
+    """Refused before anything is sent."""
+    with pytest.raises(UsageError):
+        require_safe(ClusterSettings(address))
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "tcp://localhost:1"])
+def test_a_scheduler_on_this_machine_is_fine(address: str) -> None:
+    """Loopback needs no certificate."""
+    require_safe(ClusterSettings(address))
+
+
+def two_recipes(make_session, tmp_path: Path):
+    """Return the results of two sessions under two recipes."""
+    sets = []
+    for recipe in (PLAIN, Recipe(name="short", windows=WindowsPart(lead="none"))):
+        for number in range(2):
+            if recipe is PLAIN:
+                make_session(f"in/{number}.h5", seed=number + 1)
+            task = Task(
+                tmp_path / "in" / f"{number}.h5",
+                tmp_path / f"{number}.{recipe.name}.results.h5",
+            )
+            process_task(task, recipe)
+        sets.append(read_results(sorted(tmp_path.glob(f"*.{recipe.name}.results.h5"))))
+    return [found for found, _ in sets]
+
+
+def test_a_comparison_says_what_differs_and_pairs_by_content(
+    make_session, tmp_path: Path
+) -> None:
+    """Two sessions, one setting that changed, the stages that hang on it."""
+    before, after = two_recipes(make_session, tmp_path)
+    found = compare_results(before, after)
+    assert found.pairs == 2
+    assert "windows.lead: chosen by the data -> 0.0" in found.causes
+    assert set(found.stages) == {"frf", "modes", "fill"}
+    assert compare_results(before, before).moved == ()
+    with pytest.raises(BadData, match="no session is in both"):
+        compare_results(before[:1], after[1:])
+
+
+def test_modes_are_paired_by_frequency_not_by_number() -> None:
+    """A mode that came in below shifts the numbers, not the pairs."""
+    assert match_modes([100.0, 300.0], [50.0, 101.0, 299.0]) == {0: 1, 1: 2}
+    assert match_modes([100.0], [120.0]) == {}
+
+
+def test_one_table_opens_in_pandas_and_xarray(make_session, tmp_path: Path) -> None:
+    """CSV, netCDF and Parquet hold the same rows."""
+    pandas = pytest.importorskip("pandas", reason="pandas opens the table")
+    xarray = pytest.importorskip("xarray", reason="xarray opens the table")
+    pytest.importorskip("pyarrow", reason="Parquet is an extra")
+    rows = table_rows(two_recipes(make_session, tmp_path)[0])
+    for name in ("t.csv", "t.nc", "t.parquet"):
+        write_table(tmp_path / name, rows)
+    frames = [
+        pandas.read_csv(tmp_path / "t.csv"),
+        xarray.open_dataset(tmp_path / "t.nc", engine="h5netcdf").to_dataframe(),
+        pandas.read_parquet(tmp_path / "t.parquet"),
+    ]
+    for frame in frames:
+        assert len(frame) == len(rows)
+        assert np.allclose(frame["torque"], 20.0)
+        wanted = [row.value for row in rows]
+        assert np.array_equal(frame["value"].to_numpy(float), wanted, equal_nan=True)
+
+
+def test_a_trend_finds_the_slope_it_was_given() -> None:
+    """100 + 0.2 T with a scatter of 0.01: the slope within three of its sd."""
+    rng = np.random.default_rng(3)
+    points = [
+        TrendPoint(
+            "modes 1 f", "Hz", float(t), 100 + 0.2 * t + rng.normal(0, 0.01), 1e-3
+        )
+        for t in np.tile([20.0, 40.0, 60.0, 80.0], 6)
+    ]
+    trend = trends_of(points)[0]
+    assert abs(trend.slope - 0.2) < 3 * trend.slope_sd < 3e-3
+    assert trend.scatter == pytest.approx(0.01, rel=0.5)
+    assert trend.significance > 100
+
+
+def test_specimens_that_agree_are_not_told_apart() -> None:
+    """Equal means within their sd: no change seen."""
+    points = [
+        TrendPoint("f", "Hz", name, 100.0 + d, 0.1)
+        for name in ("A", "B")
+        for d in (-0.05, 0.05)
+    ]
+    trend = trends_of(points)[0]
+    assert trend.significance < 1
+    assert [g[0] for g in trend.groups] == ["A", "B"]
+
+
+def test_the_scatter_makes_chi_squared_what_it_should_be() -> None:
+    """Values +-1 about a mean, exact by themselves: scatter sqrt(n / (n - 1))."""
+    value = np.array([1.0, -1.0, 1.0, -1.0])
+    found, covariance, scatter = fit_with_scatter(np.ones((4, 1)), value, np.zeros(4))
+    assert found[0] == pytest.approx(0.0, abs=1e-12)
+    assert scatter == pytest.approx(math.sqrt(4 / 3), rel=1e-9)
+    assert covariance[0, 0] == pytest.approx(1 / 3, rel=1e-9)
+
+
+def test_a_trend_over_nothing_known_is_refused() -> None:
+    """The message lists what there is."""
+    with pytest.raises(UsageError, match="specimen"):
+        Trend.point(None, "colour")  # type: ignore[arg-type]
+
+
+def test_the_ledger_says_what_became_of_each_file(make_session, tmp_path: Path) -> None:
+    """One JSON line a file between the lines of the run."""
+    make_session("in/a.h5")
+    run(tmp_path)
+    text = (tmp_path / "plain.ledger.jsonl").read_text(encoding="utf-8")
+    kinds = [json.loads(line)["kind"] for line in text.splitlines()]
+    assert kinds == ["run", "file", "end"]
