@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Samples from TDMS files by npTDMS, an extra; sizes checked before they are read."""
 
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,6 +14,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import (
     FormatError,
     HostileFile,
+    JointbenchError,
     SamplingError,
     UsageError,
 )
@@ -48,23 +52,39 @@ def read_tdms(path: Path, *, columns: str | None, point: str) -> Recording:
     if size > _MOST_BYTES:
         raise HostileFile(f"{named(path)} has {size} bytes; cut it")
     try:
-        with TdmsFile.open(path) as file:
+        with _complaints() as complaints, TdmsFile.open(path) as file:
             channels = [c for group in file.groups() for c in group.channels()]
-            return _recording(path, size, channels, columns, point)
-    except (FormatError, HostileFile, SamplingError, UsageError):
+            recording = _recording(path, size, channels, columns, point)
+    except JointbenchError:
         raise
     except Exception as error:
-        if isinstance(error, _ours()):
-            raise
         raise FormatError(
             f"{named(path)} cannot be read as TDMS ({shown(error)}); use another copy"
         ) from error
+    if complaints:
+        raise FormatError(
+            f"{named(path)} is cut short or damaged ({shown(complaints[0])}); use "
+            "another copy"
+        )
+    return recording
 
 
-def _ours() -> tuple[type[Exception], ...]:
-    from jointbench.acquisition.errors import JointbenchError
+@contextmanager
+def _complaints() -> Iterator[list[str]]:
+    """Collect what npTDMS only logs: it reads on where a file was cut."""
+    found: list[str] = []
 
-    return (JointbenchError,)
+    class Collector(logging.Handler):
+        def emit(self, record: logging.LogRecord) -> None:
+            found.append(record.getMessage())
+
+    logger = logging.getLogger("nptdms")
+    before, logger.handlers = logger.handlers, [Collector(logging.WARNING)]
+    propagates, logger.propagate = logger.propagate, False
+    try:
+        yield found
+    finally:
+        logger.handlers, logger.propagate = before, propagates
 
 
 def _recording(
