@@ -52,7 +52,12 @@ def read_tdms(path: Path, *, columns: str | None, point: str) -> Recording:
     if size > _MOST_BYTES:
         raise HostileFile(f"{named(path)} has {size} bytes; cut it")
     try:
-        with _complaints() as complaints, TdmsFile.open(path) as file:
+        # Opened here, because npTDMS leaves files open that it cannot read.
+        with (
+            _complaints() as complaints,
+            path.open("rb") as opened,
+            TdmsFile.open(opened) as file,
+        ):
             channels = [c for group in file.groups() for c in group.channels()]
             recording = _recording(path, size, channels, columns, point)
     except JointbenchError:
@@ -78,13 +83,19 @@ def _complaints() -> Iterator[list[str]]:
         def emit(self, record: logging.LogRecord) -> None:
             found.append(record.getMessage())
 
-    logger = logging.getLogger("nptdms")
-    before, logger.handlers = logger.handlers, [Collector(logging.WARNING)]
-    propagates, logger.propagate = logger.propagate, False
+    loggers = [
+        logger
+        for name, logger in logging.root.manager.loggerDict.items()
+        if name.startswith("nptdms.") and isinstance(logger, logging.Logger)
+    ]
+    before = [(logger.handlers, logger.propagate) for logger in loggers]
+    for logger in loggers:
+        logger.handlers, logger.propagate = [Collector(logging.WARNING)], False
     try:
         yield found
     finally:
-        logger.handlers, logger.propagate = before, propagates
+        for logger, (handlers, propagates) in zip(loggers, before, strict=True):
+            logger.handlers, logger.propagate = handlers, propagates
 
 
 def _recording(
