@@ -37,13 +37,7 @@ from jointbench.station.options import (
     Sessions,
     Universal,
 )
-from jointbench.station.process_commands import (
-    archive_command,
-    compare_command,
-    export_command,
-    process_command,
-    reprocess_command,
-)
+from jointbench.station.process_commands import mount
 
 __all__ = ["app", "exit_code", "run"]
 
@@ -272,11 +266,7 @@ def gap_command(
     )
 
 
-app.command(name="process")(process_command)
-app.command(name="reprocess")(reprocess_command)
-app.command(name="archive")(archive_command)
-app.command(name="compare")(compare_command)
-app.command(name="export")(export_command)
+mount(app)
 
 
 @app.command(name="report")

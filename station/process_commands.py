@@ -21,6 +21,44 @@ Stages = Annotated[
 Again = Annotated[bool, typer.Option("--again", help="Work again, whatever is there.")]
 
 
+Sessions = Annotated[list[str], typer.Argument(help="Files, folders or patterns.")]
+Jobs = Annotated[
+    int | None, typer.Option(help="Worker processes; one a core.", min=1, max=256)
+]
+ResultsFolder = Annotated[
+    Path | None, typer.Option(help="Folder of results; else beside the sessions.")
+]
+LedgerFile = Annotated[
+    Path | None, typer.Option(help="Ledger; RECIPE.ledger.jsonl by default.")
+]
+StagesLimit = Annotated[
+    float, typer.Option(help="Space for kept stages [GB]; 0 keeps none.", min=0)
+]
+Retries = Annotated[
+    int, typer.Option(help="Tries after a system's fault.", min=0, max=100)
+]
+TimeLimit = Annotated[float, typer.Option(help="Longest time for a file [s].", min=1)]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(help="Dask scheduler in place of --jobs: tcp://127.0.0.1:8786."),
+]
+Batch = Annotated[
+    int, typer.Option(help="Files a task of the scheduler.", min=1, max=1000)
+]
+Authority = Annotated[Path | None, typer.Option(help="Authority, PEM.")]
+Certificate = Annotated[Path | None, typer.Option(help="Our certificate, PEM.")]
+PrivateKey = Annotated[Path | None, typer.Option(help="Our key, PEM.")]
+
+
+def mount(app: typer.Typer) -> None:
+    """Add the commands of offline work to the command line."""
+    app.command(name="process")(process_command)
+    app.command(name="reprocess")(reprocess_command)
+    app.command(name="archive")(archive_command)
+    app.command(name="compare")(compare_command)
+    app.command(name="export")(export_command)
+
+
 def process_command(
     session: Annotated[Path, typer.Argument(help="Session file; it is only read.")],
     recipe: RecipeFile = None,
@@ -44,39 +82,20 @@ def process_command(
 
 
 def reprocess_command(
-    sessions: Annotated[
-        list[str], typer.Argument(help="Files, folders or quoted patterns.")
-    ],
+    sessions: Sessions,
     recipe: RecipeFile = None,
-    jobs: Annotated[
-        int | None, typer.Option(help="Worker processes; one a core.", min=1, max=256)
-    ] = None,
-    results: Annotated[
-        Path | None, typer.Option(help="Folder of results; else beside the sessions.")
-    ] = None,
-    ledger: Annotated[
-        Path | None, typer.Option(help="Ledger; RECIPE.ledger.jsonl by default.")
-    ] = None,
+    jobs: Jobs = None,
+    results: ResultsFolder = None,
+    ledger: LedgerFile = None,
     stages: Stages = None,
-    stages_limit: Annotated[
-        float, typer.Option(help="Space for kept stages [GB]; 0 keeps none.", min=0)
-    ] = 10.0,
-    retries: Annotated[
-        int, typer.Option(help="Tries after a system's fault.", min=0, max=100)
-    ] = 2,
-    time_limit: Annotated[
-        float, typer.Option(help="Longest time for a file [s].", min=1)
-    ] = 1800.0,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(help="Dask scheduler in place of --jobs: tcp://127.0.0.1:8786."),
-    ] = None,
-    batch: Annotated[
-        int, typer.Option(help="Files a task of the scheduler.", min=1, max=1000)
-    ] = 16,
-    tls_ca: Annotated[Path | None, typer.Option(help="Authority, PEM.")] = None,
-    tls_cert: Annotated[Path | None, typer.Option(help="Our certificate, PEM.")] = None,
-    tls_key: Annotated[Path | None, typer.Option(help="Our key, PEM.")] = None,
+    stages_limit: StagesLimit = 10.0,
+    retries: Retries = 2,
+    time_limit: TimeLimit = 1800.0,
+    scheduler: Scheduler = None,
+    batch: Batch = 16,
+    tls_ca: Authority = None,
+    tls_cert: Certificate = None,
+    tls_key: PrivateKey = None,
     again: Again = False,
     json: Json = None,
     debug: Debug = False,
@@ -152,7 +171,7 @@ def compare_command(
 
     Example: jointbench compare 'a/**/*.old.results.h5' 'a/**/*.new.results.h5'
     """
-    from jointbench.station.compare_results import run_compare
+    from jointbench.station.compare import run_compare
 
     run_compare(before, after, json_target=json)
 
