@@ -77,7 +77,7 @@ def main() -> None:
     print(f"  exit {dask_code}; with all done {again:.1f} s")
     print(f"- cluster unharmed, after that: {calm:.0f} s,")
     print(f"  {1e3 * (calm - pool) / total:+.0f} ms a file beside the pool")
-    print("- overhead where there is nothing to do: ")
+    print("- overhead where there is nothing to do:")
     print(f"  {1e3 * (again - idle) / total:+.1f} ms a file beside the pool")
     print(f"- results equal to the pool's: {same} of {len(first)};")
     print(f"  only one of the two has: {len(set(first) ^ set(second))}")
