@@ -16,7 +16,7 @@ from types import FrameType
 from jointbench.acquisition.errors import UsageError
 from jointbench.station.archive_files import common_folder, session_files
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
-from jointbench.station.ledger import Ledger, open_ledger, write_quarantine
+from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.process import STAGES_FOLDER, outcome_json, recipe_or_default
@@ -158,7 +158,7 @@ def reprocess(
             summary.interrupted = True
         summary.seconds = time.monotonic() - begun
         counts = {state.value: n for state, n in summary.counts.items()}
-        end = {"kind": "end", "interrupted": summary.interrupted}
+        end = {"kind": "end", "time": now(), "interrupted": summary.interrupted}
         ledger.write(end | counts | {"seconds": round(summary.seconds, 3)})
     _prune(places, 0)
     write_quarantine(places.quarantine, summary.failed)
