@@ -2,12 +2,11 @@
 
     python benchmarks/files/speedup.py --archive FOLDER --files 200 --rounds 3
 
-On a machine that does other work besides, the ratio of two runs says little; so pairs
-of runs alternate, and the share of the cores that the workers got is told as well.
+On a machine that does other work besides, the ratio of two runs says little, so pairs
+of runs alternate, and the load is told.
 """
 
 import argparse
-import resource
 import shutil
 import statistics
 import tempfile
@@ -15,12 +14,6 @@ from pathlib import Path
 
 from kills import arguments, timed
 from runs import load_words, write_recipe
-
-
-def cpu() -> float:
-    """Return the processor time of all children that ended [s]."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 def main() -> None:
@@ -31,7 +24,6 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     options = parser.parse_args()
     seconds: dict[int, list[float]] = {1: [], 2: []}
-    shares: dict[int, list[float]] = {1: [], 2: []}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         recipe = write_recipe(folder)
@@ -42,17 +34,14 @@ def main() -> None:
         for number in range(options.rounds):
             for jobs in (1, 2):
                 out = folder / f"out-{jobs}-{number}"
-                before = cpu()
                 taken, _ = timed(arguments(folder / "in", recipe, out, jobs))
                 seconds[jobs].append(taken)
-                shares[jobs].append((cpu() - before) / taken)
     ratios = [a / b for a, b in zip(seconds[1], seconds[2], strict=True)]
     print("# Two workers beside one\n")
-    print(f"{len(some)} sessions, {options.rounds} rounds in turn; {load_words()}.\n")
+    print(f"{len(some)} sessions, rounds in turn: {options.rounds}; {load_words()}.\n")
     for jobs in (1, 2):
         times = ", ".join(f"{t:.1f}" for t in seconds[jobs])
-        share = statistics.median(shares[jobs])
-        print(f"- {jobs} worker(s): {times} s; processor time a second {share:.2f}")
+        print(f"- {jobs} worker(s): {times} s")
     shown = ", ".join(f"{ratio:.2f}" for ratio in ratios)
     print(f"- ratios: {shown}; median {statistics.median(ratios):.2f}")
 
