@@ -105,7 +105,8 @@ class LivePlates:
         self._lock = threading.Lock()
         self._point, self._torque = "1", 20.0
         self._level: float | None = None
-        self._rate, self._stream, self._free_at = 1.0, 0, 0.0
+        self._rate, self._stream = 1.0, 0
+        self._free_at = self._free_before = 0.0
         self._strokes: list[Stroke] = []
         self._made: dict[int, FloatArray] = {}
         self.history: list[PlannedStroke] = []
@@ -143,8 +144,13 @@ class LivePlates:
             self._level = self._level if level is None else level
 
     def strike(self, *, position: int) -> PlannedStroke:
-        """Let the hand strike once, soon after sample `position` of the stream."""
+        """Let the hand strike once, soon after sample `position` of the stream.
+
+        A stroke that was asked for before and has not begun is not struck: a hand that
+        is told to go elsewhere goes there.
+        """
         with self._lock:
+            self._recall(position)
             return self._plan(max(position / self._rate, self._free_at))
 
     def volts(self, first: int, count: int, inputs: Sequence[int]) -> FloatArray:
@@ -165,6 +171,15 @@ class LivePlates:
             [made[n] if n < made.shape[0] - 1 else open_input for n in inputs]
         )
 
+    def _recall(self, position: int) -> None:
+        if self._bench.hand.interval is not None or not self._strokes:
+            return
+        first, made = self._strokes[-1].first, max(self._made, default=-1)
+        if first > position and first >= (made + 1) * _PIECE:
+            self._strokes.pop()
+            self.history.pop()
+            self._free_at = self._free_before
+
     def _keep_striking(self, past: int) -> None:
         interval = self._bench.hand.interval
         while interval is not None and self._free_at * self._rate < past:
@@ -184,6 +199,7 @@ class LivePlates:
         new = stroke(poles, pulses, sample_rate=self._rate)
         self._strokes.append(new)
         rest = bench.hand.interval or 4 * bench.hand.reaction
+        self._free_before = self._free_at
         self._free_at = pulses[-1].start + rest
         planned = PlannedStroke(
             number,

@@ -36,6 +36,7 @@ from jointbench.station.options import (
     Sessions,
     Universal,
 )
+from jointbench.station.profile_command import profile_command
 
 __all__ = ["app", "exit_code", "run"]
 
@@ -202,6 +203,7 @@ def surface_command(
     run_surface(files, columns=columns, json_target=json)
 
 
+app.command(name="profile")(profile_command)
 app.command(name="contact")(contact_command)
 
 

@@ -3,6 +3,8 @@
 
 import uuid
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -16,15 +18,18 @@ from jointbench.acquisition.records import Channel, Hit, Verdict
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.session_live import LiveSession
+from jointbench.station.measure_bench import Bench
+from jointbench.station.measure_bolts import BoltWatch
 from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure_record import Record
 from jointbench.station.measure_screen import watching
 from jointbench.station.measure_session import MeasureSession
 from jointbench.station.measure_source import OpenChassis, open_chassis
-from jointbench.station.measure_teds import teds_warnings
+from jointbench.station.measure_teds import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.measure_watch import Watcher
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.serial_port import line_name
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,9 +144,21 @@ def _record(
     channels = table_channels(plan.sensors)
     meta = _meta(plan, opened, channels, stream.sample_rate)
     block = stream.settings.block
-    with LiveSession(out, meta, channels=len(channels), block=block) as live:
+    with (
+        _torque_tester(plan) as bolts,
+        LiveSession(out, meta, channels=len(channels), block=block) as live,
+    ):
         session = MeasureSession(
-            plan, stream, live, channels=channels, hand=opened.hand, watcher=watcher
+            Bench(
+                plan=plan,
+                stream=stream,
+                live=live,
+                channels=channels,
+                hand=opened.hand,
+                watcher=watcher,
+                bolts=bolts,
+                hardware_trigger=by_device(plan, opened.chassis),
+            )
         )
         watcher.begin(channels, stream.sample_rate)
         for words in warnings:
@@ -156,6 +173,17 @@ def _record(
     return session.record
 
 
+@contextmanager
+def _torque_tester(plan: MeasurePlan) -> Iterator[BoltWatch | None]:
+    """Give what reads the bolts, None where the plan names no tester."""
+    torque, joint = plan.table.torque, plan.table.joint
+    if torque is None or joint is None:
+        yield None
+        return
+    with line_name(torque.line) as name:
+        yield BoltWatch(table=torque, line=name, bolts=joint.bolts, wait=plan.hits.wait)
+
+
 def _close_the_books(live: LiveSession, stream: NiStream, record: Record) -> None:
     """Log what the device made against what was stored, and that this is the end."""
     stream.count_if_there()
@@ -165,6 +193,7 @@ def _close_the_books(live: LiveSession, stream: NiStream, record: Record) -> Non
             "kind": "continuity",
             "acquired": counters.acquired,
             "unread": counters.unread,
+            "unwanted": counters.unwanted,
             "stored_samples": live.samples,
             "lost": counters.lost,
         }
@@ -176,7 +205,13 @@ def _warnings(plan: MeasurePlan, opened: OpenChassis) -> tuple[str, ...]:
     today = datetime.now(UTC).date()
     old = (calibration_warning(sensor, today) for sensor in plan.sensors)
     expired = (words for words in old if words is not None)
-    return (*expired, *teds_warnings(opened.chassis, plan.sensors))
+    asked = plan.acquisition.trigger == "hardware"
+    trigger = asked and not by_device(plan, opened.chassis)
+    return (
+        *expired,
+        *teds_warnings(opened.chassis, plan.sensors),
+        *((NO_TRIGGER,) if trigger else ()),
+    )
 
 
 def _meta(

@@ -102,6 +102,30 @@ def spoils(
     )
 
 
+def among_the_others(
+    new: Accepted,
+    accepted: Sequence[Accepted],
+    channels: Sequence[Channel],
+    *,
+    sample_rate: float,
+    wanted: float,
+) -> Hit:
+    """Return a good hit, its verdict changed where it spoils the average.
+
+    Args:
+        new: the hit.
+        accepted: those before it.
+        channels: of their rows.
+        sample_rate: [Hz].
+        wanted: coherence [-].
+    """
+    worse = spoils(new, accepted, channels, sample_rate=sample_rate, wanted=wanted)
+    if worse is None:
+        return new.hit
+    verdict = Verdict.POOR_COHERENCE
+    return replace(new.hit, verdict=verdict, measure=worse[0], reason=worse[1])
+
+
 def weak_force(level: float | None, accepted: Sequence[Accepted]) -> float | None:
     """Return the least useful peak [N]: a third of the level, or of the usual hit.
 

@@ -26,8 +26,11 @@ KEYS = {
     "a": Command.ACCEPT,
     "r": Command.REJECT,
     "u": Command.UNDO,
+    "p": Command.REPEAT,
+    "n": Command.NEXT,
     "q": Command.QUIT,
 }
+KEY_HELP = "a accept  r reject  u undo  p repeat point  n next point  q quit"
 WIDTH = 64
 _BARS = " ▁▂▃▄▅▆▇█"
 _FRAMES = 8  # a second
@@ -97,7 +100,7 @@ class Screen:
         if self._news is not None:
             parts += hit_lines(self._news, self._rate)
         parts += [Text(line, style="dim") for line in self._said]
-        parts.append(Text("a accept   r reject   u undo   q quit", style="italic"))
+        parts.append(Text(KEY_HELP, style="italic"))
         self.live.update(Group(*parts))
 
     def _levels(self) -> Table:
