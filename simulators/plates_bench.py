@@ -111,6 +111,11 @@ class LivePlates:
         self._made: dict[int, FloatArray] = {}
         self.history: list[PlannedStroke] = []
 
+    @property
+    def sensors(self) -> tuple[PluggedSensor, ...]:
+        """What is plugged in, by input."""
+        return self._bench.sensors
+
     def begin(self, sample_rate: float) -> None:
         """Start a new stream from rest."""
         with self._lock:

@@ -11,10 +11,10 @@ from jointbench.acquisition.records import Channel
 from jointbench.acquisition.source import Source
 from jointbench.simulators.plates_bench import PluggedSensor
 
-INPUT_SHARE = 0.95  # of the input range that the largest sample takes at the most
 INPUT_RANGE = 5.0  # [V]
 _KEPT = 4  # blocks behind the newest one that may still be asked for
 _NO_SENSITIVITY = 1e-3  # [V per SI unit] where the source names none
+_NO_RANGE = 0.25  # of its sensitivity, where a source names none of its ranges
 
 
 class Specimen(Protocol):
@@ -37,7 +37,7 @@ class StreamedSpecimen:
 
     def __init__(self, source: Source) -> None:
         self._source = source
-        self.sensors = tuple(_plugged(channel) for channel in source.channels)
+        self.sensors = tuple(plugged(channel) for channel in source.channels)
         self._gains = np.array([[sensor.sensitivity] for sensor in self.sensors])
         self._blocks: Iterator[FloatArray] = iter(())
         self._data = np.zeros((len(self.sensors), 0))
@@ -66,6 +66,11 @@ class StreamedSpecimen:
         self._from += drop
 
 
-def _plugged(channel: Channel) -> PluggedSensor:
+def plugged(channel: Channel) -> PluggedSensor:
+    """Return a sensor whose range is within that of an input."""
     sensitivity = channel.sensitivity or _NO_SENSITIVITY
+    if channel.range is None:
+        sensitivity *= _NO_RANGE
+    else:
+        sensitivity = min(sensitivity, INPUT_RANGE / channel.range)
     return PluggedSensor(channel.point, sensitivity, noise=0.0, serial=0)
