@@ -13,9 +13,11 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
+from jointbench.simulators.calibration_mass import CalibrationMass, mass_poles
 from jointbench.simulators.hand import Fate, Hand, swing_once
 from jointbench.simulators.plates import POINTS, PlatesDesign, plates_poles
 from jointbench.simulators.plates_strike import Stroke, signal_piece, stroke
+from jointbench.simulators.poles import Poles
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 # Samples made together, so that sample k is the same number however reads are cut. A
@@ -64,7 +66,7 @@ class PlatesBench:
         seed: of the noise.
     """
 
-    design: PlatesDesign = field(default_factory=PlatesDesign)
+    design: PlatesDesign | CalibrationMass = field(default_factory=PlatesDesign)
     hand: Hand = field(default_factory=Hand)
     sensors: tuple[PluggedSensor, ...] = SENSORS
     seed: int = 1
@@ -195,13 +197,7 @@ class LivePlates:
         pulses, fate = swing_once(
             bench.hand, number=number, after=after, level=self._level
         )
-        poles = plates_poles(
-            bench.design,
-            self._torque,
-            struck=self._point,
-            outputs=tuple(sensor.point for sensor in bench.sensors[1:]),
-        )
-        new = stroke(poles, pulses, sample_rate=self._rate)
+        new = stroke(self._poles(), pulses, sample_rate=self._rate)
         self._strokes.append(new)
         rest = bench.hand.interval or 4 * bench.hand.reaction
         self._free_before = self._free_at
@@ -217,6 +213,14 @@ class LivePlates:
         )
         self.history.append(planned)
         return planned
+
+    def _poles(self) -> Poles:
+        """Return how the specimen answers a stroke as things stand."""
+        design = self._bench.design
+        outputs = tuple(sensor.point for sensor in self._bench.sensors[1:])
+        if isinstance(design, CalibrationMass):
+            return mass_poles(design, outputs=len(outputs))
+        return plates_poles(design, self._torque, struck=self._point, outputs=outputs)
 
     def _piece(self, number: int) -> FloatArray:
         """Return the volts of all sensors, and unit noise, over one piece."""

@@ -264,6 +264,26 @@ def gap_command(
     )
 
 
+@app.command(name="calibrate")
+def calibrate_command(
+    session: Annotated[Path, typer.Argument(help="Session of hits on the mass.")],
+    mass: Annotated[
+        str, typer.Option(help="All that moves, sensors included, '4 kg'.")
+    ],
+    mass_sd: Annotated[str, typer.Option(help="Its standard uncertainty.")] = "0 g",
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Compare every accelerometer with the hammer on a mass that is known.
+
+    Example: jointbench calibrate mass.h5 --mass '4.512 kg' --mass-sd '0.5 g'
+    """
+    from jointbench.station.calibrate import run_calibrate
+
+    found = run_calibrate(session, mass=mass, mass_sd=mass_sd, json_target=json)
+    return 0 if all(each.passed for each in found) else EXIT_QUALITY
+
+
 @app.command(name="report")
 def report_command(
     session: Annotated[Path, typer.Argument(help="Session file.")],
