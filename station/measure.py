@@ -4,20 +4,21 @@
 import uuid
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from rich.console import Console
 
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
 from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
 from jointbench.acquisition.ni.stream import Counters, NiStream, StreamSettings
 from jointbench.acquisition.records import Channel, Hit, Verdict
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.session_live import LiveSession
+from jointbench.acquisition.session_lock import is_held
 from jointbench.station.measure_bench import Bench
 from jointbench.station.measure_bolts import BoltWatch
 from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
@@ -117,10 +118,15 @@ def measure(
     stream.start()
     try:
         record = _record(plan, opened, out, (stream, watcher, warnings))
-    finally:
+    except BaseException:
         stream.close()
-        if out.exists():
-            finish_session(out)
+        # What went wrong first is what the operator has to know.
+        with suppress(JointbenchError):
+            if out.exists() and not is_held(out):
+                finish_session(out)
+        raise
+    stream.close()
+    finish_session(out)
     return Measured(
         out, record, stream.counters, len(conditions(plan)), stream.sample_rate
     )
@@ -130,8 +136,17 @@ def finish_session(path: Path) -> None:
     """Turn the file of a recording into a finished session, compressed, in its place.
 
     Until the new file is whole and on the disk, the old one stays.
+
+    Raises:
+        InstrumentError: there is no room for it; the recording is safe as it is.
     """
-    write_session(read_session(path), path, overwrite=True)
+    try:
+        write_session(read_session(path), path, overwrite=True)
+    except UsageError as error:
+        raise InstrumentError(
+            f"'{path}' could not be finished ({error}); what was recorded is safe in "
+            "it: make room, then `jointbench recover` it"
+        ) from error
 
 
 def _record(
@@ -160,11 +175,11 @@ def _record(
                 hardware_trigger=by_device(plan, opened.chassis),
             )
         )
-        watcher.begin(channels, stream.sample_rate)
-        for words in warnings:
-            live.log({"kind": "warning", "words": words})
-            watcher.say(f"warning: {words}")
         try:
+            watcher.begin(channels, stream.sample_rate)
+            for words in warnings:
+                live.log({"kind": "warning", "words": words})
+                watcher.say(f"warning: {words}")
             session.run()
         except KeyboardInterrupt:
             session.record.interrupted = True

@@ -14,7 +14,7 @@ from jointbench.station.measure_plan import Condition
 WRONG_SIGN_LIMIT = 0.05
 """Share of the imaginary part of a driving point that may have the wrong sign [-]."""
 RESONANT_SHARE = 1e-3
-"""Share of an FRF that its imaginary part has at least where something resonates [-]."""
+"""Least share of an FRF in its imaginary part where something resonates [-]."""
 RECIPROCITY_LIMIT = 0.1
 """Rms difference of two FRFs that should be one, over their rms [-]."""
 
