@@ -21,6 +21,7 @@ from jointbench.acquisition.session_live import LiveSession
 from jointbench.acquisition.session_lock import is_held
 from jointbench.station.measure_bench import Bench
 from jointbench.station.measure_bolts import BoltWatch
+from jointbench.station.measure_interrupt import patient_interrupt
 from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure_record import Record
 from jointbench.station.measure_screen import watching
@@ -180,7 +181,8 @@ def _record(
             for words in warnings:
                 live.log({"kind": "warning", "words": words})
                 watcher.say(f"warning: {words}")
-            session.run()
+            with patient_interrupt(session.record):
+                session.run()
         except KeyboardInterrupt:
             session.record.interrupted = True
         finally:

@@ -8,12 +8,14 @@ is what a bolt got. Every reading that counts is in the file, those set aside to
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
 from jointbench.acquisition.errors import FormatError, InstrumentError
 from jointbench.acquisition.serial_lines.line import SerialLine
 from jointbench.acquisition.serial_lines.mark10 import Reading, read_gauge
 from jointbench.acquisition.session_live import LiveSession
 from jointbench.station.measure_model import TorqueTable
+from jointbench.station.measure_record import Record
 from jointbench.station.measure_watch import Command, Watcher
 
 BEGUN = 0.3
@@ -21,6 +23,20 @@ BEGUN = 0.3
 RELEASED = 0.5
 """Share of its largest reading below which a bolt counts as done [-]."""
 _RETRY = 0.2  # [s] between attempts to open a line that broke
+
+
+class Surroundings(Protocol):
+    """What a `BoltWatch` needs of the bench around it."""
+
+    @property
+    def watcher(self) -> Watcher:
+        """Who is told."""
+        ...
+
+    @property
+    def live(self) -> LiveSession:
+        """Where it is logged."""
+        ...
 
 
 @dataclass(slots=True)
@@ -69,15 +85,16 @@ class BoltWatch:
     sleep: Callable[[float], None] = time.sleep
 
     def tighten(
-        self, target: float, watcher: Watcher, live: LiveSession
+        self, target: float, bench: Surroundings, record: Record
     ) -> tuple[float, ...] | None:
         """Read the torque of every bolt while it is tightened to a target [N m].
 
         Args:
             target: of every bolt [N m].
-            watcher: says what to do; accept takes the reading as it is, undo goes back
-                to the bolt before, quit ends the session.
-            live: where every reading that counts is logged.
+            bench: its watcher is told what to do, and may say: accept takes the
+                reading as it is, undo goes back to the bolt before, quit ends the
+                session; its file takes every reading that counts.
+            record: says when the session was interrupted.
 
         Returns:
             Torque of each bolt [N m], None where the operator quits.
@@ -88,19 +105,20 @@ class BoltWatch:
         """
         tester = Tester(self)
         try:
-            return self._all(target, tester, watcher, live)
+            return self._all(target, tester, bench, record)
         finally:
             tester.close()
 
     def _all(
-        self, target: float, tester: "Tester", watcher: Watcher, live: LiveSession
+        self, target: float, tester: "Tester", bench: Surroundings, record: Record
     ) -> tuple[float, ...] | None:
+        watcher, live = bench.watcher, bench.live
         found: list[float] = []
         tries = 0
         while len(found) < self.bolts:
             number = len(found) + 1
             watcher.say(f"tighten bolt {number} of {self.bolts} to {target:g} N m")
-            answer = self._one(target, number, tester, watcher)
+            answer = self._one(target, (number, tester), watcher, record)
             if answer is Command.QUIT:
                 return None
             if answer is Command.UNDO:
@@ -126,9 +144,10 @@ class BoltWatch:
         return f"{words} (limit {100 * self.table.tolerance:g} %); once more", False
 
     def _one(
-        self, target: float, number: int, tester: "Tester", watcher: Watcher
+        self, target: float, at: "tuple[int, Tester]", watcher: Watcher, record: Record
     ) -> Reading | Command:
         """Return the torque of one bolt, or what the operator wants instead."""
+        number, tester = at
         hold, until = PeakHold(target), self.now() + self.wait
         while self.now() < until:
             reading = tester.read(watcher)
@@ -139,7 +158,9 @@ class BoltWatch:
             said = watcher.command()
             if said is Command.ACCEPT and hold.top is not None:
                 return hold.top
-            if said in (Command.QUIT, Command.UNDO):
+            if said is Command.QUIT or record.interrupted:
+                return Command.QUIT
+            if said is Command.UNDO:
                 return said
         trouble = f": {tester.trouble}" if tester.trouble else ""
         raise InstrumentError(

@@ -69,7 +69,7 @@ class Route:
         if bench.bolts is None or target is None or target == self._tight:
             return False
         bench.stream.pause()
-        readings = bench.bolts.tighten(target, bench.watcher, bench.live)
+        readings = bench.bolts.tighten(target, bench, self._record)
         if readings is None:
             self._record.interrupted = True
         else:
