@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from jointbench.acquisition.records import Hit, Verdict
 from jointbench.acquisition.session_live import LiveSession
 from jointbench.signal.live_hits import CutHit
-from jointbench.station.measure_average import Accepted
+from jointbench.station.measure_average import Accepted, Spoiler
 from jointbench.station.measure_log import hit_entry
 from jointbench.station.measure_record import Record
 from jointbench.station.measure_watch import Command
@@ -68,11 +68,7 @@ class Ledger:
 
     def good(self, condition: int) -> list[Accepted]:
         """Return the hits of a condition that enter its average."""
-        return [
-            Accepted(e.cut, e.hit)
-            for e in self._entered
-            if e.condition == condition and e.hit.verdict is Verdict.OK
-        ]
+        return [Accepted(e.cut, e.hit) for e in self._good(condition)]
 
     def bad(self, condition: int) -> int:
         """Return how many hits of a condition do not."""
@@ -103,15 +99,38 @@ class Ledger:
             hit = _judged(last.hit, command)
         return self._replace(last, hit)
 
+    def take_out(self, condition: int, spoiler: Spoiler) -> int:
+        """Judge a good hit of a condition again: it spoils the average of the others.
+
+        Args:
+            condition: number of the condition.
+            spoiler: counts its position among the good hits.
+
+        Returns:
+            Its index among all hits of the session.
+        """
+        entered = self._good(condition)[spoiler.position]
+        hit = replace(
+            entered.hit,
+            verdict=Verdict.POOR_COHERENCE,
+            measure=spoiler.together,
+            reason=spoiler.reason,
+        )
+        self._replace(entered, hit)
+        return entered.index
+
     def set_aside(self, condition: int) -> int:
         """Take the good hits of a condition out of its average; return how many."""
-        own = [e for e in self._entered if e.condition == condition]
-        good = [e for e in own if e.hit.verdict is Verdict.OK]
+        good = self._good(condition)
         for entered in good:
             self._replace(entered, _judged(entered.hit, Command.REPEAT))
         self._entered = [e for e in self._entered if e.condition != condition]
         self._said = []
         return len(good)
+
+    def _good(self, condition: int) -> list[Entered]:
+        own = [e for e in self._entered if e.condition == condition]
+        return [e for e in own if e.hit.verdict is Verdict.OK]
 
     def _replace(self, entered: Entered, hit: Hit) -> Entered:
         new = replace(entered, hit=hit)

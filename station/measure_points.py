@@ -7,8 +7,8 @@ from jointbench.signal.live_hits import CutHit
 from jointbench.station.measure_asking import Asker
 from jointbench.station.measure_average import (
     Accepted,
-    among_the_others,
     average,
+    find_spoiler,
     mean_coherence,
     weak_force,
 )
@@ -76,16 +76,23 @@ class Points:
                 self._trials.settle()
                 self.begin()
             return
-        if hit.verdict is Verdict.OK:
-            hit = among_the_others(
-                Accepted(cut, hit),
-                good,
-                self._bench.channels,
-                sample_rate=self._bench.stream.sample_rate,
-                wanted=self._bench.plan.hits.coherence,
-            )
         self._ledger.enter(hit, cut, condition.number)
-        self._go_on(cut, hit)
+        if hit.verdict is Verdict.OK:
+            self._weed(condition.number)
+        last = self._ledger.last
+        self._go_on(cut, hit if last is None else last.hit)
+
+    def _weed(self, number: int) -> None:
+        """Take the hit out that spoils the average, be it the last one or another."""
+        spoiler = find_spoiler(
+            self._ledger.good(number),
+            self._bench.channels,
+            sample_rate=self._bench.stream.sample_rate,
+            wanted=self._bench.plan.hits.coherence,
+        )
+        if spoiler is not None:
+            index = self._ledger.take_out(number, spoiler)
+            self._bench.watcher.say(f"hit {index + 1} is taken out: {spoiler.reason}")
 
     def obey(self, command: Command) -> None:
         """Do what the operator said."""
@@ -133,7 +140,12 @@ class Points:
         agreed = coherence is None or coherence >= hits.coherence
         most = hits.most_repeats or 2 * hits.repeats
         if count >= most or (count >= hits.repeats and agreed):
-            self._finish(frf, given_up=False)
+            if not agreed:
+                self._bench.watcher.say(
+                    f"{condition.name}: coherence stays at {coherence:.3f} after "
+                    f"{count} hits (limit {hits.coherence:g})"
+                )
+            self._finish(frf, given_up=not agreed)
         elif self._ledger.bad(condition.number) >= hits.most_rejected:
             self._bench.watcher.say(f"{condition.name}: given up, too many bad hits")
             self._finish(frf, given_up=True)

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pytest
@@ -15,9 +15,10 @@ from jointbench.simulators.hand import Fate, Hand
 from jointbench.simulators.plates_bench import PlatesBench
 from jointbench.station.measure import Measured, measure
 from jointbench.station.measure_lines import Lines
-from jointbench.station.measure_plan import read_plan
+from jointbench.station.measure_plan import Condition, read_plan
 from jointbench.station.measure_source import OpenChassis, SimulatedHand
 from jointbench.station.measure_watch import Command, HitNews
+from jointbench.station.measure_watch import Hand as Striker
 from jointbench.station.output import console
 from jointbench.station.verify import run_verify
 
@@ -58,12 +59,27 @@ class Operator(Lines):
         self.heard.append(line)
 
 
+@dataclass(eq=False)
+class Wandering:
+    """Strikes point 3 the first time, whatever it is asked for."""
+
+    chassis: Chassis
+    asked: int = 0
+
+    def ask(self, condition: Condition) -> None:
+        """Ask for one stroke, once at the wrong place."""
+        place = condition if self.asked else replace(condition, point="3")
+        self.asked += 1
+        SimulatedHand(self.chassis).ask(place)
+
+
 def session(
     folder: Path,
     after: dict[int, tuple[Command, ...]],
     *,
     fates: tuple[Fate, ...] = (Fate.GOOD,),
     on_hit: Callable[[int], None] = lambda number: None,
+    hand: Callable[[Chassis], Striker] = SimulatedHand,
 ) -> tuple[Measured, Operator]:
     """Measure two points, two hits each, with an operator who says things."""
     text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")
@@ -75,7 +91,7 @@ def session(
     setup = ChassisSetup(bench=PlatesBench(hand=Hand(fates=fates)), speed=math.inf)
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
-        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        opened = OpenChassis(chassis, "sim:", True, hand(chassis))
         measured = measure(read_plan(path), opened, folder / "s.h5", operator)
         chassis.close()
     return measured, operator
@@ -186,3 +202,15 @@ def test_a_word_before_the_first_hit_says_that_there_is_none(tmp_path: Path) -> 
     measured, operator = session(tmp_path, {0: (Command.ACCEPT,)})
     assert "accept: there is no hit yet" in operator.heard
     assert measured.whole
+
+
+def test_a_hit_at_another_point_is_found_out_though_it_came_first(
+    tmp_path: Path,
+) -> None:
+    """The first of three is struck at point 3: the other two agree, it is taken out."""
+    measured, _ = session(tmp_path, {}, hand=Wandering)
+    verdicts = [hit.verdict for hit in stored(tmp_path)]
+    assert measured.whole
+    assert verdicts[0] is Verdict.POOR_COHERENCE
+    assert stored(tmp_path)[0].measure < 0.9
+    assert verdicts.count(Verdict.OK) == 4
