@@ -125,7 +125,7 @@ def find_spoiler(
     return Spoiler(
         position,
         together,
-        f"coherence is {without[position]:.3f} without this hit, {together:.3f} with it "
+        f"coherence {without[position]:.3f} without this hit, {together:.3f} with it "
         f"(limit {wanted:g}); it struck another place or direction",
     )
 
