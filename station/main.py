@@ -4,13 +4,17 @@
 Every command imports what it needs when it runs, so that ``--help`` stays instant.
 """
 
-import os
 import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from jointbench.station.bench_commands import (
+    calibrate_command,
+    measure_command,
+    simulate_command,
+)
 from jointbench.station.contact_command import contact_command
 from jointbench.station.exit_codes import EXIT_QUALITY, exit_code
 from jointbench.station.options import (
@@ -89,31 +93,6 @@ def record_command(
     from jointbench.station.record_command import run_record
 
     run_record(source, out, overwrite=force, json_target=json)
-
-
-@app.command(name="measure")
-def measure_command(
-    plan: Annotated[Path, typer.Argument(help="Plan of the measurement, TOML.")],
-    out: Annotated[Path, typer.Option(help="Session file to write.")],
-    source: Annotated[
-        str | None,
-        typer.Option(help="ni:, ni+grpc://host:port or sim:plates; else the plan's."),
-    ] = None,
-    force: Force = False,
-    json: Json = None,
-    debug: Debug = False,
-) -> int:
-    """Measure hammer hits by a plan: points x levels x torques, each repeated.
-
-    Example: jointbench measure plan.toml --out session.h5 --source
-    'sim:plates?seed=1'
-    """
-    # gRPC writes of every lost connection to standard error; the session says it.
-    os.environ.setdefault("GRPC_VERBOSITY", "NONE")
-    from jointbench.station.measure import run_measure
-
-    measured = run_measure(plan, out, source=source, overwrite=force, json_target=json)
-    return 0 if measured.whole else EXIT_QUALITY
 
 
 @app.command(name="import")
@@ -203,7 +182,10 @@ def surface_command(
     run_surface(files, columns=columns, json_target=json)
 
 
+app.command(name="measure")(measure_command)
+app.command(name="calibrate")(calibrate_command)
 app.command(name="profile")(profile_command)
+app.command(name="simulate")(simulate_command)
 app.command(name="contact")(contact_command)
 
 
@@ -262,26 +244,6 @@ def gap_command(
         report=report,
         json_target=json,
     )
-
-
-@app.command(name="calibrate")
-def calibrate_command(
-    session: Annotated[Path, typer.Argument(help="Session of hits on the mass.")],
-    mass: Annotated[
-        str, typer.Option(help="All that moves, sensors included, '4 kg'.")
-    ],
-    mass_sd: Annotated[str, typer.Option(help="Its standard uncertainty.")] = "0 g",
-    json: Json = None,
-    debug: Debug = False,
-) -> int:
-    """Compare every accelerometer with the hammer on a mass that is known.
-
-    Example: jointbench calibrate mass.h5 --mass '4.512 kg' --mass-sd '0.5 g'
-    """
-    from jointbench.station.calibrate import run_calibrate
-
-    found = run_calibrate(session, mass=mass, mass_sd=mass_sd, json_target=json)
-    return 0 if all(each.passed for each in found) else EXIT_QUALITY
 
 
 @app.command(name="report")
@@ -351,19 +313,3 @@ def recover_command(
     from jointbench.station.verify import run_recover
 
     run_recover(file, out=out, overwrite=force, json_target=json)
-
-
-@app.command(name="simulate")
-def simulate_command(
-    bench: Annotated[
-        str, typer.Argument(help="What stands on the bench.", metavar="URL")
-    ] = "sim:plates?speed=1&interval=2&port=31763",
-    debug: Debug = False,
-) -> None:
-    """Serve a simulated NI chassis for any program that uses nidaqmx over gRPC.
-
-    Example: jointbench simulate 'sim:plates?speed=1&interval=2&port=31763'
-    """
-    from jointbench.station.simulate import run_simulate
-
-    run_simulate(bench)

@@ -153,7 +153,7 @@ class NiStream:
         """
         task = self.chassis.task(f"jointbench-{self._segment}", self.sensors)
         try:
-            self.sample_rate = self._begin(task)
+            self.sample_rate = _begin(task, self.settings, self._trigger)
         except InstrumentError:
             task.close()
             raise
@@ -174,19 +174,31 @@ class NiStream:
 
     def pause(self) -> None:
         """Stop on purpose; what the device has made and nobody read is not wanted."""
-        self.count_if_there()
+        with suppress(InstrumentError):
+            self.count()
         self.counters.unwanted += self.counters.unread
         self.counters.unread = 0
         self.close()
         self._segment += 1
 
     def resume(self) -> None:
-        """Go on in a segment of its own.
+        """Start, as soon as the device is there.
 
         Raises:
-            InstrumentError: the device refuses, or does not come back.
+            InstrumentError: the device refuses, or does not come back in time.
         """
-        self._start_patiently()
+        settings = self.settings
+        since = settings.now()
+        while True:
+            try:
+                return self.start()
+            except ConnectionLost as error:
+                if settings.now() - since > settings.patience:
+                    raise InstrumentError(
+                        f"{error}; gave up after {settings.patience:g} s, what was "
+                        "recorded is safe"
+                    ) from error
+                settings.sleep(_RETRY)
 
     def items(self) -> Iterator[Block | Gap | Waiting]:
         """Yield blocks and gaps for as long as the stream is read.
@@ -222,31 +234,11 @@ class NiStream:
             self.counters.acquired = self._made_before + max(acquired, position)
             self.counters.unread = max(0, acquired - position)
 
-    def count_if_there(self) -> None:
-        """Bring the counters up to date unless the device went away."""
-        with suppress(InstrumentError):
-            self.count()
-
     def close(self) -> None:
         """Stop the task, if it is still there."""
         if self._task is not None:
             self._task.close()
             self._task = None
-
-    def _begin(self, task: AnalogTask) -> float:
-        settings, trigger = self.settings, self._trigger
-        if trigger is None:
-            buffer = round(settings.buffer * settings.sample_rate)
-            return task.start(
-                settings.sample_rate, buffer=max(buffer, 4 * settings.block)
-            )
-        return task.start_triggered(
-            settings.sample_rate,
-            samples=trigger.samples,
-            source=trigger.channel,
-            before=trigger.before,
-            level=trigger.level,
-        )
 
     def _read(self) -> Block | Waiting:
         assert self._task is not None, "start() comes first"
@@ -266,7 +258,7 @@ class NiStream:
         # The next one is armed before anybody is asked to hit.
         self.close()
         self._segment += 1
-        self._start_patiently()
+        self.resume()
         return block
 
     def _took(self, samples: FloatArray) -> Block:
@@ -307,20 +299,22 @@ class NiStream:
         since, first = self.settings.now(), self._position
         self.close()
         self._segment += 1
-        self._start_patiently()
+        self.resume()
         away = self.settings.now() - since
         return Gap("back", self._segment, first, 0, away, words)
 
-    def _start_patiently(self) -> None:
-        settings = self.settings
-        since = settings.now()
-        while True:
-            try:
-                return self.start()
-            except ConnectionLost as error:
-                if settings.now() - since > settings.patience:
-                    raise InstrumentError(
-                        f"{error}; gave up after {settings.patience:g} s, what was "
-                        "recorded is safe"
-                    ) from error
-                settings.sleep(_RETRY)
+
+def _begin(
+    task: AnalogTask, settings: StreamSettings, trigger: HardwareTrigger | None
+) -> float:
+    """Start the clock of a task and return its rate [Hz]."""
+    if trigger is None:
+        buffer = round(settings.buffer * settings.sample_rate)
+        return task.start(settings.sample_rate, buffer=max(buffer, 4 * settings.block))
+    return task.start_triggered(
+        settings.sample_rate,
+        samples=trigger.samples,
+        source=trigger.channel,
+        before=trigger.before,
+        level=trigger.level,
+    )
