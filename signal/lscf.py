@@ -293,7 +293,7 @@ def _denominator(matrix: Coefficients, n_inputs: int) -> Coefficients:
 
 def _solved(matrix: Coefficients, right: Coefficients) -> Coefficients:
     """Solve a system that is positive definite, but for rounding on exact data."""
-    (posv,) = scipy.linalg.get_lapack_funcs(("posv",), (matrix, right))
+    posv: Any = scipy.linalg.get_lapack_funcs("posv", (matrix, right))
     found, failed = posv(matrix, right, lower=True)[1:]
     if failed:
         found = scipy.linalg.solve(matrix, right, assume_a="her")

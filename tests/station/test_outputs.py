@@ -1,5 +1,6 @@
 """Results never destroy what they were made from."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -88,3 +89,16 @@ def test_the_same_hits_twice_are_no_repeat(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="same data"):
         refuse_twice([one, other])
     assert not (tmp_path / "a.csv.part").exists()
+
+
+def test_a_pipe_is_written_to_and_stays_a_pipe(tmp_path: Path) -> None:
+    """As the null device must: a file in its place would break the whole machine."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        write_text(pipe, "text")
+        assert os.read(reader, 10) == b"text"
+    finally:
+        os.close(reader)
+    assert pipe.is_fifo()
