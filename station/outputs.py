@@ -67,7 +67,7 @@ def check_folder(folder: Path, own: Sequence[str]) -> None:
 def write_text(path: Path, text: str) -> None:
     """Write a text so that it is there whole or not at all.
 
-    A device or a pipe, as the null device, is written to and never replaced by a file.
+    A device or a pipe (``/dev/null``) is written to: replacing it would destroy it.
     """
     if path.exists() and not path.is_file():
         path.write_text(text, encoding="utf-8")
