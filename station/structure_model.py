@@ -226,7 +226,11 @@ def _body(model: StructureModel, name: str, folder: Path) -> Body:
     mesh = _mesh(table, folder)
     if table.stiffness is not None and table.mass is not None:
         stiffness = read_matrix(folder / table.stiffness)
-        return matrix_body(name, mesh, stiffness, read_matrix(folder / table.mass))
+        mass = read_matrix(folder / table.mass)
+        loss = 0.0
+        if table.material is not None:
+            loss = model.materials[table.material].loss_factor
+        return matrix_body(name, mesh, stiffness, mass, loss_factor=loss)
     material = model.materials[table.material or ""]
     solid = Material(
         material.youngs_modulus,

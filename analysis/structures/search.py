@@ -196,6 +196,61 @@ def descend(problem: Problem, start: FloatArray, fixed: Sequence[int] = ()) -> O
     Returns:
         Where it ends.
     """
+    parts = states_apart(problem)
+    if len(parts) == 1:
+        return _descend(problem, start, fixed)
+    ends = []
+    for part, own in parts:
+        held = np.flatnonzero(np.isin(own, np.asarray(fixed, np.int64)))
+        ends.append(_descend(part, start[own], held.tolist()))
+    return _joined(problem, ends)
+
+
+def states_apart(problem: Problem) -> tuple[tuple[Problem, IntArray], ...]:
+    """Part a problem whose states share no unknown: each is a problem of its own.
+
+    Args:
+        problem: what is sought.
+
+    Returns:
+        Problems and the places of their unknowns among all; the whole one where states
+        share anything.
+    """
+    owners = [np.unique(row[row >= 0]) for row in problem.columns]
+    if len(owners) < 2 or sum(own.size for own in owners) > problem.size:
+        return ((problem, np.arange(problem.size)),)
+    parts = []
+    for at, own in enumerate(owners):
+        place = np.full(problem.size + 1, -1, np.int64)
+        place[own] = np.arange(own.size)
+        part = Problem(
+            problem.model,
+            (problem.evidence[at],),
+            place[problem.columns[at]][None],
+            problem.known[at][None],
+            tuple(problem.names[k] for k in own),
+            problem.damping[own],
+            problem.low[own],
+            problem.high[own],
+        )
+        parts.append((part, own))
+    return tuple(parts)
+
+
+def _joined(problem: Problem, ends: Sequence[Optimum]) -> Optimum:
+    """Put the ends of all states together."""
+    unknowns = np.empty(problem.size)
+    rows = sum(end.slopes.shape[0] for end in ends)
+    slopes, begin = np.zeros((rows, problem.size)), 0
+    for (_, own), end in zip(states_apart(problem), ends, strict=True):
+        unknowns[own] = end.unknowns
+        after = begin + end.slopes.shape[0]
+        slopes[begin:after, own] = end.slopes
+        begin = after
+    return Optimum(unknowns, sum(end.chi2 for end in ends), slopes)
+
+
+def _descend(problem: Problem, start: FloatArray, fixed: Sequence[int]) -> Optimum:
     free = np.setdiff1d(np.arange(problem.size), np.asarray(fixed, np.int64))
     base = np.clip(start, problem.low, problem.high)
     last: dict[bytes, tuple[FloatArray, FloatArray]] = {}
@@ -242,8 +297,27 @@ def find_optima(problem: Problem, *, starts: int, seed: int) -> tuple[Optimum, .
         seed: of the points.
 
     Returns:
-        Distinct ends.
+        Distinct ends. Where states share nothing each is searched on its own, and a
+        rival is another end of one state beside the best of all others.
     """
+    searched = [
+        _search(part, starts, seed + at)
+        for at, (part, _) in enumerate(states_apart(problem))
+    ]
+    if len(searched) == 1:
+        return searched[0]
+    best = [ends[0] for ends in searched]
+    rivals = [
+        _joined(problem, [*best[:at], rival, *best[at + 1 :]])
+        for at, ends in enumerate(searched)
+        for rival in ends[1:]
+    ]
+    rivals.sort(key=lambda end: end.chi2)
+    return (_joined(problem, best), *rivals)
+
+
+def _search(problem: Problem, starts: int, seed: int) -> tuple[Optimum, ...]:
+    """Search a problem as it is; see `find_optima`."""
     found = [descend(problem, start) for start in _starts(problem, starts, seed)]
     for one in sorted(found, key=lambda end: end.chi2)[:_FOLLOWED]:
         found += _open_ways(problem, one)
