@@ -18,30 +18,31 @@ NOTE = (
 _APART = 1.02
 
 
-def theory_table(
-    rows: Sequence[TheoryRow],
-) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Return heads and cells of the comparison."""
-    models = list(dict.fromkeys(name for row in rows for name in row.predicted))
-    heads = ["quantity", "state", "at", "identified", *models]
-    return tuple(heads), [
+HEADS = ("quantity", "state", "identified", "model", "predicted", "ratio", "overlap")
+
+
+def theory_table(rows: Sequence[TheoryRow]) -> list[tuple[str, ...]]:
+    """Return the cells of the comparison, a line for each model, under `HEADS`."""
+    order = list(JointQuantity)
+    ranked = sorted(rows, key=lambda row: (order.index(row.quantity), row.preload))
+    return [
         (
             f"{row.quantity.replace('_', ' ')} [{unit_of(row.quantity)}]",
-            row.state,
-            _at(row),
+            _state(row),
             _estimate(row.identified) + ("" if row.identifiable else ", open"),
-            *(_predicted(row, name) for name in models),
+            name,
+            *_predicted(row, one),
         )
-        for row in sorted(
-            rows, key=lambda one: (list(JointQuantity).index(one.quantity), one.preload)
-        )
+        for row in ranked
+        for name, one in row.predicted.items()
     ]
 
 
-def _at(row: TheoryRow) -> str:
-    if row.torque is None:
-        return f"{row.preload:.4g} N"
-    return f"{row.torque:.4g} N m, {row.preload:.4g} N"
+def _state(row: TheoryRow) -> str:
+    """Name a state by its torque or preload, whichever its label lacks."""
+    if row.torque is not None:
+        return f"{row.state}, {row.torque:.4g} N m"
+    return f"{row.state}, {row.preload:.4g} N"
 
 
 def _estimate(one: Estimate) -> str:
@@ -52,20 +53,20 @@ def _estimate(one: Estimate) -> str:
     return f"{one.value:.4g} ({low}–{high})"
 
 
-def _predicted(row: TheoryRow, name: str) -> str:
-    one = row.predicted.get(name)
+def _predicted(row: TheoryRow, one: Estimate | None) -> tuple[str, str, str]:
     if one is None:
-        return "-"
-    return f"{_estimate(one)}, x{one.value / row.identified.value:.3g}"
+        return ("-", "-", "-")
+    words = {True: "yes", False: "no", None: "-"}
+    ratio = f"{one.value / row.identified.value:.3g}"
+    return _estimate(one), ratio, words[row.identified.overlaps(one)]
 
 
 def show_theory(rows: Sequence[TheoryRow], json_target: str | None) -> None:
     """Print the comparison; nothing where there is none."""
     if not rows:
         return
-    heads, cells = theory_table(rows)
     screen = console(json_target)
-    screen.print(table(TITLE + ", x: predicted over identified", heads, cells))
+    screen.print(table(TITLE, HEADS, theory_table(rows)))
     screen.print(f"  {NOTE}", markup=False)
 
 
@@ -73,9 +74,8 @@ def theory_section(rows: Sequence[TheoryRow]) -> Section | None:
     """Return the section of the page: the table, and a plot of each quantity."""
     if not rows:
         return None
-    heads, cells = theory_table(rows)
     items: list[Item] = [
-        DataTable(TITLE + "; x: predicted over identified.", heads, tuple(cells)),
+        DataTable(TITLE, HEADS, tuple(theory_table(rows)), frozenset({"no"})),
         Text(NOTE),
     ]
     for quantity in JointQuantity:
