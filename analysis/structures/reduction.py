@@ -187,7 +187,8 @@ class _Space:
     def add(self, new: FloatArray) -> None:
         """Append orthonormal columns."""
         mass = self.structure.mass @ new
-        bodies = self.structure.stiffness @ new + self.factors.shift * mass
+        bodies = self.structure.stiffness @ new + self.structure.glue @ new
+        bodies += self.factors.shift * mass
         joints = [
             scale * (spread @ new)
             for scale, spread in zip(self.scale, self.structure.spread, strict=True)
