@@ -18,13 +18,9 @@ from scipy.sparse.linalg import splu
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
 from jointbench.analysis.structures.evidence import Evidence
+from jointbench.analysis.structures.problem import pose_problem, residuals
 from jointbench.analysis.structures.reduction import reduce_structure
-from jointbench.analysis.structures.search import (
-    descend,
-    find_optima,
-    pose_problem,
-    residuals,
-)
+from jointbench.analysis.structures.search import descend, find_optima
 from jointbench.analysis.structures.sensors import readout, sensor_rows
 from jointbench.analysis.structures.structure import Structure
 from jointbench.signal.frf import Frf, FrfKind

@@ -15,12 +15,8 @@ from jointbench.analysis.structures.predict import (
     predict_frf,
     predict_modes,
 )
+from jointbench.analysis.structures.problem import pose_problem, residuals, states_apart
 from jointbench.analysis.structures.reduced import ReducedModel
-from jointbench.analysis.structures.search import (
-    pose_problem,
-    residuals,
-    states_apart,
-)
 from jointbench.analysis.structures.structure import Structure
 from jointbench.signal.frf import Frf, FrfKind
 
