@@ -17,10 +17,10 @@ from jointbench.station.bench_commands import (
 )
 from jointbench.station.contact_command import contact_command
 from jointbench.station.exit_codes import EXIT_QUALITY, exit_code
+from jointbench.station.identify_command import identify_command
 from jointbench.station.options import (
     GAP_HELP,
     Band,
-    Cache,
     Columns,
     Debug,
     Drop,
@@ -37,7 +37,6 @@ from jointbench.station.options import (
     Point,
     Preload,
     Results,
-    Sessions,
     Universal,
 )
 from jointbench.station.profile_command import profile_command
@@ -189,25 +188,7 @@ app.command(name="simulate")(simulate_command)
 app.command(name="contact")(contact_command)
 
 
-@app.command(name="identify")
-def identify_command(
-    model: Annotated[Path, typer.Argument(help="Bench or structure model, TOML.")],
-    sessions: Sessions = None,
-    band: Band = None,
-    cache: Cache = None,
-    report: Page = None,
-    json: Json = None,
-    debug: Debug = False,
-) -> int:
-    """Identify joints: of a lumped bench [links], or of meshed bodies [joints].
-
-    Example: jointbench identify bench.toml session.h5 --json joint.json
-    """
-    from jointbench.station.identify import identify_any
-
-    places = {"cache": cache, "report": report}
-    fits = identify_any(model, sessions or [], band=band, json_target=json, **places)
-    return 0 if fits else EXIT_QUALITY
+app.command(name="identify")(identify_command)
 
 
 @app.command(name="gap")

@@ -64,3 +64,7 @@ GeometryFile = Annotated[
 Page = Annotated[Path | None, typer.Option(help="HTML page to write.")]
 Cache = Annotated[Path | None, typer.Option(help="Folder of reduced structures.")]
 Sessions = Annotated[list[Path] | None, typer.Argument(help="Session files.")]
+Faces = Annotated[
+    list[Path] | None,
+    typer.Option("--surface", help="Face of the joint, for [contact]; once or twice."),
+]
