@@ -10,6 +10,7 @@ from jointbench.signal.fractal_gls import (
     GlsFit,
     Model,
     Weights,
+    by_own_weights,
     fit_model,
     settle,
     weigh,
@@ -201,7 +202,8 @@ def _choose_instrument(
     both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
     gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
     if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
-        return plain, _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
+        doubt = _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
+        return by_own_weights(problem, plain), doubt
     richest = settle(problem, both.model, both.seen)
     if richest.probability < HOPELESS_PROBABILITY:
         return richest, _no_doubt()
