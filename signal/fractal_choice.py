@@ -15,11 +15,14 @@ from jointbench.signal.fractal_gls import (
     settle,
     weigh,
 )
+from jointbench.signal.fractal_long_lags import long_lag_probability
 from jointbench.signal.fractal_problem import FractalProblem
 from jointbench.signal.self_affine import InstrumentModel, rolled_off
 
 ACCEPT_PROBABILITY = 0.01
 """A model is accepted if a true one would fit worse at least this often [-]."""
+ACCEPT_LONG_PROBABILITY = 0.002
+"""The same of values at long lags by themselves [-]."""
 HOPELESS_PROBABILITY = 1e-6
 """Where the richest model fits with a smaller chance, simpler ones need no trial."""
 ONE_MORE = 7.88
@@ -57,12 +60,14 @@ class Choice:
         covariance: of `law`, with what the unproven instrument would move it; on a map
             no less than the scatter of its strips, shape (2, 2).
         problem: what was fitted.
+        long_probability: chance of values at long lags as far off as they are [-].
     """
 
     fit: GlsFit
     law: FloatArray
     covariance: FloatArray
     problem: FractalProblem
+    long_probability: float
 
     @property
     def dimension(self) -> float:
@@ -77,7 +82,10 @@ class Choice:
     @property
     def accepted(self) -> bool:
         """Whether the model describes the values within their scatter."""
-        return self.fit.probability >= ACCEPT_PROBABILITY
+        return (
+            self.fit.probability >= ACCEPT_PROBABILITY
+            and self.long_probability >= ACCEPT_LONG_PROBABILITY
+        )
 
     @property
     def ends_early(self) -> bool:
@@ -166,18 +174,18 @@ def choose(problem: FractalProblem) -> Choice:
         below zero, chance brings a gain in about half of what chi-squared says: Self
         and Liang, J. Am. Stat. Assoc. 82 (1987) 605.
     """
-    endless, doubt = _choose_instrument(problem, rolls_off=False)
-    nearest = Model(endless.model.instrument, rolls_off=True)
+    endless = _chosen(problem, *_choose_instrument(problem, rolls_off=False))
+    criterion = endless.fit.likelihood_criterion
+    nearest = Model(endless.fit.model.instrument, rolls_off=True)
     # A plateau at long lags lies in the short tail of a skewed spread: only weights of
     # its own tell it, so likelihoods are compared, determinants included.
-    glance = settle(problem, nearest, endless.seen)
-    if endless.likelihood_criterion - glance.likelihood_criterion < CLEAR_CORNER:
-        return _chosen(problem, endless, doubt)
+    glance = settle(problem, nearest, endless.fit.seen)
+    if endless.accepted and criterion - glance.likelihood_criterion < CLEAR_CORNER:
+        return endless
     cornered = _chosen(problem, *_choose_instrument(problem, rolls_off=True))
-    gain = endless.likelihood_criterion - cornered.fit.likelihood_criterion
-    if gain > CLEAR_CORNER and cornered.ends_early:
-        return cornered
-    return _chosen(problem, endless, doubt)
+    clear = criterion - cornered.fit.likelihood_criterion > CLEAR_CORNER
+    better = clear or (cornered.accepted and not endless.accepted)
+    return cornered if better and cornered.ends_early else endless
 
 
 def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
@@ -274,6 +282,7 @@ def _chosen(problem: FractalProblem, fit: GlsFit, doubt: _Doubt) -> Choice:
         law=fit.parameters[:2] + doubt.shift,
         covariance=covariance * max(1.0, strips**2),
         problem=problem,
+        long_probability=long_lag_probability(problem, fit),
     )
 
 
