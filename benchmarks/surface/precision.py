@@ -15,12 +15,12 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.surfaces import Profile
 from jointbench.signal.fractal import fit_fractal
 from jointbench.signal.structure_function import structure_function
+from jointbench.signal.surface_verdict import SurfaceVerdict
 from jointbench.simulators.rough_surface import rough_profile
 
 POINTS = 20_000
 SPACING = 1e-7  # [m]
 STEP = 20e-9  # standard deviation of neighbouring heights' difference [m]
-NOISE = 10e-9  # [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +32,24 @@ class Setting:
     right: str
 
 
+HEAD = (
+    "instrument",
+    "D",
+    "profiles",
+    "bias",
+    "sd",
+    "Cramer-Rao",
+    "sd over it",
+    "stated sd",
+    "2-sigma coverage",
+    "right model",
+    "without D",
+    "fractal over all lags",
+)
 SETTINGS = {
     "clean": Setting(0.0, 0.0, "none"),
     "noise": Setting(0.0, STEP, "noise"),
+    "little noise": Setting(0.0, 0.3 * STEP, "noise"),
     "point spread": Setting(4.0, 0.0, "point spread"),
     "both": Setting(4.0, 5e-9, "point spread and noise"),
 }
@@ -72,11 +87,12 @@ def measured(dimension: float, setting: Setting, seed: int) -> Profile:
 
 def line(name: str, dimension: float, seeds: range) -> str:
     """Return one line of the table."""
-    setting, found, models = SETTINGS[name], [], Counter[str]()
+    setting, found, models, whole = SETTINGS[name], [], Counter[str](), 0
     for seed in seeds:
         profile = measured(dimension, setting, seed)
         fit = fit_fractal(structure_function(profile))
         models[fit.instrument] += 1
+        whole += fit.verdict is SurfaceVerdict.FRACTAL
         if fit.scaling is not None:
             found.append((fit.scaling.dimension, fit.scaling.dimension_sd))
     value, stated = np.array(found).T
@@ -93,6 +109,7 @@ def line(name: str, dimension: float, seeds: range) -> str:
         f"{100 * np.mean(np.abs(value - dimension) < 2 * stated):.1f} %",
         f"{100 * models[setting.right] / len(seeds):.1f} %",
         f"{len(seeds) - len(found)}",
+        f"{100 * whole / len(seeds):.1f} %",
     )
     return "| " + " | ".join(cells) + " |"
 
@@ -104,6 +121,7 @@ def main() -> None:
     parser.add_argument("--dimension", type=float, nargs="+", default=[1.3, 1.5, 1.7])
     parser.add_argument("--seeds", type=int, default=100)
     asked = parser.parse_args()
+    print("| " + " | ".join(HEAD) + " |\n" + "|---" * len(HEAD) + "|")
     for dimension in asked.dimension:
         print(line(asked.setting, dimension, range(asked.seeds)), flush=True)
 
