@@ -33,9 +33,11 @@ TWO_MORE = 11.4
 CAST_DOUBT = {1: 0.8, 2: 5.0}
 """Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
 limits cover more of the noise that cannot be proven, and widen more clean profiles."""
-EVEN = {1: 6.0, 2: 12.0}
+EVEN = {1: 8.0, 2: 14.0}
 """Gain by so many more parameters at which both models weigh alike in D [-]. With
 Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
+SETTLED_WEIGHT = 0.999
+"""Weight of the larger model in D from which the smaller has no say [-]."""
 DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
 CLEAR_CORNER = 9.0
@@ -232,6 +234,9 @@ def _choose_instrument(
         accepted = fit.probability >= ACCEPT_PROBABILITY
         if stands and accepted and (better or best is richest):
             best, doubt = fit, _doubt(small, rival)
+    known = {kinds.NOISE: noisy, kinds.PSF_AND_NOISE: both}
+    if best.model.instrument in known:
+        doubt = _held_back(plain, known[best.model.instrument], best, doubt)
     return best, doubt
 
 
@@ -266,11 +271,37 @@ def _doubt(small: GlsFit, large: GlsFit) -> _Doubt:
     gain = small.chi2 - large.chi2
     if gain < CAST_DOUBT[more]:
         return _no_doubt()
-    weight = float(1 / (1 + np.exp((EVEN[more] - gain) / 2)))
+    weight = _weight(small, large)
     apart = large.parameters[:2] - small.parameters[:2]
     widened = large.covariance[:2, :2] - small.covariance[:2, :2]
     left = (1 - weight) * apart
     return _Doubt(weight * apart, weight * widened + np.outer(left, left))
+
+
+def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: _Doubt) -> _Doubt:
+    """Return the doubt of a model that is only just proven.
+
+    Without it D would leap where the gain passes its limit, and the few clean profiles
+    that chance takes there would rule the scatter of all.
+
+    Args:
+        plain: without instrument.
+        large: the model of `best` by the weights of `plain`.
+        best: the model that was taken.
+        doubt: what a still larger model does.
+    """
+    weight = _weight(plain, large)
+    if weight > SETTLED_WEIGHT:
+        return doubt
+    back = (1 - weight) * (plain.parameters[:2] - best.parameters[:2])
+    return _Doubt(doubt.shift + back, doubt.covariance + np.outer(back, back))
+
+
+def _weight(small: GlsFit, large: GlsFit) -> float:
+    """Return the weight of the larger of two models with the same weights of lags."""
+    more = large.parameters.size - small.parameters.size
+    excess = small.chi2 - large.chi2 - EVEN[more]
+    return float(1 / (1 + np.exp(-min(excess, 100.0) / 2)))
 
 
 def _chosen(problem: FractalProblem, fit: GlsFit, doubt: _Doubt) -> Choice:
