@@ -141,7 +141,7 @@ def weigh(
     # A poor start may lose all to levelling; the values themselves then stand in.
     reference = np.where(reference > 0, reference, problem.estimate.value)
     own = problem.scatter(at) if scatter is None else scatter
-    return Weights(reference, _root(own + problem.misfit(at)))
+    return Weights(reference, lower_root(own + problem.misfit(at)))
 
 
 def fit_model(
@@ -203,7 +203,7 @@ def by_own_weights(problem: FractalProblem, fit: GlsFit) -> GlsFit:
     return replace(fit, chi2=float(white @ white), log_determinant=own.log_determinant)
 
 
-def _root(covariance: FloatArray) -> FloatArray:
+def lower_root(covariance: FloatArray) -> FloatArray:
     """Return the lower Cholesky root, with as little added variance as it takes.
 
     On very smooth surfaces neighbouring lags tell the same to more digits than the

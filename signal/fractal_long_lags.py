@@ -6,11 +6,11 @@ short of it once only, so that in linear residuals a plateau weighs little.
 """
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import solve_triangular
 from scipy.stats import chi2
 
 from jointbench.acquisition.arrays import IntArray
-from jointbench.signal.fractal_gls import GlsFit
+from jointbench.signal.fractal_gls import GlsFit, lower_root
 from jointbench.signal.fractal_problem import FractalProblem
 
 LAGS = 4
@@ -40,8 +40,8 @@ def long_lag_probability(problem: FractalProblem, fit: GlsFit) -> float:
     misfit = problem.misfit(fit.seen)[np.ix_(keep, keep)]
     share = problem.estimate.value[keep] / predicted
     gap = 3 * (np.cbrt(share) - 1) + np.diag(scatter) / 3
-    distance = gap @ cho_solve(cho_factor(scatter + misfit), gap)
-    return float(chi2.sf(distance, keep.size))
+    white = solve_triangular(lower_root(scatter + misfit), gap, lower=True)
+    return float(chi2.sf(float(white @ white), keep.size))
 
 
 def _spaced(problem: FractalProblem) -> IntArray:

@@ -16,7 +16,7 @@ HIGHEST_DEGREE = 8
 """Higher polynomials take roughness for form [-]."""
 OUTLIER_LIMIT = 6.0
 """Distance from the median of its neighbours that makes an outlier, over the robust
-standard deviation of all such distances [-]."""
+standard deviation of the differences of neighbours [-]."""
 NEIGHBOURHOOD = 5
 """Points across the neighbourhood of a point [-]."""
 NORMAL_MEDIAN = 1.4826
@@ -74,7 +74,7 @@ def mask_outliers(surface: Surface, *, limit: float = OUTLIER_LIMIT) -> Surface:
     Args:
         surface: a profile or a map.
         limit: distance from the median of the neighbours, in robust standard
-            deviations of all such distances [-].
+            deviations of the differences of neighbours [-].
 
     Returns:
         The surface with outliers no longer valid (height 0), and one more step
@@ -90,7 +90,8 @@ def mask_outliers(surface: Surface, *, limit: float = OUTLIER_LIMIT) -> Surface:
     others[(NEIGHBOURHOOD // 2,) * filled.ndim] = False
     middle = scipy.ndimage.median_filter(filled, footprint=others, mode="nearest")
     apart = np.abs(filled - middle)
-    spread = NORMAL_MEDIAN * float(np.median(apart[surface.valid]))
+    steps = np.abs(np.diff(filled))[surface.valid[..., 1:] & surface.valid[..., :-1]]
+    spread = NORMAL_MEDIAN * float(np.median(steps)) if steps.size else 0.0
     far = surface.valid & (apart > limit * spread) & (spread > 0)
     note = step("mask_outliers", limit=limit, masked=int(np.count_nonzero(far)))
     return replace(
