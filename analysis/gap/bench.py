@@ -75,6 +75,11 @@ class Bench(Protocol):
         """The groups that are held out one at a time."""
         ...
 
+    @property
+    def expanded(self) -> bool:
+        """Whether the model is expanded about a fit, so that others fit less well."""
+        ...
+
     def scale(self, word: str) -> float:
         """Return the bench's scale of that word [SI]."""
         ...

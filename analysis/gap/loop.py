@@ -17,7 +17,7 @@ from jointbench.analysis.gap.screening import Screening, screen
 REFINEMENTS = 12
 SETTLED = 0.5
 """Change of the cost below which noise, scatter and fit agree with each other."""
-REJUDGED = 5
+REJUDGED = 12
 AGREED = 2.0
 """Change of a winner's cost below which it agrees with the noise estimated at it."""
 OVERTAKEN = 2
@@ -68,7 +68,7 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     if first.passed:
         return Outcome(bench, base, first, screening, base, first, (), (base,))
     fits = race(bench, base, screening, bench.candidates, progress)
-    refined, fits, judged = judge(bench, fits, base, progress)
+    refined, fits, judged = judge(bench, fits, base, progress, screening)
     for count in range(1, MOST_EFFECTS):
         if judged.passed or not fits or len(fits[0].candidates) < count:
             break
@@ -110,32 +110,108 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
 
 
 def judge(
-    bench: Bench, fits: Sequence[Fit], base: Fit, progress: Progress
+    bench: Bench,
+    fits: Sequence[Fit],
+    base: Fit,
+    progress: Progress,
+    hopes: Screening | None = None,
 ) -> tuple[Bench, list[Fit], Gate]:
     """Estimate the noise at the winner, refit the leaders there and judge.
 
     Noise, scatter and settling of the hits are known no better than the fit at which
     they were estimated, so they and the winner are brought to agree. Rivals are then
-    fitted with the same noise; one that overtakes is judged in its turn.
+    fitted with the same noise; one that overtakes is judged in its turn. Where the
+    winner fails, those that were held back are settled each by itself.
     """
     if not fits:
         return bench, [], gate(bench, base, base, None)
     ranked = list(fits)
     for _ in range(OVERTAKEN):
-        bench, best = _settled(bench, ranked[0], progress)
-        left = screen(bench, best, _others(bench, best))
-        judged = gate(bench, best, base, left, ranked)
-        close = score(bench, ranked[0]) + (CLOSE if judged.passed else CLOSE_FAILED)
-        ranked = [best] + [
+        found = _judged(bench, ranked, base, progress)
+        if hopes is not None and not found.gate.passed:
+            found = _own_settling(found, ranked, base, hopes, progress)
+        bench = found.bench
+        reach = CLOSE if found.gate.passed else CLOSE_FAILED
+        close = score(bench, found.first) + reach
+        ranked = [found.fit] + [
             finish(bench, make_problem(bench, f.candidates), f.x, progress)
-            if score(bench, f) < close
+            if score(bench, f) < close or _part_of(f, found.fit)
             else f
-            for f in ranked[1:]
+            for f in ranked
+            if f is not found.first
         ]
         ranked.sort(key=lambda f: score(bench, f))
-        if ranked[0] is best:
+        if ranked[0] is found.fit:
             break
-    return bench, ranked, gate(bench, ranked[0], base, left, ranked)
+    return bench, ranked, gate(bench, ranked[0], base, found.left, ranked)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Judged:
+    """A fit before and after it was settled, its bench, directed tests and gate."""
+
+    first: Fit
+    fit: Fit
+    bench: Bench
+    left: Screening
+    gate: Gate
+
+
+def _judged(
+    bench: Bench, ranked: Sequence[Fit], base: Fit, progress: Progress
+) -> _Judged:
+    """Settle the first of some fits and judge it."""
+    bench, fit = _settled(bench, ranked[0], progress)
+    left = screen(bench, fit, _others(bench, fit))
+    return _Judged(ranked[0], fit, bench, left, gate(bench, fit, base, left, ranked))
+
+
+def _own_settling(
+    failed: _Judged,
+    ranked: Sequence[Fit],
+    base: Fit,
+    hopes: Screening,
+    progress: Progress,
+) -> _Judged:
+    """Return the first of those held back that passes by itself, or what failed.
+
+    What scatters cannot be told where a fit misses by more than noise.
+    """
+    if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
+        return failed
+    for f in _held_back(failed, ranked, base, hopes):
+        rest = [r for r in ranked if r is not f]
+        found = _judged(failed.bench, [f, *rest], base, progress)
+        if found.gate.passed:
+            return found
+    return failed
+
+
+def _held_back(
+    failed: _Judged, ranked: Sequence[Fit], base: Fit, hopes: Screening
+) -> list[Fit]:
+    """Return the fits of which their directed tests foretold more than was gained.
+
+    An expansion about another fit holds back one that differs from it.
+    """
+    gained = base.cost - failed.first.cost
+    foretold = {
+        c.label: d.drop for d in reversed(hopes.directions) for c in [d.candidate]
+    }
+    return [
+        f
+        for f in ranked
+        if f is not failed.first and foretold[f.candidates[-1].label] > gained
+    ]
+
+
+def _part_of(fewer: Fit, more: Fit) -> bool:
+    """Tell whether a fit is another one without some of its effects.
+
+    What an effect is worth is read from such a fit, so its noise must be the same.
+    """
+    labels = {c.label for c in more.candidates}
+    return {c.label for c in fewer.candidates} < labels
 
 
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:

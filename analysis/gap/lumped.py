@@ -69,6 +69,11 @@ class LumpedBench:
         """Prior sd of log(parameter / nominal), shape (n_base,)."""
         return self.campaign.model.spread
 
+    @property
+    def expanded(self) -> bool:
+        """Whether the model is expanded about the settling of each hit."""
+        return self.settled is not None
+
     def scale(self, word: str) -> float:
         """Return the scale of a word [SI]; ``a/b^2`` and products are understood."""
         if word not in self.scales:
@@ -142,12 +147,13 @@ class LumpedBench:
         """Return the log of the joint's stiffness that the settling was added to.
 
         It goes with the scale of all other masses and stiffnesses: one scale for all
-        changes no frequency, and so must not bend either.
+        changes no frequency, and so must not bend either. Their median is that scale;
+        a mean would move when a single mass hands its share to an added one.
         """
         model = self.campaign.model
         count = len(model.bodies) + len(model.links)
         others = np.arange(count) != self.joint_at
-        scale = np.mean((base - settled.anchor)[:count][others])
+        scale = np.median((base - settled.anchor)[:count][others])
         return float(settled.anchor[self.joint_at] + scale)
 
     @property

@@ -51,6 +51,11 @@ class Curve:
         """Everything is of order one."""
         return 1.0
 
+    @property
+    def expanded(self) -> bool:
+        """Tell that the curve is exact everywhere."""
+        return False
+
     def phases(self, candidate: Candidate) -> int:
         """No effect has a phase."""
         return 0
