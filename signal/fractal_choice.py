@@ -30,7 +30,7 @@ ONE_MORE = 7.88
 all tests together take a larger model by chance in 1 % at the most."""
 TWO_MORE = 11.4
 """The same for two more parameters, in a third of a percent [-]."""
-CAST_DOUBT = {1: 0.8, 2: 5.0}
+CAST_DOUBT = {1: 1.5, 2: 5.0}
 """Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
 limits cover more of the noise that cannot be proven, and widen more clean profiles."""
 EVEN = {1: 8.0, 2: 14.0}

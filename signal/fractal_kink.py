@@ -113,6 +113,6 @@ def _knots(problem: FractalProblem, omega: FloatArray) -> FloatArray:
 
 def _left(design: FloatArray, gap: FloatArray) -> tuple[float, FloatArray]:
     """Return the squares that a linear fit leaves, and its coefficients."""
-    found = np.linalg.lstsq(design, gap, rcond=None)[0]
+    found: FloatArray = np.asarray(np.linalg.lstsq(design, gap, rcond=None)[0], float)
     rest = gap - design @ found
     return float(rest @ rest), found

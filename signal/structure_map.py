@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.arrays import FloatArray, freeze, require_shape
+from jointbench.acquisition.arrays import FloatArray, IntArray, freeze, require_shape
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.surfaces import Areal, Surface
 from jointbench.signal.preparation import level
@@ -105,7 +105,7 @@ def _correlated(
 
 
 def _direct(
-    heights: FloatArray, known: FloatArray, place: FloatArray, lags: tuple[int, ...]
+    heights: FloatArray, known: FloatArray, place: IntArray, lags: tuple[int, ...]
 ) -> float:
     """Return the sum of squared differences of one lag."""
     steps = [int(k) for k in place]
