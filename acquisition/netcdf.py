@@ -305,6 +305,8 @@ def _chunks(shape: tuple[int, ...]) -> tuple[int, ...]:
 def _require_free(path: Path, overwrite: bool) -> None:
     if path.is_dir():
         raise UsageError(f"{named(path)} is a folder; name a file in it")
+    if path.exists() and not path.is_file():
+        raise UsageError(f"{named(path)} is no file; name one that may be written")
     if not overwrite and path.exists():
         raise UsageError(
             f"{named(path)} is there already; choose another name, or say that it may "

@@ -65,7 +65,13 @@ def check_folder(folder: Path, own: Sequence[str]) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text so that it is there whole or not at all."""
+    """Write a text so that it is there whole or not at all.
+
+    A device or a pipe (``/dev/null``) is written to: replacing it would destroy it.
+    """
+    if path.exists() and not path.is_file():
+        path.write_text(text, encoding="utf-8")
+        return
     part = path.with_name(path.name + ".part")
     part.write_text(text, encoding="utf-8")
     os.replace(part, path)  # noqa: PTH105 - replaces on Windows too, Path.rename not

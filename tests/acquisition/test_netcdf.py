@@ -1,5 +1,8 @@
 """netCDF-compatible HDF5: what is written is what any reader gets."""
 
+import os
+from pathlib import Path
+
 import h5py
 import numpy as np
 import pytest
@@ -184,3 +187,16 @@ def test_a_path_that_leads_nowhere_is_refused_in_plain_words(tmp_path):
         pass
     assert "errno" not in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes on this system")
+def test_a_pipe_is_never_replaced_by_a_file(tmp_path: Path) -> None:
+    """Not even where files may be overwritten."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with (
+        pytest.raises(UsageError, match="is no file"),
+        new_file(pipe, schema="x/1", title="x", overwrite=True),
+    ):
+        pass
+    assert pipe.is_fifo()

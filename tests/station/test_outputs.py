@@ -1,5 +1,6 @@
 """Results never destroy what they were made from."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -88,3 +89,16 @@ def test_the_same_hits_twice_are_no_repeat(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="same data"):
         refuse_twice([one, other])
     assert not (tmp_path / "a.csv.part").exists()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes on this system")
+def test_a_pipe_is_written_to_and_not_replaced(tmp_path: Path) -> None:
+    """What reads from a pipe gets the text, and the pipe is still one."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    write_text(pipe, "42 N/m")
+    told = os.read(reading, 100)
+    os.close(reading)
+    assert told == b"42 N/m"
+    assert pipe.is_fifo()
