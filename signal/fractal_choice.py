@@ -291,7 +291,8 @@ def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: _Doubt) -> _Do
         doubt: what a still larger model does.
     """
     weight = _weight(plain, large)
-    if weight > SETTLED_WEIGHT:
+    # Where `plain` is far off its weights tell nothing of the larger model either.
+    if weight > SETTLED_WEIGHT or large.chi2 >= plain.chi2:
         return doubt
     back = (1 - weight) * (plain.parameters[:2] - best.parameters[:2])
     return _Doubt(doubt.shift + back, doubt.covariance + np.outer(back, back))
@@ -301,7 +302,7 @@ def _weight(small: GlsFit, large: GlsFit) -> float:
     """Return the weight of the larger of two models with the same weights of lags."""
     more = large.parameters.size - small.parameters.size
     excess = small.chi2 - large.chi2 - EVEN[more]
-    return float(1 / (1 + np.exp(-min(excess, 100.0) / 2)))
+    return float(1 / (1 + np.exp(-np.clip(excess, -100.0, 100.0) / 2)))
 
 
 def _chosen(problem: FractalProblem, fit: GlsFit, doubt: _Doubt) -> Choice:
