@@ -9,6 +9,7 @@ The grammar, one item a column, joined by commas::
     time:ms,force:V@2.248mV/N,acceleration.a1@3:V@10mV/g,acceleration.a2@4:V@10mV/g
     x:mm,y:mm,z:um!-25400       heights where -25400 means "no point here"
     time:s,-,force:N            a column that is not wanted
+    z:um@0.5um                  heights alone, 0.5 um apart
 """
 
 import re
@@ -22,6 +23,7 @@ from jointbench.acquisition.units import (
     example_unit,
     is_unit,
     parse_sensitivity,
+    parse_value,
     to_si,
 )
 
@@ -54,6 +56,8 @@ class Column:
         point: where the sensor sits; empty if not given.
         sensitivity: [V per SI unit] where the unit is a voltage, else None.
         code: number that stands for a missing value [unit], or None.
+        spacing: distance of neighbouring heights [m], of a column z that stands
+            without x, or None.
     """
 
     role: str
@@ -62,6 +66,7 @@ class Column:
     point: str = ""
     sensitivity: float | None = None
     code: float | None = None
+    spacing: float | None = None
 
     @property
     def factor(self) -> float:
@@ -124,8 +129,13 @@ def _parse_item(item: str) -> Column:
         unit=match["unit"].strip(),
         label=(match["label"] or "").strip(),
         point=(match["point"] or "").strip(),
-        sensitivity=_sensitivity(item, role, match["unit"], match["sensitivity"]),
+        sensitivity=None
+        if role == "z"
+        else _sensitivity(item, role, match["unit"], match["sensitivity"]),
         code=_code(item, match["code"]),
+        spacing=_spacing(item, match["unit"], match["sensitivity"])
+        if role == "z"
+        else None,
     )
 
 
@@ -158,6 +168,23 @@ def _sensitivity(item: str, role: str, unit: str, given: str | None) -> float | 
         return parse_sensitivity(given, kind)
     except UnitError as error:
         raise UnitError(f"column {item!r}: {error}") from error
+
+
+def _spacing(item: str, unit: str, given: str | None) -> float | None:
+    """Return the distance of heights [m], after checking their unit."""
+    _require_unit(item, unit, "length")
+    if given is None:
+        return None
+    try:
+        spacing = parse_value(given, "length")
+    except UnitError as error:
+        raise UnitError(f"column {item!r}: {error}") from error
+    if not 0 < spacing < 1:
+        raise UnitError(
+            f"column {item!r}: a distance of {given.strip()!r} between heights must be "
+            "above zero and below a metre; write for example z:um@0.5um"
+        )
+    return spacing
 
 
 def _require_unit(item: str, unit: str, kind: str) -> None:

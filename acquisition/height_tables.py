@@ -3,11 +3,10 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.arrays import BoolArray, FloatArray, IntArray
+from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.acquisition.columns import (
     SURFACE_EXAMPLES,
     Column,
@@ -21,16 +20,13 @@ from jointbench.acquisition.errors import (
     UsageError,
 )
 from jointbench.acquisition.even_steps import fit_even_steps
+from jointbench.acquisition.height_grid import grid_axis, require_single
 from jointbench.acquisition.records import Provenance, Step, step
 from jointbench.acquisition.surfaces import Areal, Profile, Surface
 from jointbench.acquisition.tables import Table, split_row
 from jointbench.acquisition.text_files import named, shown
 from jointbench.acquisition.units import is_unit
 
-# A coordinate may lie this far from its grid line [step], and two readings nearer
-# than `_SAME_LINE` of a typical step are the same line.
-_OFF_GRID = 0.25
-_SAME_LINE = 0.5
 _LEAST_FILLED = 0.5
 _AREAL_COLUMNS = 3
 _COUNTERS = frozenset({"index", "no", "no.", "#", "n", "i"})
@@ -44,21 +40,6 @@ _FAR_OUTSIDE = 5.0
 _KNOWN_CODES = (-25400.0, -25.4, -9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30)
 
 
-@dataclass(frozen=True, slots=True)
-class _Axis:
-    """Grid lines of one coordinate.
-
-    Attributes:
-        index: number of the grid line of each point, shape (n,).
-        count: number of grid lines.
-        step: their distance [unit of the file].
-    """
-
-    index: IntArray
-    count: int
-    step: float
-
-
 def surface_columns(spec: str) -> tuple[Column, ...]:
     """Read ``--columns`` of a table of heights; see `parse_columns`.
 
@@ -68,13 +49,18 @@ def surface_columns(spec: str) -> tuple[Column, ...]:
     """
     columns = parse_columns(spec)
     only_roles(columns, ("x", "y", "z"), "a table of heights")
+    spaced = any(column.spacing is not None for column in columns)
     roles = {column.role for column in columns}
     for role in ("x", "z"):
-        if role not in roles:
+        if role not in roles and not (role == "x" and spaced and "y" not in roles):
             raise UsageError(
                 f"--columns {spec!r} names no {role!r}; write for example "
                 + " or ".join(repr(example) for example in SURFACE_EXAMPLES)
             )
+    if spaced and "x" in roles:
+        raise UsageError(
+            f"--columns {spec!r} names x and a distance of heights; leave one out"
+        )
     return columns
 
 
@@ -147,9 +133,22 @@ def surface_from_table(
         table.require_sane(place[role], columns[place[role]].factor, role)
     heights, valid = _heights(table, place["z"], columns[place["z"]])
     provenance = (origin, _describe(table, columns, valid))
+    if "x" not in place:
+        return Profile(
+            name=name,
+            heights=heights,
+            spacing=_given_spacing(columns),
+            valid=valid,
+            provenance=provenance,
+        )
     if "y" in place:
         return _areal(table, columns, place, heights, valid, provenance, name)
     return _profile(table, columns, place["x"], heights, valid, provenance, name)
+
+
+def _given_spacing(columns: Sequence[Column]) -> float:
+    """Return the distance of heights that stand without x [m]."""
+    return next(c.spacing for c in columns if c.spacing is not None)
 
 
 def _what_to_type(table: Table) -> str:
@@ -271,7 +270,7 @@ def _areal(
     name: str,
 ) -> Surface:
     """Sort points onto the grid that their coordinates form."""
-    axes = {role: _axis(table, place[role], role) for role in ("y", "x")}
+    axes = {role: grid_axis(table, place[role], role) for role in ("y", "x")}
     shape = (axes["y"].count, axes["x"].count)
     if heights.size < _LEAST_FILLED * shape[0] * shape[1]:
         raise FormatError(
@@ -280,7 +279,7 @@ def _areal(
             "regular grid, or name the columns in their right order"
         )
     cell = axes["y"].index * shape[1] + axes["x"].index
-    _require_single(table, cell)
+    require_single(table, cell)
     grid, mask = np.zeros(shape), np.zeros(shape, dtype=np.bool_)
     grid.flat[cell] = heights
     mask.flat[cell] = valid
@@ -301,67 +300,3 @@ def _areal(
         valid=mask,
         provenance=(*provenance, step("grid", empty_cells=int(grid.size - cell.size))),
     )
-
-
-def _axis(table: Table, index: int, role: str) -> _Axis:
-    """Find the grid lines of a coordinate from all values met."""
-    values = table.values[index]
-    bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
-        raise SamplingError(
-            f"{named(table.path)}: {table.where(int(bad[0]))}: {role} is "
-            f"{values[bad[0]]}; every point needs its place"
-        )
-    met, inverse = np.unique(values, return_inverse=True)
-    line = _group_lines(met)
-    centres = np.bincount(line, weights=met) / np.bincount(line)
-    number, spacing = _number_lines(centres, table, role)
-    return _Axis(number[line[inverse]], int(number[-1]) + 1, spacing)
-
-
-def _group_lines(met: FloatArray) -> IntArray:
-    """Put readings of one grid line together that differ by the encoder's noise."""
-    gaps = np.diff(met)
-    if gaps.size == 0:
-        return np.zeros(met.size, dtype=np.int64)
-    typical = float(np.median(gaps[gaps > _OFF_GRID * gaps.max()]))
-    return np.concatenate(([0], np.cumsum(gaps > _SAME_LINE * typical))).astype(
-        np.int64
-    )
-
-
-def _number_lines(
-    centres: FloatArray, table: Table, role: str
-) -> tuple[IntArray, float]:
-    """Number the grid lines from 0; a whole line that is missing keeps its number."""
-    if centres.size == 1:
-        return np.zeros(1, dtype=np.int64), 1.0
-    try:
-        steps = fit_even_steps(centres, what=role, unit="", where=str)
-    except SamplingError:
-        pass
-    else:
-        return np.arange(centres.size), steps.step
-    gaps = np.diff(centres)
-    typical = float(np.median(gaps))
-    number = np.concatenate(([0], np.cumsum(np.rint(gaps / typical)))).astype(np.int64)
-    spacing = float(centres[-1] - centres[0]) / float(number[-1])
-    off = np.abs(centres - centres[0] - number * spacing)
-    if off.max() > _OFF_GRID * spacing:
-        raise FormatError(
-            f"{named(table.path)}: {role} = {centres[np.argmax(off)]:.9g} lies off the "
-            f"even grid of step {spacing:.6g} that the other values form; export the "
-            "map on a regular grid"
-        )
-    return number, spacing
-
-
-def _require_single(table: Table, cell: IntArray) -> None:
-    order = np.argsort(cell, kind="stable")
-    repeated = np.flatnonzero(np.diff(cell[order]) == 0)
-    if repeated.size:
-        first, second = order[repeated[0]], order[repeated[0] + 1]
-        raise FormatError(
-            f"{named(table.path)}: {table.where(int(second))} repeats the point of "
-            f"{table.where(int(first))}; each point of the grid may appear once"
-        )

@@ -18,6 +18,7 @@ from jointbench.acquisition.interferometer_texts import (
 from jointbench.acquisition.keyence import parse_keyence
 from jointbench.acquisition.keyence_words import is_keyence
 from jointbench.acquisition.records import Step, step
+from jointbench.acquisition.stylus_lists import is_stylus_list, parse_stylus_list
 from jointbench.acquisition.surfaces import Surface
 from jointbench.acquisition.surfcom import is_surfcom, parse_surfcom
 from jointbench.acquisition.tables import (
@@ -53,11 +54,11 @@ def read_surface(
         path: a Keyence image CSV (English, German, Japanese or Chinese), a Dektak CSV,
             a Surfcom TX1 or TX2, a Wyko, Zygo or Gwyddion text, a plain table of x and
             z, or of x, y and z (text or .npy), or, with the extra ``surfaces``, a
-            maker's own format.
+            maker's own format. A Mitutoyo SJ CSV or a Mahr TXT needs `columns` too.
         columns: what the columns of a table hold and in which unit, for example
-            ``"x:mm,y:mm,z:um"``; it overrules what the content looks like. Formats
-            that state their units, and tables with units above their columns, do
-            without.
+            ``"x:mm,y:mm,z:um"``, or ``"z:um@0.5um"`` for heights alone; it overrules
+            what the content looks like. Formats that state their units, and tables
+            with units above their columns, do without.
         name: of the surface; the name of the file without its ending if None.
 
     Returns:
@@ -90,6 +91,9 @@ def read_surface(
                 return parse(lines, path, origin, label)
         if is_surfcom(lines, path):
             return parse_surfcom(lines, path, origin, label)
+    if is_stylus_list(lines) and (wanted is None or len(wanted) == 1):
+        column = None if wanted is None else wanted[0]
+        return parse_stylus_list(lines, path, origin, label, column)
     table = parse_table(lines, path, encoding)
     found = header_columns(table) if wanted is None else wanted
     return surface_from_table(table, found, origin, label)

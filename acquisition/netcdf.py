@@ -30,6 +30,7 @@ CONVENTIONS = "CF-1.11"
 # What netCDF-4 calls a dimension that has no coordinate variable.
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 MAX_ATTRIBUTE_BYTES = 60_000  # HDF5 keeps at most 64 KiB beside an object
+_GROWTH = 2**22  # bytes by which a file in memory grows
 _CHUNK_VALUES = 65_536
 _COMPRESS_FROM = 256  # values; below, a chunk costs more than it saves
 
@@ -61,10 +62,18 @@ def new_file(
     _require_free(path, overwrite)
     part = path.with_name(path.name + ".part")
     try:
-        with h5py.File(part, "w") as file:
+        part.write_bytes(b"")  # a folder that takes no file says so before the work
+        # HDF5 that meets a full disk crashes the process when it ends: it writes to
+        # memory, and what it made goes to the disk in one piece.
+        with h5py.File(
+            part, "w", driver="core", backing_store=False, block_size=_GROWTH
+        ) as file:
             attributes = {"Conventions": CONVENTIONS, "title": title, "schema": schema}
             write_attributes(file, attributes)
             yield file
+            file.flush()
+            image = file.id.get_file_image()
+        part.write_bytes(image)
         _sync(part)
         _require_free(path, overwrite)
         part.replace(path)

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.arrays import BoolArray
+from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.signal.fractal_bands import FEWEST_LAGS, find_band
 from jointbench.signal.fractal_choice import Choice, choose, spans_decade
 from jointbench.signal.fractal_judgement import Judgement, judge
+from jointbench.signal.fractal_kink import Kink, find_kink
 from jointbench.signal.fractal_problem import FractalProblem, pose
 from jointbench.signal.fractal_result import accepted_fit, rejected_fit
 from jointbench.signal.local_slope import local_slope
@@ -127,17 +128,46 @@ def fit_fractal(
 
 def _search(problem: FractalProblem) -> tuple[Choice, Judgement | None]:
     """Return the best description of S, and its judgement if it was accepted."""
-    strict = choose(problem)
-    if strict.accepted:
-        return strict, judge(strict)
     loose = replace(problem, tolerance=MODEL_TOLERANCE)
-    tolerant = choose(loose)
-    if tolerant.accepted:
-        return tolerant, judge(tolerant)
+    for attempt in (problem, loose):
+        found = choose(attempt)
+        if found.accepted:
+            kink = None
+            if not found.fit.model.rolls_off:
+                kink = find_kink(attempt, found.fit.seen)
+            if kink is None:
+                return found, judge(found)
+            return _one_side(attempt, found, kink)
     band = find_band(loose)
     if band is None:
-        return tolerant, None
+        return found, None
     return band, replace(judge(band), verdict=SurfaceVerdict.BAND)
+
+
+def _one_side(
+    problem: FractalProblem, whole: Choice, kink: Kink
+) -> tuple[Choice, Judgement]:
+    """Fit the wider side of a bend of the spectrum, and say what lies beyond it."""
+    lag = problem.lag
+    sides = sorted((lag <= kink.lag, lag >= kink.lag), key=lambda k: -_octaves(lag[k]))
+    spacing = 1e6 * problem.estimate.spacing
+    bend = (
+        f"the spectrum bends at a lag of {spacing * kink.lag:.3g} um: S runs as "
+        f"lag^{kink.slope_below:.2f} below and lag^{kink.slope_above:.2f} above"
+    )
+    part = problem.within(sides[0])
+    if _worth_a_fit(part.estimate):
+        found = choose(part)
+        judgement = judge(found)
+        if found.accepted and judgement.scales:
+            said = f"{judgement.reason}; {bend}"
+            return found, Judgement(SurfaceVerdict.BAND, said)
+    return whole, Judgement(SurfaceVerdict.NONE, bend)
+
+
+def _octaves(lag: FloatArray) -> float:
+    """Return the span of lags as a logarithm."""
+    return float(np.log(lag[-1] / lag[0])) if lag.size else 0.0
 
 
 def _longest_share(estimate: StructureFunction) -> float:

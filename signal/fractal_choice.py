@@ -10,15 +10,19 @@ from jointbench.signal.fractal_gls import (
     GlsFit,
     Model,
     Weights,
+    by_own_weights,
     fit_model,
     settle,
     weigh,
 )
+from jointbench.signal.fractal_long_lags import long_lag_probability
 from jointbench.signal.fractal_problem import FractalProblem
 from jointbench.signal.self_affine import InstrumentModel, rolled_off
 
 ACCEPT_PROBABILITY = 0.01
 """A model is accepted if a true one would fit worse at least this often [-]."""
+ACCEPT_LONG_PROBABILITY = 0.002
+"""The same of values at long lags by themselves [-]."""
 HOPELESS_PROBABILITY = 1e-6
 """Where the richest model fits with a smaller chance, simpler ones need no trial."""
 ONE_MORE = 7.88
@@ -26,12 +30,14 @@ ONE_MORE = 7.88
 all tests together take a larger model by chance in 1 % at the most."""
 TWO_MORE = 11.4
 """The same for two more parameters, in a third of a percent [-]."""
-CAST_DOUBT = {1: 0.8, 2: 5.0}
+CAST_DOUBT = {1: 1.5, 2: 5.0}
 """Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
 limits cover more of the noise that cannot be proven, and widen more clean profiles."""
-EVEN = {1: 6.0, 2: 12.0}
+EVEN = {1: 8.0, 2: 14.0}
 """Gain by so many more parameters at which both models weigh alike in D [-]. With
 Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
+SETTLED_WEIGHT = 0.999
+"""Weight of the larger model in D from which the smaller has no say [-]."""
 DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
 CLEAR_CORNER = 9.0
@@ -56,12 +62,14 @@ class Choice:
         covariance: of `law`, with what the unproven instrument would move it; on a map
             no less than the scatter of its strips, shape (2, 2).
         problem: what was fitted.
+        long_probability: chance of values at long lags as far off as they are [-].
     """
 
     fit: GlsFit
     law: FloatArray
     covariance: FloatArray
     problem: FractalProblem
+    long_probability: float
 
     @property
     def dimension(self) -> float:
@@ -76,7 +84,10 @@ class Choice:
     @property
     def accepted(self) -> bool:
         """Whether the model describes the values within their scatter."""
-        return self.fit.probability >= ACCEPT_PROBABILITY
+        return (
+            self.fit.probability >= ACCEPT_PROBABILITY
+            and self.long_probability >= ACCEPT_LONG_PROBABILITY
+        )
 
     @property
     def ends_early(self) -> bool:
@@ -165,18 +176,18 @@ def choose(problem: FractalProblem) -> Choice:
         below zero, chance brings a gain in about half of what chi-squared says: Self
         and Liang, J. Am. Stat. Assoc. 82 (1987) 605.
     """
-    endless, doubt = _choose_instrument(problem, rolls_off=False)
-    nearest = Model(endless.model.instrument, rolls_off=True)
+    endless = _chosen(problem, *_choose_instrument(problem, rolls_off=False))
+    criterion = endless.fit.likelihood_criterion
+    nearest = Model(endless.fit.model.instrument, rolls_off=True)
     # A plateau at long lags lies in the short tail of a skewed spread: only weights of
     # its own tell it, so likelihoods are compared, determinants included.
-    glance = settle(problem, nearest, endless.seen)
-    if endless.likelihood_criterion - glance.likelihood_criterion < CLEAR_CORNER:
-        return _chosen(problem, endless, doubt)
+    glance = settle(problem, nearest, endless.fit.seen)
+    if endless.accepted and criterion - glance.likelihood_criterion < CLEAR_CORNER:
+        return endless
     cornered = _chosen(problem, *_choose_instrument(problem, rolls_off=True))
-    gain = endless.likelihood_criterion - cornered.fit.likelihood_criterion
-    if gain > CLEAR_CORNER and cornered.ends_early:
-        return cornered
-    return _chosen(problem, endless, doubt)
+    clear = criterion - cornered.fit.likelihood_criterion > CLEAR_CORNER
+    better = clear or (cornered.accepted and not endless.accepted)
+    return cornered if better and cornered.ends_early else endless
 
 
 def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
@@ -201,7 +212,8 @@ def _choose_instrument(
     both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
     gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
     if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
-        return plain, _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
+        doubt = _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
+        return by_own_weights(problem, plain), doubt
     richest = settle(problem, both.model, both.seen)
     if richest.probability < HOPELESS_PROBABILITY:
         return richest, _no_doubt()
@@ -222,6 +234,9 @@ def _choose_instrument(
         accepted = fit.probability >= ACCEPT_PROBABILITY
         if stands and accepted and (better or best is richest):
             best, doubt = fit, _doubt(small, rival)
+    known = {kinds.NOISE: noisy, kinds.PSF_AND_NOISE: both}
+    if best.model.instrument in known:
+        doubt = _held_back(plain, known[best.model.instrument], best, doubt)
     return best, doubt
 
 
@@ -256,11 +271,38 @@ def _doubt(small: GlsFit, large: GlsFit) -> _Doubt:
     gain = small.chi2 - large.chi2
     if gain < CAST_DOUBT[more]:
         return _no_doubt()
-    weight = float(1 / (1 + np.exp((EVEN[more] - gain) / 2)))
+    weight = _weight(small, large)
     apart = large.parameters[:2] - small.parameters[:2]
     widened = large.covariance[:2, :2] - small.covariance[:2, :2]
     left = (1 - weight) * apart
     return _Doubt(weight * apart, weight * widened + np.outer(left, left))
+
+
+def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: _Doubt) -> _Doubt:
+    """Return the doubt of a model that is only just proven.
+
+    Without it D would leap where the gain passes its limit, and the few clean profiles
+    that chance takes there would rule the scatter of all.
+
+    Args:
+        plain: without instrument.
+        large: the model of `best` by the weights of `plain`.
+        best: the model that was taken.
+        doubt: what a still larger model does.
+    """
+    weight = _weight(plain, large)
+    # Where `plain` is far off its weights tell nothing of the larger model either.
+    if weight > SETTLED_WEIGHT or large.chi2 >= plain.chi2:
+        return doubt
+    back = (1 - weight) * (plain.parameters[:2] - best.parameters[:2])
+    return _Doubt(doubt.shift + back, doubt.covariance + np.outer(back, back))
+
+
+def _weight(small: GlsFit, large: GlsFit) -> float:
+    """Return the weight of the larger of two models with the same weights of lags."""
+    more = large.parameters.size - small.parameters.size
+    excess = small.chi2 - large.chi2 - EVEN[more]
+    return float(1 / (1 + np.exp(-np.clip(excess, -100.0, 100.0) / 2)))
 
 
 def _chosen(problem: FractalProblem, fit: GlsFit, doubt: _Doubt) -> Choice:
@@ -272,6 +314,7 @@ def _chosen(problem: FractalProblem, fit: GlsFit, doubt: _Doubt) -> Choice:
         law=fit.parameters[:2] + doubt.shift,
         covariance=covariance * max(1.0, strips**2),
         problem=problem,
+        long_probability=long_lag_probability(problem, fit),
     )
 
 

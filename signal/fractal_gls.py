@@ -6,7 +6,7 @@ weights from the full covariance reach the precision that the data allow. The
 covariance depends on the surface, so it is renewed with the fitted one.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
@@ -141,7 +141,7 @@ def weigh(
     # A poor start may lose all to levelling; the values themselves then stand in.
     reference = np.where(reference > 0, reference, problem.estimate.value)
     own = problem.scatter(at) if scatter is None else scatter
-    return Weights(reference, _root(own + problem.misfit(at)))
+    return Weights(reference, lower_root(own + problem.misfit(at)))
 
 
 def fit_model(
@@ -182,15 +182,28 @@ def fit_model(
 
 
 def settle(problem: FractalProblem, model: Model, at: SeenSurface) -> GlsFit:
-    """Fit one model and renew the weights with the result until they settle."""
+    """Fit one model and renew the weights with the result until they settle.
+
+    Returns:
+        The fit, judged by its own weights: those of the last round may belong to
+        another surface where the model is far off and nothing settles.
+    """
     result = fit_model(problem, model, weigh(problem, at))
     for _ in range(RENEWALS):
         weights = weigh(problem, result.seen)
         result = fit_model(problem, model, weights, start=result.parameters)
-    return result
+    return by_own_weights(problem, result)
 
 
-def _root(covariance: FloatArray) -> FloatArray:
+def by_own_weights(problem: FractalProblem, fit: GlsFit) -> GlsFit:
+    """Return a fit with chi2 and determinant of the covariance that belongs to it."""
+    own = weigh(problem, fit.seen)
+    gap = (problem.estimate.value - fit.predicted) / own.reference
+    white = solve_triangular(own.root, gap, lower=True)
+    return replace(fit, chi2=float(white @ white), log_determinant=own.log_determinant)
+
+
+def lower_root(covariance: FloatArray) -> FloatArray:
     """Return the lower Cholesky root, with as little added variance as it takes.
 
     On very smooth surfaces neighbouring lags tell the same to more digits than the

@@ -159,6 +159,8 @@ def _stabilisation(
         frf.response[:, :, keep],
         orders,
         weight=weight,
+        # One pole a mode draws the clearer table; refinement knows mirror images.
+        mirrored=False,
         added_decay_rate=frf.added_decay_rate,
         progress=progress,
     )
@@ -179,16 +181,16 @@ def orders_to_try(
         Ascending orders.
 
     Raises:
-        UsageError: the highest order asked for is below 2, or beyond 200 poles or one
-            pole for every two lines.
+        UsageError: the highest order asked for is below 2, or beyond 200 or one pole
+            for every two lines.
     """
     highest = settings.highest_order
     if highest is None:
         fitting = n_lines // (_LINES_PER_ORDER * n_inputs)
         highest = max(_LOWEST_ORDER + 4, min(round(_HIGHEST_ORDER / n_inputs), fitting))
     else:
-        poles = min(_LARGEST_ORDER, n_lines // _LEAST_LINES_PER_ORDER)
-        limit = max(_LOWEST_ORDER, poles // n_inputs)
+        carried = n_lines // (_LEAST_LINES_PER_ORDER * n_inputs)
+        limit = max(_LOWEST_ORDER, min(_LARGEST_ORDER, carried))
         if not _LOWEST_ORDER <= highest <= limit:
             raise UsageError(
                 f"order is {highest}; give {_LOWEST_ORDER} to {limit} ({n_lines} lines "

@@ -18,13 +18,18 @@ import numpy as np
 import scipy.fft
 import scipy.optimize
 
-from jointbench.acquisition.arrays import BoolArray, FloatArray
+from jointbench.acquisition.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.records import Recording, response_rows, step
 from jointbench.signal.kalman_model import StateModel
 
-# Equal samples in a row that no converter gives of a signal that moves.
-_STUCK_SAMPLES = 4
+# Samples that stand still in a row: never fewer are a drop-out, and so many count as
+# one before it is known how often a quiet channel repeats itself by its coarse steps.
+_LEAST_STILL, _MANY_STILL = 3, 8
+# Chance that a channel repeats itself so often anywhere in a record and is in order.
+_BY_CHANCE = 1e-6
+# Pieces of a record, of which the one that repeats itself most sets the standard.
+_SHARES = 16
 # A channel moves where at least this share of its samples differ from the one before.
 _MOVING = 0.5
 # A share of samples beyond which there is nothing left to track.
@@ -89,13 +94,36 @@ def find_dropouts(recording: Recording) -> BoolArray:
         still = np.diff(samples) == 0.0
         if np.mean(~still) < _MOVING:
             continue
-        edges = np.flatnonzero(np.diff(np.r_[0, still.view(np.int8), 0]))
-        for first, last in edges.reshape(-1, 2):
-            if last - first + 1 >= _STUCK_SAMPLES:
+        runs, least = _runs(still), _least_still(still)
+        for first, last in runs:
+            if last - first >= least:
                 # The first of equal samples may be the last good one; zero is not.
                 begin = first if samples[first] == 0.0 else first + 1
                 lost[row, begin : last + 1] = True
     return lost
+
+
+def _runs(still: BoolArray) -> IntArray:
+    """Return first and one past the last of each run of True, shape (n, 2)."""
+    edges = np.flatnonzero(np.diff(np.r_[0, still.view(np.int8), 0]))
+    return np.asarray(edges.reshape(-1, 2), np.int64)
+
+
+def _least_still(still: BoolArray) -> int:
+    """Return how many repeats in a row the steps of the converter do not explain.
+
+    A quiet channel that moves by a few steps repeats itself by chance, with the share p
+    of its samples; n samples then hold a run of m with a chance of at most n p^m.
+    """
+    single = still.copy()
+    for first, last in _runs(still):
+        if last - first >= _MANY_STILL:
+            single[first:last] = False
+    share = max(float(piece.mean()) for piece in np.array_split(single, _SHARES))
+    if share == 0.0:
+        return _LEAST_STILL
+    needed = np.log(_BY_CHANCE / still.size) / np.log(share)
+    return max(_LEAST_STILL, int(np.ceil(needed)))
 
 
 def repair_dropouts(

@@ -9,6 +9,7 @@ import numpy as np
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import step
 from jointbench.acquisition.surfaces import Profile
+from jointbench.signal.binned_spectrum import pooled_spectrum
 from jointbench.signal.structure_function import StructureFunction, structure_function
 
 SAME_SPACING = 1e-6
@@ -73,6 +74,7 @@ def pool_profiles(profiles: Sequence[Profile]) -> StructureFunction:
             *parts[0].provenance,
             step("pool", profiles=", ".join(p.name for p in profiles), points=points),
         ),
+        spectrum=pooled_spectrum([part.spectrum for part in parts]),
     )
 
 

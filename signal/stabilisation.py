@@ -8,7 +8,7 @@ enough is a candidate mode; whether it is one, `selection` decides on the FRF it
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -26,6 +26,9 @@ from jointbench.signal.lscf import OrderPoles
 # Poles further apart than this from one order to the next are not the same.
 _LINK_FREQUENCY = 0.004
 _LINK_DAMPING = 4.0
+# Before a track has shown how it scatters it is taken to do so by this share of the
+# above, and by this much in 1 - MAC; that opinion weighs as much as so many orders.
+_USUAL_SHARE, _USUAL_SHAPE, _USUAL_ORDERS = 1.0 / 3.0, 0.03, 2.0
 # Orders a track may miss before it ends.
 _MISSED = 3
 _UNMATCHED = 1e6
@@ -120,14 +123,45 @@ class Candidate:
     by_hand: bool = False
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Track:
-    """The last pole of a track while the table is being walked."""
+    """The last pole of a track while the table is being walked.
+
+    Attributes:
+        moved: sums of squared steps from order to order: relative frequency, logarithm
+            of damping, and 1 - MAC as it is, shape (3,).
+        steps: how many.
+    """
 
     number: int
     pole: complex
     shape: ComplexArray
     seen: int
+    moved: FloatArray = field(default_factory=lambda: np.zeros(3))
+    steps: int = 0
+
+    @property
+    def variance(self) -> FloatArray:
+        """Of a step in frequency, damping and shape: its own as soon as it has one."""
+        usual = np.array(
+            [
+                (_USUAL_SHARE * _LINK_FREQUENCY) ** 2,
+                (_USUAL_SHARE * np.log(_LINK_DAMPING)) ** 2,
+                _USUAL_SHAPE,
+            ]
+        )
+        total = _USUAL_ORDERS * usual + self.moved
+        return np.asarray(total / (_USUAL_ORDERS + self.steps))
+
+    def move(self, pole: complex, shape: ComplexArray, position: int) -> None:
+        """Go on to its pole at a later order."""
+        ratio = _damping(np.array([pole, self.pole]))
+        frequency = abs(pole) / abs(self.pole) - 1.0
+        damping = float(np.log(ratio[0] / ratio[1]))
+        turned = 1.0 - abs(np.vdot(shape, self.shape)) ** 2
+        self.moved = self.moved + np.array([frequency**2, damping**2, turned])
+        self.steps += 1
+        self.pole, self.shape, self.seen = pole, shape, position
 
 
 def stabilise(
@@ -153,13 +187,13 @@ def stabilise(
         for i, (pole, shape) in enumerate(zip(poles, shapes, strict=True)):
             before = matched.get(i)
             if before is None:
-                before = _Track(opened, pole, shape, position)
+                before = _Track(opened, complex(pole), shape, position)
                 tracks.append(before)
                 flags, opened = (False, False, False), opened + 1
             else:
                 flags = _flags(before, pole, shape, limits)
+                before.move(complex(pole), shape, position)
             rows.append((found.order, complex(pole), *flags, before.number))
-            before.pole, before.shape, before.seen = complex(pole), shape, position
         tracks = [t for t in tracks if position - t.seen <= _MISSED]
     return _table(rows, [found.order for found in orders])
 
@@ -201,15 +235,20 @@ def mac(one: ComplexArray, other: ComplexArray) -> float:
 def _match(
     tracks: Sequence[_Track], poles: ComplexArray, shapes: ComplexArray
 ) -> dict[int, _Track]:
-    """Pair poles with tracks one to one; return the track of each matched pole."""
+    """Pair poles with tracks one to one; return the track of each matched pole.
+
+    Distances are in standard deviations of each track's own steps, so that of two close
+    modes the one that stands still is not swapped for the one that wanders.
+    """
     if not tracks or poles.size == 0:
         return {}
     last = np.array([t.pole for t in tracks])
     frequency = np.abs(poles[:, None]) / np.abs(last) - 1.0
     damping = np.log(_damping(poles)[:, None] / _damping(last))
     overlap = np.abs(shapes.conj() @ np.array([t.shape for t in tracks]).T) ** 2
-    cost = (frequency / _LINK_FREQUENCY) ** 2 + (damping / np.log(_LINK_DAMPING)) ** 2
-    cost += 1.0 - overlap
+    variance = np.array([t.variance for t in tracks]).T
+    cost = frequency**2 / variance[0] + damping**2 / variance[1]
+    cost += (1.0 - overlap) / variance[2] + np.log(variance).sum(axis=0)
     near = np.abs(frequency) < _LINK_FREQUENCY
     near &= np.abs(damping) < np.log(_LINK_DAMPING)
     pairs = linear_sum_assignment(np.where(near, cost, _UNMATCHED))

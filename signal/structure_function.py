@@ -19,6 +19,7 @@ from jointbench.acquisition.arrays import (
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Provenance, step
 from jointbench.acquisition.surfaces import Profile, Surface
+from jointbench.signal.binned_spectrum import BinnedSpectrum, spectrum_of
 from jointbench.signal.height_step import height_step
 from jointbench.signal.lay import stretch_across
 from jointbench.signal.preparation import SurfaceTooSmall, level
@@ -78,6 +79,7 @@ class StructureFunction:
         faces: how each contributing face was sampled.
         quantum: step in which the heights were read [m]; 0 for none.
         provenance: how the values came about.
+        spectrum: of profiles without gaps; None where it was not taken.
     """
 
     name: str
@@ -87,6 +89,7 @@ class StructureFunction:
     faces: tuple[Sampling, ...]
     quantum: float = 0.0
     provenance: Provenance = field(default=())
+    spectrum: BinnedSpectrum | None = None
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -199,6 +202,7 @@ def structure_function(
             *levelled.provenance,
             step("structure_function", direction=direction, lags=int(lag.size)),
         ),
+        spectrum=spectrum_of(levelled),
     )
 
 
@@ -246,6 +250,7 @@ def combine(a: StructureFunction, b: StructureFunction) -> StructureFunction:
             *b.provenance,
             step("combine", first=a.name, second=b.name, share_first=share),
         ),
+        spectrum=None,
     )
 
 

@@ -12,7 +12,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
 from jointbench.simulators.plate_modes import (
     PlateDesign,
@@ -21,6 +21,7 @@ from jointbench.simulators.plate_modes import (
     plate_modes,
     slope,
 )
+from jointbench.simulators.poles import Poles
 
 ELASTIC_MODES = 10
 REFERENCE_TORQUE = 20.0  # [N m]
@@ -63,26 +64,6 @@ class PlatesDesign:
     joint_damping: float = 60.0
     foam_stiffness: float = 2.5e4
     foam_damping: float = 150.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Poles:
-    """How the specimen answers a force at one point; complex conjugates left out.
-
-    Attributes:
-        poles: [1/s], shape (n_modes,), the imaginary part positive.
-        gains: acceleration at each output for a unit impulse [1/(kg s)], shape
-            (n_modes, n_outputs); the response is twice the real part.
-        direct: acceleration during the force [1/kg], shape (n_outputs,).
-    """
-
-    poles: ComplexArray
-    gains: ComplexArray
-    direct: FloatArray
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze(self, "poles", "gains", "direct")
 
 
 @lru_cache(maxsize=8)

@@ -13,9 +13,11 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
+from jointbench.simulators.calibration_mass import CalibrationMass, mass_poles
 from jointbench.simulators.hand import Fate, Hand, swing_once
 from jointbench.simulators.plates import POINTS, PlatesDesign, plates_poles
 from jointbench.simulators.plates_strike import Stroke, signal_piece, stroke
+from jointbench.simulators.poles import Poles
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 # Samples made together, so that sample k is the same number however reads are cut. A
@@ -64,7 +66,7 @@ class PlatesBench:
         seed: of the noise.
     """
 
-    design: PlatesDesign = field(default_factory=PlatesDesign)
+    design: PlatesDesign | CalibrationMass = field(default_factory=PlatesDesign)
     hand: Hand = field(default_factory=Hand)
     sensors: tuple[PluggedSensor, ...] = SENSORS
     seed: int = 1
@@ -105,10 +107,16 @@ class LivePlates:
         self._lock = threading.Lock()
         self._point, self._torque = "1", 20.0
         self._level: float | None = None
-        self._rate, self._stream, self._free_at = 1.0, 0, 0.0
+        self._rate, self._stream = 1.0, 0
+        self._free_at = self._free_before = 0.0
         self._strokes: list[Stroke] = []
         self._made: dict[int, FloatArray] = {}
         self.history: list[PlannedStroke] = []
+
+    @property
+    def sensors(self) -> tuple[PluggedSensor, ...]:
+        """What is plugged in, by input."""
+        return self._bench.sensors
 
     def begin(self, sample_rate: float) -> None:
         """Start a new stream from rest."""
@@ -143,8 +151,13 @@ class LivePlates:
             self._level = self._level if level is None else level
 
     def strike(self, *, position: int) -> PlannedStroke:
-        """Let the hand strike once, soon after sample `position` of the stream."""
+        """Let the hand strike once, soon after sample `position` of the stream.
+
+        A stroke that was asked for before and has not begun is not struck: a hand that
+        is told to go elsewhere goes there.
+        """
         with self._lock:
+            self._recall(position)
             return self._plan(max(position / self._rate, self._free_at))
 
     def volts(self, first: int, count: int, inputs: Sequence[int]) -> FloatArray:
@@ -165,6 +178,15 @@ class LivePlates:
             [made[n] if n < made.shape[0] - 1 else open_input for n in inputs]
         )
 
+    def _recall(self, position: int) -> None:
+        if self._bench.hand.interval is not None or not self._strokes:
+            return
+        first, made = self._strokes[-1].first, max(self._made, default=-1)
+        if first > position and first >= (made + 1) * _PIECE:
+            self._strokes.pop()
+            self.history.pop()
+            self._free_at = self._free_before
+
     def _keep_striking(self, past: int) -> None:
         interval = self._bench.hand.interval
         while interval is not None and self._free_at * self._rate < past:
@@ -175,15 +197,10 @@ class LivePlates:
         pulses, fate = swing_once(
             bench.hand, number=number, after=after, level=self._level
         )
-        poles = plates_poles(
-            bench.design,
-            self._torque,
-            struck=self._point,
-            outputs=tuple(sensor.point for sensor in bench.sensors[1:]),
-        )
-        new = stroke(poles, pulses, sample_rate=self._rate)
+        new = stroke(self._poles(), pulses, sample_rate=self._rate)
         self._strokes.append(new)
         rest = bench.hand.interval or 4 * bench.hand.reaction
+        self._free_before = self._free_at
         self._free_at = pulses[-1].start + rest
         planned = PlannedStroke(
             number,
@@ -196,6 +213,14 @@ class LivePlates:
         )
         self.history.append(planned)
         return planned
+
+    def _poles(self) -> Poles:
+        """Return how the specimen answers a stroke as things stand."""
+        design = self._bench.design
+        outputs = tuple(sensor.point for sensor in self._bench.sensors[1:])
+        if isinstance(design, CalibrationMass):
+            return mass_poles(design, outputs=len(outputs))
+        return plates_poles(design, self._torque, struck=self._point, outputs=outputs)
 
     def _piece(self, number: int) -> FloatArray:
         """Return the volts of all sensors, and unit noise, over one piece."""

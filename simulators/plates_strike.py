@@ -14,7 +14,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
 from jointbench.simulators.hammer import Pulse, pulse_force
-from jointbench.simulators.plates import Poles
+from jointbench.simulators.poles import Poles
 
 _FINE = 64  # steps per sample in which a pulse is integrated
 _RINGING = 4.0  # [s] after which nothing is heard of a stroke

@@ -3,33 +3,40 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from urllib.parse import parse_qsl, urlsplit
 
 from jointbench.acquisition.errors import UsageError
+from jointbench.simulators.calibration_mass import CalibrationMass
 from jointbench.simulators.chassis.faults import parse_faults
 from jointbench.simulators.chassis.server import ChassisSetup
 from jointbench.simulators.hand import Fate, Hand
 from jointbench.simulators.plates_bench import PlatesBench
 
-_KEYS = "seed, speed, level, interval, fates, faults, modules, top_rate, trigger, port"
+_KEYS = (
+    "seed, speed, level, interval, fates, faults, modules, top_rate, trigger, port; "
+    "sim:mass also has mass, hammer, response"
+)
 
 
 def is_plates_url(url: str) -> bool:
-    """Tell whether a URL names the chassis with the plates."""
+    """Tell whether a URL names a chassis, with the plates or the mass before it."""
     parts = urlsplit(url)
-    return parts.scheme == "sim" and parts.path == "plates"
+    return parts.scheme == "sim" and parts.path in ("plates", "mass")
 
 
 def chassis_from_url(url: str) -> ChassisSetup:
     """Read a set-up.
 
     Args:
-        url: ``sim:plates`` and, as a query, any of: ``seed``; ``speed``, seconds of
+        url: ``sim:plates``, or ``sim:mass`` for a mass to calibrate on, and, as a
+            query, any of: ``seed``; ``speed``, seconds of
             signal per second or ``max``; ``level``, usual peak force [N];
             ``interval``, between strokes of the hand's own accord [s]; ``fates`` of
             the strokes in turn, for example ``good,double*2,weak``; ``faults`` as
             `parse_faults` reads them; ``modules``; ``top_rate`` [Hz]; ``trigger``, 0
-            for modules without an analogue trigger; ``port``.
+            for modules without an analogue trigger; ``port``. The mass has ``mass``
+            [kg], and ``hammer`` and ``response``, true sensitivity over the usual one.
 
     Raises:
         UsageError: an unknown key, or a value that does not read so.
@@ -52,8 +59,11 @@ def chassis_from_url(url: str) -> ChassisSetup:
         fates=_fates(values.pop("fates", "good")),
     )
     speed = values.pop("speed", "max")
+    bench = PlatesBench(hand=hand, seed=seed)
+    if urlsplit(url).path == "mass":
+        bench = _mass_bench(bench, take)
     setup = ChassisSetup(
-        bench=PlatesBench(hand=hand, seed=seed),
+        bench=bench,
         speed=math.inf if speed == "max" else _positive(speed),
         modules=int(take("modules", "1", int)),
         top_rate=take("top_rate", "51200", float),
@@ -66,6 +76,21 @@ def chassis_from_url(url: str) -> ChassisSetup:
             f"unknown key {next(iter(values))!r} in {url!r}; known: {_KEYS}"
         )
     return setup
+
+
+def _mass_bench(
+    bench: PlatesBench, take: Callable[[str, str, Callable[[str], float]], float]
+) -> PlatesBench:
+    hammer, response = take("hammer", "1", _positive), take("response", "1", _positive)
+    first, *others = bench.sensors
+    return replace(
+        bench,
+        design=CalibrationMass(mass=take("mass", "4.5", float)),
+        sensors=(
+            replace(first, sensitivity=hammer * first.sensitivity),
+            *(replace(s, sensitivity=response * s.sensitivity) for s in others),
+        ),
+    )
 
 
 def _fates(text: str) -> tuple[Fate, ...]:

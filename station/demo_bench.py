@@ -21,6 +21,7 @@ from jointbench.simulators.profilometer import (
 )
 from jointbench.simulators.rough_surface import rough_map
 from jointbench.simulators.surface_files import write_keyence_csv
+from jointbench.station.chassis_source import ChassisSource
 from jointbench.station.record import record
 
 HITS = 12
@@ -103,8 +104,9 @@ def _record_hits(bench: TwoBodyBench) -> Recording:
     with Progress(*columns, console=screen, disable=not screen.is_terminal) as bar:
         length = bench.samples / bench.sample_rate
         task = bar.add_task(f"recording {bench.hits} hits", total=length)
+        source = ChassisSource(bench, samples=bench.samples)
         return record(
-            bench, on_block=lambda seconds: bar.update(task, completed=seconds)
+            source, on_block=lambda seconds: bar.update(task, completed=seconds)
         )
 
 

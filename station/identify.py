@@ -59,6 +59,7 @@ def identify_any(
     cache: Path | None,
     report: Path | None,
     json_target: str | None,
+    surfaces: Sequence[Path] = (),
 ) -> bool:
     """Identify the joints of whatever the model file describes.
 
@@ -78,15 +79,16 @@ def identify_any(
             cache=cache,
             report=report,
             json_target=json_target,
+            surfaces=surfaces,
         )
     if not sessions:
         raise UsageError(
             f"'{model}' is a lumped bench; give the sessions it was hit in"
         )
-    if report is not None:
+    if report is not None or surfaces:
         raise UsageError(
-            "--report of identify is for structures [joints]; of a lumped bench write "
-            "'jointbench report SESSION --model MODEL --out PAGE'"
+            "--report and --surface are for structures [joints]; of a lumped bench "
+            "write 'jointbench report SESSION --model MODEL --out PAGE'"
         )
     return fits(run_identify(model, sessions, band=band, json_target=json_target))
 

@@ -4,19 +4,23 @@
 Every command imports what it needs when it runs, so that ``--help`` stays instant.
 """
 
-import os
 import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from jointbench.station.bench_commands import (
+    calibrate_command,
+    measure_command,
+    simulate_command,
+)
 from jointbench.station.contact_command import contact_command
 from jointbench.station.exit_codes import EXIT_QUALITY, exit_code
+from jointbench.station.identify_command import identify_command
 from jointbench.station.options import (
     GAP_HELP,
     Band,
-    Cache,
     Columns,
     Debug,
     Drop,
@@ -34,10 +38,10 @@ from jointbench.station.options import (
     Point,
     Preload,
     Results,
-    Sessions,
     Universal,
 )
 from jointbench.station.process_commands import mount
+from jointbench.station.profile_command import profile_command
 
 __all__ = ["app", "exit_code", "run"]
 
@@ -90,31 +94,6 @@ def record_command(
     from jointbench.station.record_command import run_record
 
     run_record(source, out, overwrite=force, json_target=json)
-
-
-@app.command(name="measure")
-def measure_command(
-    plan: Annotated[Path, typer.Argument(help="Plan of the measurement, TOML.")],
-    out: Annotated[Path, typer.Option(help="Session file to write.")],
-    source: Annotated[
-        str | None,
-        typer.Option(help="ni:, ni+grpc://host:port or sim:plates; else the plan's."),
-    ] = None,
-    force: Force = False,
-    json: Json = None,
-    debug: Debug = False,
-) -> int:
-    """Measure hammer hits by a plan: points x levels x torques, each repeated.
-
-    Example: jointbench measure plan.toml --out session.h5 --source
-    'sim:plates?seed=1'
-    """
-    # gRPC writes of every lost connection to standard error; the session says it.
-    os.environ.setdefault("GRPC_VERBOSITY", "NONE")
-    from jointbench.station.measure import run_measure
-
-    measured = run_measure(plan, out, source=source, overwrite=force, json_target=json)
-    return 0 if measured.whole else EXIT_QUALITY
 
 
 @app.command(name="import")
@@ -206,28 +185,14 @@ def surface_command(
     run_surface(files, columns=columns, json_target=json)
 
 
+app.command(name="measure")(measure_command)
+app.command(name="calibrate")(calibrate_command)
+app.command(name="profile")(profile_command)
+app.command(name="simulate")(simulate_command)
 app.command(name="contact")(contact_command)
 
 
-@app.command(name="identify")
-def identify_command(
-    model: Annotated[Path, typer.Argument(help="Bench or structure model, TOML.")],
-    sessions: Sessions = None,
-    band: Band = None,
-    cache: Cache = None,
-    report: Page = None,
-    json: Json = None,
-    debug: Debug = False,
-) -> int:
-    """Identify joints: of a lumped bench [links], or of meshed bodies [joints].
-
-    Example: jointbench identify bench.toml session.h5 --json joint.json
-    """
-    from jointbench.station.identify import identify_any
-
-    places = {"cache": cache, "report": report}
-    fits = identify_any(model, sessions or [], band=band, json_target=json, **places)
-    return 0 if fits else EXIT_QUALITY
+app.command(name="identify")(identify_command)
 
 
 @app.command(name="gap")
@@ -336,19 +301,3 @@ def recover_command(
     from jointbench.station.verify import run_recover
 
     run_recover(file, out=out, overwrite=force, json_target=json)
-
-
-@app.command(name="simulate")
-def simulate_command(
-    bench: Annotated[
-        str, typer.Argument(help="What stands on the bench.", metavar="URL")
-    ] = "sim:plates?speed=1&interval=2&port=31763",
-    debug: Debug = False,
-) -> None:
-    """Serve a simulated NI chassis for any program that uses nidaqmx over gRPC.
-
-    Example: jointbench simulate 'sim:plates?speed=1&interval=2&port=31763'
-    """
-    from jointbench.station.simulate import run_simulate
-
-    run_simulate(bench)

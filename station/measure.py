@@ -3,28 +3,35 @@
 
 import uuid
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from rich.console import Console
 
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
 from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
 from jointbench.acquisition.ni.stream import Counters, NiStream, StreamSettings
 from jointbench.acquisition.records import Channel, Hit, Verdict
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.session_live import LiveSession
+from jointbench.acquisition.session_lock import is_held
+from jointbench.station.measure_bench import Bench
+from jointbench.station.measure_bolts import BoltWatch
+from jointbench.station.measure_interrupt import patient_interrupt
 from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure_record import Record
 from jointbench.station.measure_screen import watching
 from jointbench.station.measure_session import MeasureSession
 from jointbench.station.measure_source import OpenChassis, open_chassis
-from jointbench.station.measure_teds import teds_warnings
+from jointbench.station.measure_teds import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.measure_watch import Watcher
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.serial_port import line_name
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,10 +119,15 @@ def measure(
     stream.start()
     try:
         record = _record(plan, opened, out, (stream, watcher, warnings))
-    finally:
+    except BaseException:
         stream.close()
-        if out.exists():
-            finish_session(out)
+        # What went wrong first is what the operator has to know.
+        with suppress(JointbenchError):
+            if out.exists() and not is_held(out):
+                finish_session(out)
+        raise
+    stream.close()
+    finish_session(out)
     return Measured(
         out, record, stream.counters, len(conditions(plan)), stream.sample_rate
     )
@@ -125,8 +137,17 @@ def finish_session(path: Path) -> None:
     """Turn the file of a recording into a finished session, compressed, in its place.
 
     Until the new file is whole and on the disk, the old one stays.
+
+    Raises:
+        InstrumentError: there is no room for it; the recording is safe as it is.
     """
-    write_session(read_session(path), path, overwrite=True)
+    try:
+        write_session(read_session(path), path, overwrite=True)
+    except UsageError as error:
+        raise InstrumentError(
+            f"'{path}' could not be finished ({error}); what was recorded is safe in "
+            "it: make room, then `jointbench recover` it"
+        ) from error
 
 
 def _record(
@@ -139,16 +160,29 @@ def _record(
     channels = table_channels(plan.sensors)
     meta = _meta(plan, opened, channels, stream.sample_rate)
     block = stream.settings.block
-    with LiveSession(out, meta, channels=len(channels), block=block) as live:
+    with (
+        _torque_tester(plan) as bolts,
+        LiveSession(out, meta, channels=len(channels), block=block) as live,
+    ):
         session = MeasureSession(
-            plan, stream, live, channels=channels, hand=opened.hand, watcher=watcher
+            Bench(
+                plan=plan,
+                stream=stream,
+                live=live,
+                channels=channels,
+                hand=opened.hand,
+                watcher=watcher,
+                bolts=bolts,
+                hardware_trigger=by_device(plan, opened.chassis),
+            )
         )
-        watcher.begin(channels, stream.sample_rate)
-        for words in warnings:
-            live.log({"kind": "warning", "words": words})
-            watcher.say(f"warning: {words}")
         try:
-            session.run()
+            watcher.begin(channels, stream.sample_rate)
+            for words in warnings:
+                live.log({"kind": "warning", "words": words})
+                watcher.say(f"warning: {words}")
+            with patient_interrupt(session.record):
+                session.run()
         except KeyboardInterrupt:
             session.record.interrupted = True
         finally:
@@ -156,15 +190,28 @@ def _record(
     return session.record
 
 
+@contextmanager
+def _torque_tester(plan: MeasurePlan) -> Iterator[BoltWatch | None]:
+    """Give what reads the bolts, None where the plan names no tester."""
+    torque, joint = plan.table.torque, plan.table.joint
+    if torque is None or joint is None:
+        yield None
+        return
+    with line_name(torque.line) as name:
+        yield BoltWatch(table=torque, line=name, bolts=joint.bolts, wait=plan.hits.wait)
+
+
 def _close_the_books(live: LiveSession, stream: NiStream, record: Record) -> None:
     """Log what the device made against what was stored, and that this is the end."""
-    stream.count_if_there()
+    with suppress(InstrumentError):
+        stream.count()
     counters = stream.counters
     live.log(
         {
             "kind": "continuity",
             "acquired": counters.acquired,
             "unread": counters.unread,
+            "unwanted": counters.unwanted,
             "stored_samples": live.samples,
             "lost": counters.lost,
         }
@@ -176,7 +223,13 @@ def _warnings(plan: MeasurePlan, opened: OpenChassis) -> tuple[str, ...]:
     today = datetime.now(UTC).date()
     old = (calibration_warning(sensor, today) for sensor in plan.sensors)
     expired = (words for words in old if words is not None)
-    return (*expired, *teds_warnings(opened.chassis, plan.sensors))
+    asked = plan.acquisition.trigger == "hardware"
+    trigger = asked and not by_device(plan, opened.chassis)
+    return (
+        *expired,
+        *teds_warnings(opened.chassis, plan.sensors),
+        *((NO_TRIGGER,) if trigger else ()),
+    )
 
 
 def _meta(

@@ -70,35 +70,63 @@ def mean_coherence(frf: Frf | None) -> float | None:
     return float(np.median(lines, axis=1).mean()) if lines.size else None
 
 
-def spoils(
-    new: Accepted,
+@dataclass(frozen=True, slots=True)
+class Spoiler:
+    """The one hit of an average without which the others agree.
+
+    Attributes:
+        position: among the hits of the average.
+        together: coherence with it [-].
+        reason: one line.
+    """
+
+    position: int
+    together: float
+    reason: str
+
+
+def find_spoiler(
     accepted: Sequence[Accepted],
     channels: Sequence[Channel],
     *,
     sample_rate: float,
     wanted: float,
-) -> tuple[float, str] | None:
-    """Tell whether a hit takes the coherence of the others below what is wanted.
+) -> Spoiler | None:
+    """Find the hit that takes the coherence of the others below what is wanted.
+
+    Whether it was the first or the last of them does not matter: each is left out in
+    turn.
 
     Args:
-        new: the hit.
-        accepted: those before it.
+        accepted: hits of one condition.
         channels: of their rows.
         sample_rate: [Hz].
         wanted: coherence [-].
 
     Returns:
-        The coherence with it and a reason, or None where it may stay.
+        The hit without which the coherence is highest, if that is what is wanted; None
+        where all agree, or where no single one is to blame.
     """
-    if len(accepted) + 1 < _ENOUGH:
+    if len(accepted) < _ENOUGH:
         return None
-    without = mean_coherence(average(accepted, channels, sample_rate))
-    together = mean_coherence(average([*accepted, new], channels, sample_rate))
-    if without is None or together is None or without < wanted or together >= wanted:
+    together = mean_coherence(average(accepted, channels, sample_rate))
+    if together is None or together >= wanted:
         return None
-    return together, (
-        f"coherence falls from {without:.3f} to {together:.3f} with this hit (limit "
-        f"{wanted:g}); it struck another place or direction"
+    without = [
+        mean_coherence(
+            average([*accepted[:i], *accepted[i + 1 :]], channels, sample_rate)
+        )
+        or 0.0
+        for i in range(len(accepted))
+    ]
+    position = int(np.argmax(without))
+    if without[position] < wanted:
+        return None
+    return Spoiler(
+        position,
+        together,
+        f"coherence {without[position]:.3f} without this hit, {together:.3f} with it "
+        f"(limit {wanted:g}); it struck another place or direction",
     )
 
 

@@ -13,6 +13,8 @@ from jointbench.station.measure_plan import Condition
 
 WRONG_SIGN_LIMIT = 0.05
 """Share of the imaginary part of a driving point that may have the wrong sign [-]."""
+RESONANT_SHARE = 1e-3
+"""Least share of an FRF in its imaginary part where something resonates [-]."""
 RECIPROCITY_LIMIT = 0.1
 """Rms difference of two FRFs that should be one, over their rms [-]."""
 
@@ -72,7 +74,8 @@ def driving_point(frf: Frf, channels: tuple[Channel, ...], point: str) -> Check 
 
     The imaginary part of a driving-point accelerance is positive at every resonance:
     the structure takes energy in, it gives none. A sensor upside down, or a hit
-    beside the sensor, shows at once.
+    beside the sensor, shows at once. A part that does not resonate, like a mass to
+    calibrate on, has no such sign: None.
 
     Source:
         Ewins, Modal Testing (2000), sec. 3.9 (checks of driving-point FRFs).
@@ -80,7 +83,10 @@ def driving_point(frf: Frf, channels: tuple[Channel, ...], point: str) -> Check 
     row = _response_at(channels, point)
     if row is None:
         return None
-    imaginary = frf.response[row, 0, _band(frf)].imag
+    response = frf.response[row, 0, _band(frf)]
+    imaginary = response.imag
+    if np.sum(imaginary**2) < RESONANT_SHARE * np.sum(np.abs(response) ** 2):
+        return None
     wrong = float(np.sum(imaginary[imaginary < 0] ** 2) / np.sum(imaginary**2))
     return Check(
         f"driving point {point}",

@@ -6,9 +6,16 @@ from dataclasses import dataclass
 from rich.console import Console
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.records import Channel
+from jointbench.acquisition.records import Channel, Verdict
 from jointbench.station.measure_plan import Condition
 from jointbench.station.measure_watch import Command, HitNews
+
+
+def verdict_word(news: HitNews) -> str:
+    """Return what became of a hit, in the operator's words."""
+    if news.condition is None and news.hit.verdict is Verdict.OPERATOR:
+        return "trial"
+    return news.hit.verdict.value.replace("_", " ")
 
 
 @dataclass(slots=True)
@@ -45,11 +52,9 @@ class Lines:
         coherence = ""
         if news.coherence is not None:
             coherence = f", coherence {news.coherence:.3f}"
-        count = (
-            "" if news.condition is None else f" {news.good}/{news.wanted}{coherence}"
-        )
         self._print(
-            f"hit {news.number} {news.hit.verdict.value}{count}: {news.hit.reason}"
+            f"hit {news.number} {verdict_word(news)} {news.good}/{news.wanted}"
+            f"{coherence}: {news.hit.reason}"
         )
 
     def command(self) -> Command | None:

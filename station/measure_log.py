@@ -17,7 +17,9 @@ def run_entry(condition: Condition, *, trial: bool) -> Entry:
         "name": "trial" if trial else condition.name,
         "purpose": "trial" if trial else "measurement",
         "point": condition.point,
-        "torque": condition.torque,
+        "torque": condition.torque
+        if condition.tightened is None
+        else condition.tightened,
         "preload": condition.preload,
         "level": condition.level,
     }

@@ -142,12 +142,13 @@ def _amperes(text: str) -> float:
 
 
 class AcquisitionTable(_Strict):
-    """How to stream: rate, length of a block, and what the driver keeps unread."""
+    """How to stream: rate, length of a block, what the driver keeps unread, trigger."""
 
     sample_rate: Hertz = 25_600.0
     block: Seconds = 0.05
     buffer: Seconds = 20.0
     patience: Seconds = 120.0
+    trigger: Literal["software", "hardware"] = "software"
 
 
 class HitsTable(_Strict):
@@ -193,6 +194,21 @@ class JointTable(_Strict):
         return self.bolts * torque / (self.nut_factor * self.diameter)
 
 
+class TorqueTable(_Strict):
+    """The torque tester that every bolt is tightened with, on a serial line.
+
+    A bolt's torque is the largest reading between two rests. A reading beside the
+    target by more than `tolerance` is asked for again, `tries` times at the most.
+    """
+
+    instrument: Literal["mark10"] = "mark10"
+    line: str = Field(min_length=1)
+    baud: int = Field(default=115_200, ge=300, le=4_000_000)
+    tolerance: float = Field(default=0.1, gt=0, lt=1)
+    tries: int = Field(default=3, ge=1, le=100)
+    poll: Seconds = 0.02
+
+
 class MeasureTable(_Strict):
     """The whole plan."""
 
@@ -203,6 +219,7 @@ class MeasureTable(_Strict):
     acquisition: AcquisitionTable = Field(default_factory=AcquisitionTable)
     hits: HitsTable
     joint: JointTable | None = None
+    torque: TorqueTable | None = None
     sensors: tuple[SensorTable, ...] = Field(min_length=2, max_length=128)
 
     @model_validator(mode="before")
@@ -211,3 +228,12 @@ class MeasureTable(_Strict):
         if isinstance(content, dict) and "sensors" not in content:
             raise ValueError("there is no [[sensors]] table; list hammer and responses")
         return content
+
+    @model_validator(mode="after")
+    def _bolts_known(self) -> "MeasureTable":
+        if self.torque is not None and (self.joint is None or not self.hits.torques):
+            raise ValueError(
+                "[torque] reads bolts that nobody names; give torques in [hits], and "
+                "bolts and diameter in [joint]"
+            )
+        return self

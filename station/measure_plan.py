@@ -25,6 +25,8 @@ class Condition:
         preload: that it makes [N], None where nobody says how.
         point: to strike.
         level: peak force to aim at [N], None for any.
+        tightened: mean torque on the bolts as a tester read it [N m], None where
+            none did; the preload is then that of all the readings.
     """
 
     number: int
@@ -32,6 +34,7 @@ class Condition:
     preload: float | None
     point: str
     level: float | None
+    tightened: float | None = None
 
     @property
     def name(self) -> str:

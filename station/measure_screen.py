@@ -18,7 +18,7 @@ from jointbench.acquisition.records import Channel, Verdict
 from jointbench.signal.frf import Frf
 from jointbench.signal.live_hits import CutHit
 from jointbench.station.keys import Poll, keyboard
-from jointbench.station.measure_lines import Lines
+from jointbench.station.measure_lines import Lines, verdict_word
 from jointbench.station.measure_plan import Condition
 from jointbench.station.measure_watch import Command, HitNews, Watcher
 
@@ -26,8 +26,11 @@ KEYS = {
     "a": Command.ACCEPT,
     "r": Command.REJECT,
     "u": Command.UNDO,
+    "p": Command.REPEAT,
+    "n": Command.NEXT,
     "q": Command.QUIT,
 }
+KEY_HELP = "a accept  r reject  u undo  p repeat point  n next point  q quit"
 WIDTH = 64
 _BARS = " ▁▂▃▄▅▆▇█"
 _FRAMES = 8  # a second
@@ -97,7 +100,7 @@ class Screen:
         if self._news is not None:
             parts += hit_lines(self._news, self._rate)
         parts += [Text(line, style="dim") for line in self._said]
-        parts.append(Text("a accept   r reject   u undo   q quit", style="italic"))
+        parts.append(Text(KEY_HELP, style="italic"))
         self.live.update(Group(*parts))
 
     def _levels(self) -> Table:
@@ -123,9 +126,11 @@ def level_row(channel: Channel, peak: float) -> tuple[Text, Text, Text]:
 
 def hit_lines(news: HitNews, rate: float) -> list[RenderableType]:
     """Return the lines about the last hit: verdict, force, FRF, coherence."""
+    trial = news.condition is None and news.hit.verdict is Verdict.OPERATOR
     good = news.hit.verdict is Verdict.OK
-    words = f" hit {news.number} {news.hit.verdict.value} "
-    verdict = Text(words, style="black on green" if good else "white on red")
+    words = f" hit {news.number} {verdict_word(news)} "
+    style = "black on green" if good else "black on cyan" if trial else "white on red"
+    verdict = Text(words, style=style)
     verdict.append(f" {news.good}/{news.wanted}  {news.hit.reason}", style="default")
     lines: list[RenderableType] = [verdict, Text(force_line(news.cut, rate))]
     if news.frf is not None:

@@ -41,7 +41,8 @@ class SimulatedHand:
     def ask(self, condition: Condition) -> None:
         """Ask for one stroke; while the server is away there is nobody to ask."""
         wishes = {"point": condition.point}
-        optional = {"torque": condition.torque, "level": condition.level}
+        torque = condition.tightened or condition.torque
+        optional = {"torque": torque, "level": condition.level}
         wishes |= {k: v for k, v in optional.items() if v is not None}  # type: ignore[misc]
         try:
             self.chassis.hand(json.dumps(wishes).encode())

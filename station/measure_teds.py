@@ -1,10 +1,32 @@
 # SPDX-License-Identifier: MIT
-"""What the sensors say of themselves against what the channel table says of them."""
+"""What chassis and sensors say of themselves against what plan and table say."""
 
 from collections.abc import Iterator, Sequence
 
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.sensors import Sensor, channel_name
+from jointbench.station.measure_plan import MeasurePlan
+
+NO_TRIGGER = (
+    "trigger = 'hardware' asks for what a module of the table cannot do; the program "
+    "looks for hits instead"
+)
+
+
+def by_device(plan: MeasurePlan, chassis: Chassis) -> bool:
+    """Tell whether the device shall look for hits itself, and can.
+
+    Args:
+        plan: asks for it, or not.
+        chassis: an open one.
+
+    Raises:
+        InstrumentError: nobody answers.
+    """
+    if plan.acquisition.trigger != "hardware":
+        return False
+    used = {axis.physical.partition("/")[0] for s in plan.sensors for axis in s.axes}
+    return all(m.analogue_trigger for m in chassis.modules() if m.name in used)
 
 
 def teds_warnings(chassis: Chassis, sensors: Sequence[Sensor]) -> tuple[str, ...]:

@@ -18,6 +18,8 @@ class Command(StrEnum):
     ACCEPT = "accept"
     REJECT = "reject"
     UNDO = "undo"
+    REPEAT = "repeat"
+    NEXT = "next"
     QUIT = "quit"
 
 

@@ -68,3 +68,7 @@ FullScale = Annotated[
     float | None,
     typer.Option(help="WAV: what its largest number stands for, in the columns' unit."),
 ]
+Faces = Annotated[
+    list[Path] | None,
+    typer.Option("--surface", help="Face of the joint, for [contact]; once or twice."),
+]

@@ -40,10 +40,12 @@ def write_structure_report(
     structure: Structure,
     model: ReducedModel,
     result: StructureIdentification,
+    theory: Section | None = None,
 ) -> None:
     """Write one offline HTML page about identified joints."""
     sections = [
         Section("parameters", "Joints", (_parameters(result), *_reasons(result))),
+        *([theory] if theory is not None else []),
         Section("states", "Modes", tuple(_state(one, model) for one in result.states)),
         Section("profiles", "Profile likelihood", tuple(_profiles(result))),
         Section("solutions", "Distinct solutions", (_solutions(result),)),

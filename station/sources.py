@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Open a source of samples by its URL: the one place that knows the simulators."""
+"""Open a source of samples by its URL: the one place that knows the simulators.
+
+Whatever is simulated comes through NI's client from a simulated chassis, so that every
+session that is recorded went the way that a session at the bench goes.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -90,8 +94,10 @@ def open_source(url: str) -> Source:
     """
     _require_scheme(url)
     from jointbench.simulators.bench_url import bench_from_url
+    from jointbench.station.chassis_source import ChassisSource
 
-    return bench_from_url(url)
+    bench = bench_from_url(url)
+    return ChassisSource(bench, samples=bench.samples)
 
 
 def open_visit(url: str) -> Visit:
@@ -110,16 +116,21 @@ def open_visit(url: str) -> Visit:
     from jointbench.simulators.campaign_bench import campaign_runs
     from jointbench.simulators.campaign_file import campaign_truth
     from jointbench.station.campaign_sheet import sheet_text
+    from jointbench.station.chassis_source import ChassisRun, ChassisSource
 
     bench = specimen_from_url(url)
     if isinstance(bench, TwoBodyBench):
-        stream = WholeStream(bench, bench.truth.preload)
+        source = ChassisSource(bench, samples=bench.samples)
+        stream = WholeStream(source, bench.truth.preload)
         return Visit(bench.name, bench.simulated, (stream,))
     campaign = bench.simulate()
     return Visit(
         bench.name,
         bench.simulated,
-        campaign_runs(campaign),
+        tuple(
+            ChassisRun(run, samples=run.samples.shape[1])
+            for run in campaign_runs(campaign)
+        ),
         sheet_text(campaign.design),
         campaign_truth(campaign),
     )

@@ -34,6 +34,7 @@ from jointbench.analysis.structures.structure import (
     Structure,
     build_structure,
 )
+from jointbench.station.structure_contact import TheoryTable, joint_of
 
 
 def _quantity(kind: str) -> BeforeValidator:
@@ -57,6 +58,7 @@ Span = tuple[Length, Length]
 Frequency = Annotated[float, _quantity("frequency"), Field(gt=0)]
 Stiffness = Annotated[float, _quantity("stiffness"), Field(ge=0)]
 Share = Annotated[float, _quantity("ratio"), Field(gt=0, lt=1)]
+Trust = Annotated[float, _quantity("ratio"), Field(ge=0, lt=1)]
 
 
 class _Strict(BaseModel):
@@ -148,7 +150,11 @@ class MeasuredTable(_Strict):
 
 
 class IdentifyTable(_Strict):
-    """What to identify from: frequencies, modes (with shapes) or the FRFs."""
+    """What to identify from: frequencies, modes (with shapes) or the FRFs.
+
+    The standard deviations, relative, are those of the model (mesh, material): they
+    widen those of measured frequencies and damping ratios.
+    """
 
     data: Literal["frequencies", "modes", "frf"] = "modes"
     modes: Annotated[int, Field(gt=0, le=200)] | None = None
@@ -156,6 +162,8 @@ class IdentifyTable(_Strict):
     shared: tuple[str, ...] = ()
     stiffness_box: tuple[Stiffness, Stiffness] = (1e6, 1e11)
     lines: Annotated[int, Field(gt=3)] = 200
+    frequency_sd: Trust = 0.0
+    damping_sd: Trust = 0.0
 
 
 class StructureModel(_Strict):
@@ -169,16 +177,24 @@ class StructureModel(_Strict):
     hits: dict[str, SensorTable] = {}
     measured: MeasuredTable | None = None
     identify: IdentifyTable = IdentifyTable()
+    contact: TheoryTable | None = None
 
     @model_validator(mode="after")
-    def _materials_exist(self) -> "StructureModel":
+    def _names_exist(self) -> "StructureModel":
         for name, body in self.bodies.items():
             if body.material is not None and body.material not in self.materials:
                 raise ValueError(
                     f"body {name!r} is of {body.material!r}; materials are "
                     f"{list(self.materials)}"
                 )
+        if self.contact is not None:
+            joint_of(self.contact, self.parametric_joints)
         return self
+
+    @property
+    def parametric_joints(self) -> list[str]:
+        """Names of the joints that are not glued."""
+        return [name for name, one in self.joints.items() if not one.glued]
 
 
 def structure_of(model: StructureModel, folder: Path) -> Structure:
@@ -210,7 +226,11 @@ def _body(model: StructureModel, name: str, folder: Path) -> Body:
     mesh = _mesh(table, folder)
     if table.stiffness is not None and table.mass is not None:
         stiffness = read_matrix(folder / table.stiffness)
-        return matrix_body(name, mesh, stiffness, read_matrix(folder / table.mass))
+        mass = read_matrix(folder / table.mass)
+        loss = 0.0
+        if table.material is not None:
+            loss = model.materials[table.material].loss_factor
+        return matrix_body(name, mesh, stiffness, mass, loss_factor=loss)
     material = model.materials[table.material or ""]
     solid = Material(
         material.youngs_modulus,

@@ -224,6 +224,11 @@ class AnalogTask:
             self._reader.read_many_sample(samples, count, timeout)
         return samples
 
+    def done(self) -> bool:
+        """Tell whether a finite block has been made to its end."""
+        with _named_errors(self._address):
+            return bool(self._task.is_task_done())
+
     def acquired(self) -> int:
         """Return how many samples per channel the device has made since the start."""
         with _named_errors(self._address):

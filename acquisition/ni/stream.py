@@ -52,6 +52,34 @@ class Gap:
 
 
 @dataclass(frozen=True, slots=True)
+class Waiting:
+    """A device that looks for its trigger has found none yet.
+
+    Attributes:
+        samples: how many fit into the time just waited.
+    """
+
+    samples: int
+
+
+@dataclass(frozen=True, slots=True)
+class HardwareTrigger:
+    """A rising edge that the device itself looks for.
+
+    Attributes:
+        channel: name of the channel that triggers.
+        level: [SI unit of the channel].
+        before: samples kept before the edge.
+        samples: of the whole block.
+    """
+
+    channel: str
+    level: float
+    before: int
+    samples: int
+
+
+@dataclass(frozen=True, slots=True)
 class StreamSettings:
     """How to stream.
 
@@ -80,16 +108,18 @@ class Counters:
         acquired: samples per channel made by the device, as its counter says.
         unread: of those, still in its buffer when the counter was read.
         delivered: samples per channel read.
+        unwanted: of those made, left in the buffer when the stream was paused.
     """
 
     acquired: int = 0
     unread: int = 0
     delivered: int = 0
+    unwanted: int = 0
 
     @property
     def lost(self) -> int:
         """Samples per channel that were made, are not waiting, and were not read."""
-        return self.acquired - self.unread - self.delivered
+        return self.acquired - self.unread - self.unwanted - self.delivered
 
 
 @dataclass(slots=True)
@@ -113,6 +143,7 @@ class NiStream:
     _segment: int = 0
     _position: int = 0
     _made_before: int = 0
+    _trigger: HardwareTrigger | None = None
 
     def start(self) -> None:
         """Make the task and start its clock.
@@ -122,17 +153,54 @@ class NiStream:
         """
         task = self.chassis.task(f"jointbench-{self._segment}", self.sensors)
         try:
-            buffer = round(self.settings.buffer * self.settings.sample_rate)
-            self.sample_rate = task.start(
-                self.settings.sample_rate, buffer=max(buffer, 4 * self.settings.block)
-            )
+            self.sample_rate = _begin(task, self.settings, self._trigger)
         except InstrumentError:
             task.close()
             raise
         self._task, self._position = task, 0
         self._made_before = self.counters.acquired
 
-    def items(self) -> Iterator[Block | Gap]:
+    def trigger_by(self, trigger: HardwareTrigger) -> None:
+        """Let the device look for hits from now on; each is a segment of its own.
+
+        Raises:
+            InstrumentError: it cannot, or does not come back.
+        """
+        if trigger == self._trigger:
+            return
+        self.pause()
+        self._trigger = trigger
+        self.resume()
+
+    def pause(self) -> None:
+        """Stop on purpose; what the device has made and nobody read is not wanted."""
+        with suppress(InstrumentError):
+            self.count()
+        self.counters.unwanted += self.counters.unread
+        self.counters.unread = 0
+        self.close()
+        self._segment += 1
+
+    def resume(self) -> None:
+        """Start, as soon as the device is there.
+
+        Raises:
+            InstrumentError: the device refuses, or does not come back in time.
+        """
+        settings = self.settings
+        since = settings.now()
+        while True:
+            try:
+                return self.start()
+            except ConnectionLost as error:
+                if settings.now() - since > settings.patience:
+                    raise InstrumentError(
+                        f"{error}; gave up after {settings.patience:g} s, what was "
+                        "recorded is safe"
+                    ) from error
+                settings.sleep(_RETRY)
+
+    def items(self) -> Iterator[Block | Gap | Waiting]:
         """Yield blocks and gaps for as long as the stream is read.
 
         Raises:
@@ -156,16 +224,15 @@ class NiStream:
             return ()
 
     def count(self) -> None:
-        """Bring the counters up to date with the device's own."""
-        if self._task is not None:
+        """Bring the counters up to date with the device's own.
+
+        A device that looks for its trigger makes samples that nobody wants; there, a
+        block is whole or an error.
+        """
+        if self._task is not None and self._trigger is None:
             acquired, position = self._task.acquired(), self._task.position()
             self.counters.acquired = self._made_before + max(acquired, position)
             self.counters.unread = max(0, acquired - position)
-
-    def count_if_there(self) -> None:
-        """Bring the counters up to date unless the device went away."""
-        with suppress(InstrumentError):
-            self.count()
 
     def close(self) -> None:
         """Stop the task, if it is still there."""
@@ -173,11 +240,26 @@ class NiStream:
             self._task.close()
             self._task = None
 
-    def _read(self) -> Block:
+    def _read(self) -> Block | Waiting:
         assert self._task is not None, "start() comes first"
+        if self._trigger is not None:
+            return self._read_triggered(self._task, self._trigger)
         count = self.settings.block
         samples = self._task.read(count, timeout=count / self.sample_rate + 5.0)
         return self._took(samples)
+
+    def _read_triggered(
+        self, task: AnalogTask, trigger: HardwareTrigger
+    ) -> Block | Waiting:
+        if not task.done():
+            self.settings.sleep(self.settings.block / self.sample_rate)
+            return Waiting(self.settings.block)
+        block = self._took(task.read(trigger.samples, timeout=5.0))
+        # The next one is armed before anybody is asked to hit.
+        self.close()
+        self._segment += 1
+        self.resume()
+        return block
 
     def _took(self, samples: FloatArray) -> Block:
         block = Block(samples, self._segment, self._position)
@@ -203,29 +285,36 @@ class NiStream:
         )
         lost, first = resume - self._position, self._position
         seconds = lost / self.sample_rate
-        yield Gap("overrun", self._segment, first, lost, seconds, words)
+        gap = Gap("overrun", self._segment, first, lost, seconds, words)
         self._position = resume
         self.counters.acquired = max(
             self.counters.acquired, self._made_before + self._position
         )
-        yield self._took(samples)
+        # Counted before it is told: whoever is told may stop the stream.
+        block = self._took(samples)
+        yield gap
+        yield block
 
     def _reconnect(self, words: str) -> Gap:
-        settings = self.settings
-        since = settings.now()
-        first = self._position
+        since, first = self.settings.now(), self._position
         self.close()
         self._segment += 1
-        while True:
-            try:
-                self.start()
-            except ConnectionLost as error:
-                if settings.now() - since > settings.patience:
-                    raise InstrumentError(
-                        f"{error}; gave up after {settings.patience:g} s, what was "
-                        "recorded is safe"
-                    ) from error
-                settings.sleep(_RETRY)
-            else:
-                away = settings.now() - since
-                return Gap("back", self._segment, first, 0, away, words)
+        self.resume()
+        away = self.settings.now() - since
+        return Gap("back", self._segment, first, 0, away, words)
+
+
+def _begin(
+    task: AnalogTask, settings: StreamSettings, trigger: HardwareTrigger | None
+) -> float:
+    """Start the clock of a task and return its rate [Hz]."""
+    if trigger is None:
+        buffer = round(settings.buffer * settings.sample_rate)
+        return task.start(settings.sample_rate, buffer=max(buffer, 4 * settings.block))
+    return task.start_triggered(
+        settings.sample_rate,
+        samples=trigger.samples,
+        source=trigger.channel,
+        before=trigger.before,
+        level=trigger.level,
+    )

@@ -14,9 +14,14 @@ import struct
 
 import numpy as np
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import FormatError, UsageError
 from jointbench.acquisition.records import step
-from jointbench.acquisition.serial_lines.line import Line, LineBroken
+from jointbench.acquisition.serial_lines.line import (
+    Line,
+    LineBroken,
+    ProfileBroken,
+)
 from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
 
 BAUD = 115_200
@@ -100,7 +105,8 @@ def read_profile(
 
     Raises:
         FormatError: the answer is not framed as the notes say, or holds no point.
-        LineBroken: it breaks off; the error keeps the bytes that came.
+        ProfileBroken: it breaks off; the error keeps bytes and heights that came.
+        LineBroken: it breaks off before the first point.
     """
     _request(line, b"U0")
     _end(line)
@@ -110,18 +116,20 @@ def read_profile(
     try:
         body = line.receive(2 * count)
     except LineBroken as error:
-        points = len(error.received) // 2
-        raise LineBroken(
-            f"{error}; {points} of {count} points came and are kept in this error",
+        whole = error.received[: len(error.received) // 2 * 2]
+        heights = _heights(whole, signed=signed)
+        raise ProfileBroken(
+            f"{error}; {heights.size} of {count} points came",
             head + error.received,
+            heights,
+            traverse / count,
         ) from error
     _end(line)
     if count == 0:
         raise FormatError("the DH-8 sent a profile without points; measure first")
-    counts = np.frombuffer(body, dtype="<i2" if signed else "<u2")
     return Profile(
         name=name,
-        heights=HEIGHT_STEP * counts.astype(float),
+        heights=_heights(body, signed=signed),
         spacing=traverse / count,
         valid=np.ones(count, dtype=bool),
         instrument=SurfaceInstrument(name="Diavite DH-8"),
@@ -129,6 +137,11 @@ def read_profile(
             step("diavite", gain=gain, points=count, signed=signed, filtered=filtered),
         ),
     )
+
+
+def _heights(body: bytes, *, signed: bool) -> FloatArray:
+    counts = np.frombuffer(body, dtype="<i2" if signed else "<u2")
+    return HEIGHT_STEP * counts.astype(np.float64)
 
 
 def _request(line: Line, command: bytes) -> None:

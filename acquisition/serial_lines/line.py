@@ -1,11 +1,21 @@
 # SPDX-License-Identifier: MIT
 """A serial line with a deadline: the one module that talks to pyserial."""
 
+import sys
 from typing import Protocol
 
 import serial
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import InstrumentError, UsageError
+
+if sys.platform == "win32":
+    _BROKEN: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)
+else:
+    import termios
+
+    # pyserial lets an error of the terminal through, and trips over a closed port.
+    _BROKEN = (serial.SerialException, OSError, TypeError, termios.error)
 
 
 class LineBroken(InstrumentError):
@@ -18,6 +28,21 @@ class LineBroken(InstrumentError):
     def __init__(self, message: str, received: bytes) -> None:
         super().__init__(message)
         self.received = received
+
+
+class ProfileBroken(LineBroken):
+    """A line that broke in the middle of a profile.
+
+    Attributes:
+        heights: of the points that had arrived, from the first on [m].
+        spacing: between them, as far as it is known [m].
+    """
+
+    def __init__(
+        self, message: str, received: bytes, heights: FloatArray, spacing: float | None
+    ) -> None:
+        super().__init__(message, received)
+        self.heights, self.spacing = heights, spacing
 
 
 class Line(Protocol):
@@ -59,7 +84,7 @@ class SerialLine:
                 f"{name!r} is no serial line ({error}); type COM3, /dev/ttyUSB0 or "
                 "socket://host:port"
             ) from error
-        except serial.SerialException as error:
+        except _BROKEN as error:
             raise InstrumentError(
                 f"serial line {name!r} cannot be opened ({error}); check the cable and "
                 "whether another program has it"
@@ -74,7 +99,7 @@ class SerialLine:
         try:
             self._port.write(data)
             self._port.flush()
-        except (serial.SerialException, OSError) as error:
+        except _BROKEN as error:
             raise self._broken("was unplugged", b"") from error
 
     def receive(self, count: int) -> bytes:
@@ -117,12 +142,17 @@ class SerialLine:
 
     def _more(self, received: bytearray, count: int, wanted: str) -> None:
         try:
-            new = self._port.read(count)
-        except (serial.SerialException, OSError, TypeError) as error:
+            # One byte is waited for, the rest taken as it lies there: a read of many
+            # that breaks off throws away what had come.
+            new = self._port.read(1)
+            received += new
+            rest = min(int(self._port.in_waiting), count - 1) if new else 0
+            if rest > 0:
+                received += self._port.read(rest)
+        except _BROKEN as error:
             raise self._broken("was unplugged", bytes(received)) from error
         if not new:
             raise self._broken(f"is silent, {wanted} were expected", bytes(received))
-        received += new
 
     def _broken(self, what: str, received: bytes) -> LineBroken:
         return LineBroken(

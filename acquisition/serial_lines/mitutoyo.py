@@ -18,7 +18,11 @@ import numpy as np
 
 from jointbench.acquisition.errors import FormatError, InstrumentError
 from jointbench.acquisition.records import step
-from jointbench.acquisition.serial_lines.line import Line
+from jointbench.acquisition.serial_lines.line import (
+    Line,
+    LineBroken,
+    ProfileBroken,
+)
 from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
 
 BAUD = 9600
@@ -106,12 +110,24 @@ def read_profile(line: Line, *, name: str) -> Profile:
 
     Raises:
         FormatError: a file is missing, out of turn or no list of heights.
+        ProfileBroken: it breaks off; the error keeps the heights that came.
+        LineBroken: it breaks off before the first file.
     """
     length = read_conditions(line).length
     count = _number_of_files(ask(line, "EVA", "00"))
     heights: list[float] = []
     for number in range(1, count + 1):
-        heights += parse_heights(ask(line, "EVA", f"{number:02d}"), number)
+        try:
+            heights += parse_heights(ask(line, "EVA", f"{number:02d}"), number)
+        except LineBroken as error:
+            # How many points a file holds shows in those before it alone.
+            heights += _whole_heights(error.received)
+            raise ProfileBroken(
+                f"{error}; {len(heights)} points came, in file {number} of {count}",
+                error.received,
+                1e-6 * np.array(heights),
+                None,
+            ) from error
     if not heights:
         raise FormatError("the Mitutoyo sent a profile without points; measure first")
     return Profile(
@@ -155,6 +171,18 @@ def parse_heights(text: str, number: int) -> list[float]:
             "for the profile again"
         )
     return heights
+
+
+def _whole_heights(received: bytes) -> list[float]:
+    """Return the heights at the beginning of an answer that broke off [um]."""
+    _, _, body = received.partition(b";")
+    found: list[float] = []
+    for part in re.findall(rb"[^,;\s]{9}", body):
+        try:
+            found.append(float(part))
+        except ValueError:
+            break
+    return found
 
 
 def _number_of_files(text: str) -> int:

@@ -24,6 +24,7 @@ from jointbench.analysis.contact.spread import (
     central_interval,
     draw_inputs,
 )
+from jointbench.analysis.contact.tangential import tangential_stiffness
 
 SURFACE_INPUT = "surface (D and G)"
 # Steps of the central differences: of D itself, of the logarithm of all others.
@@ -59,10 +60,12 @@ class JointUncertainty:
 
     Attributes:
         stiffness: of the normal stiffness [N/m].
+        tangential: of the tangential stiffness without slip [N/m].
         damping: of the damping [N s/m]; None where it was not asked for.
     """
 
     stiffness: Uncertainty
+    tangential: Uncertainty
     damping: Uncertainty | None
 
 
@@ -94,7 +97,7 @@ def predict_uncertainty(
         seed: of the draws.
 
     Returns:
-        Intervals and shares of variance for stiffness and damping.
+        Intervals and shares of variance for stiffnesses and damping.
 
     Raises:
         BadData: a number outside the model's range.
@@ -117,7 +120,9 @@ def predict_uncertainty(
         _uncertainty(many, few, spread, material, preload, drawn.outside)
         for many, few in zip(by_draw, by_step, strict=True)
     ]
-    return JointUncertainty(found[0], found[1] if damping is not None else None)
+    return JointUncertainty(
+        found[0], found[1], found[2] if damping is not None else None
+    )
 
 
 def _steps(
@@ -145,7 +150,7 @@ def _evaluate(
     gamma: float,
     damping: DampingChoice | None,
 ) -> list[FloatArray]:
-    """Return stiffness, and damping where it is asked for, of all inputs."""
+    """Return both stiffnesses, and damping where it is asked for, of all inputs."""
     sums = contact_curve(
         model,
         dimension=inputs.dimension,
@@ -157,8 +162,9 @@ def _evaluate(
         gamma=gamma,
     )
     stiffness = sums.stiffness.sum(axis=0)
+    both = [stiffness, tangential_stiffness(model, sums, material)]
     if damping is None:
-        return [stiffness]
+        return both
     surface = FractalSurface(
         inputs.dimension, inputs.roughness, inputs.hardness, gamma, inputs.friction
     )
@@ -170,7 +176,7 @@ def _evaluate(
         form=damping.form,
         convention=damping.convention,
     )
-    return [stiffness, damping_coefficient(factor, stiffness, damping)]
+    return [*both, damping_coefficient(factor, stiffness, damping)]
 
 
 def _uncertainty(

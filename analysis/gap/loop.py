@@ -11,12 +11,13 @@ from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
 from jointbench.analysis.gap.effects import Candidate
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
-from jointbench.analysis.gap.race import Progress, finish, race, score
+from jointbench.analysis.gap.race import Progress, finish, race, score, started
 from jointbench.analysis.gap.screening import Screening, screen
 
 REFINEMENTS = 12
 SETTLED = 0.5
 """Change of the cost below which noise, scatter and fit agree with each other."""
+MOST_HELD_BACK = 2
 REJUDGED = 12
 AGREED = 2.0
 """Change of a winner's cost below which it agrees with the noise estimated at it."""
@@ -192,17 +193,17 @@ def _held_back(
 ) -> list[Fit]:
     """Return the fits of which their directed tests foretold more than was gained.
 
-    An expansion about another fit holds back one that differs from it.
+    An expansion about another fit holds back one that differs from it; it may even
+    have lost the race.
     """
     gained = base.cost - failed.first.cost
-    foretold = {
-        c.label: d.drop for d in reversed(hopes.directions) for c in [d.candidate]
-    }
-    return [
-        f
-        for f in ranked
-        if f is not failed.first and foretold[f.candidates[-1].label] > gained
-    ]
+    fits = {f.candidates[-1].label: f for f in ranked}
+    held: dict[str, Fit] = {}
+    for d in hopes.directions:
+        label = d.candidate.label
+        if d.drop > gained and not d.suggested and label not in held:
+            held[label] = fits.get(label) or started(failed.bench, base, d)
+    return [f for f in held.values() if f is not failed.first][:MOST_HELD_BACK]
 
 
 def _part_of(fewer: Fit, more: Fit) -> bool:

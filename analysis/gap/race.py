@@ -189,6 +189,19 @@ def _along(problem: Problem, fit: Fit, direction: Direction, stage: Stage) -> Ru
     return Runner(problem, trials[best], costs[best])
 
 
+def started(bench: Bench, fit: Fit, direction: Direction) -> Fit:
+    """Return a first fit of what a directed test points to.
+
+    Args:
+        bench: measurement and model.
+        fit: what the candidate is added to.
+        direction: the test.
+    """
+    problem = make_problem(bench, (*fit.candidates, direction.candidate))
+    runner = _along(problem, fit, direction, MIDDLE)
+    return minimise(problem, runner.x, MIDDLE, iterations=MOST_STEPS)
+
+
 def _runner(problem: Problem, x: FloatArray) -> Runner:
     return Runner(problem, np.clip(x, problem.lower, problem.upper), np.inf)
 
@@ -264,4 +277,4 @@ def _keep(runners: Sequence[Runner], count: int) -> list[Runner]:
     ]
 
 
-__all__ = ["finish", "race", "score"]
+__all__ = ["finish", "race", "score", "started"]

@@ -11,7 +11,6 @@ from itertools import pairwise
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
-from jointbench.acquisition.errors import BadData
 from jointbench.analysis.structures.assembly import Sparse
 from jointbench.analysis.structures.factor import Solve, Solver, factorise
 from jointbench.analysis.structures.full_modes import lowest_modes, shift_of
@@ -50,24 +49,33 @@ def factor_bodies(structure: Structure, solver: Solver = Solver.AUTO) -> BodyFac
     """Factor every body on its own.
 
     Args:
-        structure: bodies and joints; glued joints are refused.
+        structure: bodies and joints; bodies that are glued share one factor.
         solver: who factors.
 
     Returns:
         The factors.
-
-    Raises:
-        BadData: a joint is glued: it ties two bodies into one factor.
     """
-    if structure.glue.nnz:
-        raise BadData(
-            "a glued joint ties bodies together, so that they cannot be reduced one by "
-            "one; mesh them as one body, or give the joint a stiffness"
-        )
+    # Glue is no wave: the shift is that of the bodies without it.
     shift = shift_of(structure.stiffness, structure.mass)
-    shifted = Sparse(structure.stiffness + shift * structure.mass)
-    solves = [factorise(block, solver) for block in _blocks(structure, shifted)]
-    return BodyFactors(tuple(solves), structure.blocks, shift)
+    shifted = Sparse(structure.stiffness + structure.glue + shift * structure.mass)
+    edges = glued_blocks(structure)
+    solves = [factorise(block, solver) for block in _blocks(edges, shifted)]
+    return BodyFactors(tuple(solves), edges, shift)
+
+
+def glued_blocks(structure: Structure) -> IntArray:
+    """Return where the blocks of bodies that glue ties together begin, and the end.
+
+    Bodies between two that are glued join their block: it must be one range.
+    """
+    edges = structure.blocks
+    ties = structure.glue.tocoo()
+    first = np.searchsorted(edges, ties.row, side="right") - 1
+    second = np.searchsorted(edges, ties.col, side="right") - 1
+    inner = np.ones(edges.size, bool)
+    for low, high in np.unique(np.stack([first, second], axis=1), axis=0):
+        inner[low + 1 : high + 1] = False
+    return np.asarray(edges[inner])
 
 
 def body_modes(
@@ -81,22 +89,27 @@ def body_modes(
         solver: who factors.
 
     Returns:
-        Columns that move one body each, shape (n_free, n_bodies * count).
+        Columns that move one body, or those glued to it, shape (n_free, n_blocks *
+        count).
     """
     columns = []
-    stiffness = _blocks(structure, structure.stiffness)
-    mass = _blocks(structure, structure.mass)
+    edges = glued_blocks(structure)
+    shift = shift_of(structure.stiffness, structure.mass)
+    stiffness = _blocks(edges, Sparse(structure.stiffness + structure.glue))
+    mass = _blocks(edges, structure.mass)
     for at, (k, m) in enumerate(zip(stiffness, mass, strict=True)):
-        shapes = lowest_modes(k, m, min(count, k.shape[0] - 2), solver).shapes
+        most = min(count, k.shape[0] - 2)
+        shapes = lowest_modes(k, m, most, solver, shift=shift).shapes
         part = np.zeros((structure.size, shapes.shape[0]))
-        part[int(structure.blocks[at]) : int(structure.blocks[at + 1])] = shapes.T
+        part[int(edges[at]) : int(edges[at + 1])] = shapes.T
         columns.append(part)
     return np.concatenate(columns, axis=1)
 
 
-def _blocks(structure: Structure, matrix: Sparse) -> list[Sparse]:
-    edges = structure.blocks.tolist()
-    return [Sparse(matrix[low:high, low:high]) for low, high in pairwise(edges)]
+def _blocks(edges: IntArray, matrix: Sparse) -> list[Sparse]:
+    return [
+        Sparse(matrix[low:high, low:high]) for low, high in pairwise(edges.tolist())
+    ]
 
 
 def solve_bodywise(

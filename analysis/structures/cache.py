@@ -12,7 +12,7 @@ from jointbench.analysis.structures.reduced import ReducedModel
 from jointbench.analysis.structures.structure import Structure
 
 # Raised whenever the way of reducing changes, so that old files are not met again.
-_VERSION = 1
+_VERSION = 2
 _ARRAYS = ("stiffness", "spread", "loss", "basis", "riesz", "scale")
 
 
@@ -23,6 +23,7 @@ def content_key(structure: Structure, *options: object) -> str:
         structure.stiffness,
         structure.mass,
         structure.loss,
+        structure.glue,
         *structure.spread,
     ):
         for part in (matrix.indptr, matrix.indices, matrix.data):

@@ -80,17 +80,38 @@ def solve_full(
     values = np.asarray(stiffness, float)
     if values.size and not values.min() >= 0:
         raise BadData(f"a joint's stiffness is {values.min():g} N/m; it must be >= 0")
-    return lowest_modes(structure.with_joints(values), structure.mass, count, solver)
+    # Springs and glue are no waves: they must not raise the shift, which says what is
+    # rigid.
+    shift = shift_of(structure.stiffness, structure.mass)
+    whole = structure.with_joints(values)
+    return lowest_modes(whole, structure.mass, count, solver, shift=shift)
 
 
 def lowest_modes(
-    stiffness: Sparse, mass: Sparse, count: int, solver: Solver = Solver.AUTO
+    stiffness: Sparse,
+    mass: Sparse,
+    count: int,
+    solver: Solver = Solver.AUTO,
+    *,
+    shift: float | None = None,
 ) -> StructureModes:
-    """Find the lowest modes of sparse matrices; see `solve_full`."""
+    """Find the lowest modes of sparse matrices; see `solve_full`.
+
+    Args:
+        stiffness: K [N/m].
+        mass: M [kg].
+        count: how many.
+        solver: who factors.
+        shift: of the spectrum [1/s^2]; None takes that of the matrices.
+
+    Raises:
+        BadData: too many modes are asked for, or the matrices cannot be factored.
+    """
     size = stiffness.shape[0]
     if not 0 < count < size - 1:
         raise BadData(f"{count} modes of {size} degrees of freedom; ask for fewer")
-    shift = shift_of(stiffness, mass)
+    if shift is None:
+        shift = shift_of(stiffness, mass)
     solve = factorise(Sparse(stiffness + shift * mass), solver)
     inverse, vector = largest_of_inverse(solve, mass, count)
     value = 1.0 / inverse - shift

@@ -31,15 +31,15 @@ from jointbench.analysis.structures.predict import (
     energy_shares,
     modal_state,
 )
-from jointbench.analysis.structures.profile import profile_likelihood
-from jointbench.analysis.structures.reduced import ReducedModel, frequency_bound
-from jointbench.analysis.structures.search import (
+from jointbench.analysis.structures.problem import (
     Optimum,
     Problem,
-    find_optima,
     pose_problem,
     values_of,
 )
+from jointbench.analysis.structures.profile import profile_likelihood
+from jointbench.analysis.structures.reduced import ReducedModel, frequency_bound
+from jointbench.analysis.structures.search import find_optima
 from jointbench.analysis.structures.structure import Structure
 
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.

@@ -5,7 +5,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.structures.predict import damping_ratios, modal_state
-from jointbench.analysis.structures.search import Optimum, Problem, values_of
+from jointbench.analysis.structures.problem import Optimum, Problem, values_of
 
 # What a hammer test usually reaches: frequency 0.2 %, damping ratio 5 % of its value.
 _FREQUENCY_SD = 0.002

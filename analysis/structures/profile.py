@@ -5,7 +5,8 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.structures.joint_result import Profile
-from jointbench.analysis.structures.search import Optimum, Problem, descend
+from jointbench.analysis.structures.problem import Optimum, Problem
+from jointbench.analysis.structures.search import descend
 
 # 95 % of a chi-squared of one degree of freedom.
 _LEVEL = 3.841458820694124

@@ -59,7 +59,7 @@ def reduce_structure(
 
     The free modes of the bodies are joined by the modes at the point of the box where
     the error bound is worst, until it is small everywhere. No factor is larger than
-    that of one body.
+    that of one body, or of bodies that are glued together.
 
     Args:
         structure: bodies and joints.
@@ -79,15 +79,13 @@ def reduce_structure(
         UsageError: there is no joint to vary, or the box is empty.
 
     Source:
-        Rozza, Huynh and Patera 2008, Arch. Comput. Methods Eng. 15, 229-275 (greedy
-        choice by a residual bound).
+        Rozza et al. 2008, Arch. Comput. Methods Eng. 15, 229-275 (greedy choice).
     """
     _require_box(structure, box)
     factors = factor_bodies(structure, solver)
-    empty = np.zeros((structure.size, 0))
-    start = body_modes(structure, modes, solver)
     space = _Space.over(structure, factors, box[1])
-    space.add(orthonormalise(empty, structure.mass, start))
+    start = body_modes(structure, modes, solver)
+    space.add(orthonormalise(space.basis, structure.mass, start))
     if loads is not None:
         space.add(_give_way(structure, factors, space.basis, loads))
     trials = _trial_points(len(structure.spread), box)
@@ -187,7 +185,8 @@ class _Space:
     def add(self, new: FloatArray) -> None:
         """Append orthonormal columns."""
         mass = self.structure.mass @ new
-        bodies = self.structure.stiffness @ new + self.factors.shift * mass
+        bodies = self.structure.stiffness @ new + self.structure.glue @ new
+        bodies += self.factors.shift * mass
         joints = [
             scale * (spread @ new)
             for scale, spread in zip(self.scale, self.structure.spread, strict=True)

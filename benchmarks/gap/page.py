@@ -9,91 +9,21 @@ import itertools
 import json
 import sys
 from collections import Counter
-from collections.abc import Callable, Sequence
-from math import sqrt
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-
-NAMEABLE = 50.0
-Z95 = 1.96
-Run = dict[str, Any]
-WORDS = (
-    "right",
-    "ambiguous, truth in it",
-    "unknown",
-    "none",
-    "one of two",
-    "ambiguous, wrong",
-    "wrong name",
-    "crash",
+from estimates import coverage, force_curves, pulls, shrinkage, site_share
+from outcomes import (
+    NAMEABLE,
+    WORDS,
+    Run,
+    sets_of,
+    share_text,
+    told_by,
+    wilson,
+    word_of,
 )
-
-
-def told_by(run: Run) -> list[tuple[str, str]]:
-    """Return names and sites of what was told."""
-    return [(e["name"], e["site"]) for e in run["found"].get("effects", [])]
-
-
-def word_of(run: Run) -> str:
-    """Return what a verdict is worth: the exact names, or honest doubt."""
-    verdict = run["found"]["verdict"]
-    if verdict in {"crash", "unknown", "none"}:
-        return str(verdict)
-    truth, told = set(run["truth"]), {name for name, _ in told_by(run)}
-    if verdict == "ambiguous":
-        inside = bool(truth) and truth <= told and run["kind"] not in NOT_IN_CATALOGUE
-        return "ambiguous, truth in it" if inside else "ambiguous, wrong"
-    if run["kind"] in NOT_IN_CATALOGUE:
-        return "wrong name"
-    if run["kind"] == "pair" and told < truth:
-        return "one of two"
-    return "right" if told == truth else "wrong name"
-
-
-NOT_IN_CATALOGUE = ("hidden", "outside")
-
-
-def wilson(hits: int, count: int) -> tuple[float, float]:
-    """Return the 95 % Wilson interval of a share [%]."""
-    share = hits / count
-    centre = share + Z95**2 / (2 * count)
-    half = Z95 * sqrt(share * (1 - share) / count + Z95**2 / (4 * count**2))
-    scale = 100 / (1 + Z95**2 / count)
-    return scale * (centre - half), scale * (centre + half)
-
-
-def share_text(hits: int, count: int) -> str:
-    """Return a share with its interval, in words."""
-    if count == 0:
-        return "-"
-    low, high = wilson(hits, count)
-    return f"{100 * hits / count:.1f} % ({hits}/{count}; {low:.1f} to {high:.1f})"
-
-
-def sets_of(runs: Sequence[Run]) -> dict[str, list[Run]]:
-    """Split runs into the sets that have a bar of their own."""
-    margins = [min(run["margins"], default=np.inf) for run in runs]
-    kinds: dict[str, Callable[[Run, float], bool]] = {
-        "nothing missing": lambda r, m: r["kind"] == "null",
-        "one effect, margin >= 50": lambda r, m: (
-            r["kind"] == "single" and m >= NAMEABLE
-        ),
-        "one effect, margin < 50": lambda r, m: r["kind"] == "single" and m < NAMEABLE,
-        "two effects, margins >= 50": lambda r, m: (
-            r["kind"] == "pair" and m >= NAMEABLE
-        ),
-        "two effects, a margin < 50": lambda r, m: r["kind"] == "pair" and m < NAMEABLE,
-        "taken out, margin >= 50": lambda r, m: r["kind"] == "hidden" and m >= NAMEABLE,
-        "taken out, margin < 50": lambda r, m: r["kind"] == "hidden" and m < NAMEABLE,
-        "outside, margin >= 50": lambda r, m: r["kind"] == "outside" and m >= NAMEABLE,
-        "outside, margin < 50": lambda r, m: r["kind"] == "outside" and m < NAMEABLE,
-    }
-    return {
-        name: [r for r, m in zip(runs, margins, strict=True) if test(r, m)]
-        for name, test in kinds.items()
-    }
 
 
 def confusion(sets: dict[str, list[Run]]) -> list[str]:
@@ -139,102 +69,6 @@ def _answer(run: Run) -> str:
     return str(run["found"]["verdict"])
 
 
-def right_singles(runs: Sequence[Run]) -> list[Run]:
-    """Return the singles that were named right."""
-    return [r for r in runs if r["kind"] == "single" and word_of(r) == "right"]
-
-
-def site_share(runs: Sequence[Run]) -> str:
-    """Return how often the site of a right name is right."""
-    mine = [r for r in runs if r["kind"] in {"single", "pair"}]
-    mine = [r for r in mine if word_of(r) == "right"]
-    hits = sum(
-        dict(told_by(r)) == dict(zip(r["truth"], r["sites"], strict=True)) for r in mine
-    )
-    return share_text(hits, len(mine))
-
-
-FRICTION = ("jenkins", "iwan", "bouc_wen")
-
-
-def coverage(runs: Sequence[Run]) -> list[str]:
-    """Return, effect by effect, how often 2 sd hold the true parameters."""
-    inside: dict[str, list[bool]] = {}
-    for run in right_singles(runs):
-        effect = run["found"]["effects"][0]
-        if effect["name"] in FRICTION:
-            continue
-        for name, estimate in effect["parameters"].items():
-            truth = run["parameters"][0].get(name)
-            if truth is None or not np.isfinite(estimate["sd"]):
-                continue
-            off = abs(estimate["value"] - truth) / max(estimate["sd"], 1e-300)
-            inside.setdefault(run["truth"][0], []).append(off <= 2.0)
-    every = [x for row in inside.values() for x in row]
-    lines = ["| effect | within 2 sd |", "|---|---|"]
-    lines += [
-        f"| {name} | {share_text(sum(row), len(row))} |"
-        for name, row in sorted(inside.items())
-    ]
-    return [*lines, f"| all | {share_text(sum(every), len(every))} |"]
-
-
-def force_curves(runs: Sequence[Run]) -> str:
-    """Return how well the curves of hysteretic laws come out, where they were named.
-
-    What a law takes off the elastic force on first loading, up to the largest motion
-    of the joint, against the truth; the largest difference over the largest value.
-    """
-    errors = [
-        error_of(run)
-        for run in right_singles(runs)
-        if run["found"]["effects"][0]["name"] in FRICTION
-    ]
-    if not errors:
-        return "none was named"
-    inside = sum(e <= 0.1 for e in errors)
-    return (
-        f"median error {100 * np.median(errors):.1f} %; within 10 %: "
-        f"{share_text(inside, len(errors))}"
-    )
-
-
-def error_of(run: Run) -> float:
-    """Return the error of one force curve [-]."""
-    from jointbench.simulators.campaign_design import draw_design
-    from jointbench.simulators.effect_draws import specimen_scales
-
-    effect = run["found"]["effects"][0]
-    told = {name: one["value"] for name, one in effect["parameters"].items()}
-    travel = specimen_scales(draw_design(run["seed"])).elongation
-    r = np.linspace(0.0, travel, 200)
-    truth = softening(effect["name"], run["parameters"][0], r)
-    error = np.abs(softening(effect["name"], told, r) - truth).max()
-    return float(error / np.abs(truth).max())
-
-
-def softening(name: str, p: dict[str, float], r: np.ndarray) -> np.ndarray:
-    """Return elastic force less that of a hysteretic law on first loading [N]."""
-    from jointbench.analysis.gap.slider_march import slider_tables
-
-    if name == "iwan":
-        edges = np.linspace(0, 1, int(p.get("sliders", 14)) + 1)
-        power = p["chi"] + 2
-        shares = np.diff(edges**power)
-        centres = np.diff(edges ** (power + 1)) / shares * power / (power + 1)
-        weights, slips = p["kt"] * shares, p["phimax"] * centres
-    elif name == "jenkins":
-        weights, slips = np.array([p["kt"]]), np.array([p["Fs"] / p["kt"]])
-    else:
-        yielding = p["zy"] / (p["b"] + p["g"]) ** (1 / p["n"])
-        weights, slips = np.array([p["k"]]), np.array([yielding])
-    tables, tops = slider_tables(1.0, 0.0, p.get("sharpness", p.get("n", 1.0)))
-    grid = np.arange(tables.shape[1]) / tops[0]
-    x = r[:, None] / slips
-    force = np.interp(x, grid, tables[0], right=1.0) * slips
-    return np.asarray(np.sum(weights * (r[:, None] - force), axis=1))
-
-
 def null_test(runs: Sequence[Run]) -> str:
     """Return how often the directed tests of a null exceed their limit."""
     tests = [
@@ -247,42 +81,6 @@ def null_test(runs: Sequence[Run]) -> str:
     return (
         f"over the 99.5 % limit {share_text(above, len(tests))}, over 1.3 times the "
         f"limit, where the engine looks further, {share_text(far, len(tests))}"
-    )
-
-
-def shrinkage(runs: Sequence[Run]) -> str:
-    """Return how much held-out gaps of 3 and more shrink under right names."""
-    shrinks = [
-        run["found"]["shrink"]
-        for run in right_singles(runs)
-        if run["found"]["gap_before"] >= 3.0
-    ]
-    if not shrinks:
-        return "no gap of 3 or more"
-    return (
-        f"median {100 * np.median(shrinks):.1f} %, smallest {100 * min(shrinks):.1f} % "
-        f"(n = {len(shrinks)})"
-    )
-
-
-def pulls(runs: Sequence[Run]) -> str:
-    """Return pulls of effects that only the priors see, where they were > 5 sigma."""
-    rows = []
-    for run in right_singles(runs):
-        if run["truth"][0] not in {"added_mass", "gain_error"}:
-            continue
-        both = run["found"]["pulls"].values()
-        before = max(abs(p["before"]) for p in both)
-        after = max(abs(p["after"]) for p in both)
-        if before > 5:
-            rows.append((before, after))
-    if not rows:
-        return "none was pulled more than 5 sigma"
-    below = sum(after < 2 for _, after in rows)
-    return (
-        f"median {np.median([b for b, _ in rows]):.1f} to "
-        f"{np.median([a for _, a in rows]):.2f} sigma; below 2 after: "
-        f"{share_text(below, len(rows))}"
     )
 
 

@@ -20,9 +20,10 @@ from jointbench.analysis.structures.genetic import (
     genetic_algorithm,
     squared_frequency_errors,
 )
+from jointbench.analysis.structures.problem import pose_problem
 from jointbench.analysis.structures.reduced import solve_reduced
 from jointbench.analysis.structures.reduction import reduce_structure
-from jointbench.analysis.structures.search import find_optima, pose_problem
+from jointbench.analysis.structures.search import find_optima
 from jointbench.analysis.structures.structure import Structure
 
 RIGID, ELASTIC = 6, 6

@@ -4,13 +4,18 @@
 The paper's geometry is unpublished. A marble block with 96 kg on top, standing on its
 joint, has frequencies of the same size: its own numbers, not a reproduction.
 
-python benchmarks/structures/table1.py
+python benchmarks/structures/table1.py [--report PAGE.html]
+
+The page holds the table and the shapes, to turn around, offline.
 """
+
+import argparse
+from pathlib import Path
 
 import numpy as np
 from cases import MARBLE
 
-from jointbench.analysis.structures.full_modes import solve_full
+from jointbench.analysis.structures.full_modes import StructureModes, solve_full
 from jointbench.analysis.structures.mesh import box_mesh
 from jointbench.analysis.structures.parts import (
     GROUND,
@@ -20,10 +25,20 @@ from jointbench.analysis.structures.parts import (
     solid_body,
 )
 from jointbench.analysis.structures.structure import (
+    Structure,
     build_structure,
 )
+from jointbench.station.report_page import (
+    DataTable,
+    Plot,
+    Report,
+    Section,
+    write_report,
+)
+from jointbench.station.report_structure import shape_figure
 
 COLUMN, CELLS, ON_TOP = (0.694, 0.191, 0.415), (6, 2, 4), 96.0
+HEADS = ("measured", "printed, joint", "ours, joint", "printed, glued", "ours, glued")
 # Normal and two tangential stiffnesses of the paper [N/m].
 JOINT = np.array([1.68e10, 2.46e7, 6.16e8])
 MEASURED, PRINTED, PRINTED_GLUED = (
@@ -33,8 +48,23 @@ MEASURED, PRINTED, PRINTED_GLUED = (
 )
 
 
+def shapes(structure: Structure, modes: StructureModes, word: str) -> Section:
+    """Return the shapes of a structure as bodies to turn around."""
+    items = []
+    for at, frequency in enumerate(modes.natural_frequency):
+        motion = np.zeros(3 * structure.nodes.shape[0])
+        motion[structure.free] = modes.shapes[at]
+        plot = shape_figure(structure, motion.reshape(-1, 3))
+        title = f"{word}, mode {at + 1}: {frequency:.1f} Hz; drag to turn"
+        items.append(Plot(f"{word}-{at}", title, plot, 420))
+    return Section(word, word.capitalize(), tuple(items))
+
+
 def main() -> None:
     """Print measured, printed and our own frequencies."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--report", type=Path)
+    options = parser.parse_args()
     body = solid_body("column", box_mesh(COLUMN, CELLS), MARBLE)
     masses = [FaceMass("column", "z+", ON_TOP)]
     joint = Joint("bed", ("column", GROUND), face="z-")
@@ -42,13 +72,35 @@ def main() -> None:
     held = build_structure(
         [body], [], supports=[Support("column", "z-")], masses=masses
     )
-    with_joint = solve_full(jointed, JOINT, 3).natural_frequency
-    glued = solve_full(held, np.zeros(0), 3).natural_frequency
-    print("mode  measured  printed, joint  ours, joint  printed, glued  ours, glued")
-    for at in range(3):
+    with_joint = solve_full(jointed, JOINT, 3)
+    glued = solve_full(held, np.zeros(0), 3)
+    rows = tuple(
+        tuple(f"{value:.1f}" for value in row)
+        for row in zip(
+            MEASURED,
+            PRINTED,
+            with_joint.natural_frequency,
+            PRINTED_GLUED,
+            glued.natural_frequency,
+            strict=True,
+        )
+    )
+    print("  ".join(HEADS))
+    for row in rows:
         print(
-            f"{at + 1:4d}  {MEASURED[at]:8.1f}  {PRINTED[at]:14.1f}  "
-            f"{with_joint[at]:11.1f}  {PRINTED_GLUED[at]:14.1f}  {glued[at]:11.1f}"
+            "  ".join(f"{cell:>{len(h)}}" for cell, h in zip(row, HEADS, strict=True))
+        )
+    if options.report is not None:
+        table = DataTable("Natural frequencies [Hz]; geometry is ours.", HEADS, rows)
+        sections = (
+            Section("table", "Table 1, a stand-in", (table,)),
+            shapes(jointed, with_joint, "jointed"),
+            shapes(held, glued, "glued"),
+        )
+        title = "Table 1 of 2023, a stand-in"
+        write_report(
+            Report(title, str(__doc__).split(chr(10))[2], "", True, (), sections),
+            options.report,
         )
 
 

@@ -15,28 +15,51 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.surfaces import Profile
 from jointbench.signal.fractal import fit_fractal
 from jointbench.signal.structure_function import structure_function
+from jointbench.signal.surface_verdict import SurfaceVerdict
+from jointbench.simulators.profilometer import traced
 from jointbench.simulators.rough_surface import rough_profile
 
 POINTS = 20_000
 SPACING = 1e-7  # [m]
 STEP = 20e-9  # standard deviation of neighbouring heights' difference [m]
-NOISE = 10e-9  # [m]
 
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """An instrument: blur [samples], noise [m], and the model that is right."""
+    """An instrument: blur [samples], noise [m], tip [m] and the models that are right.
+
+    A stylus counts as a point spread.
+    """
 
     blur: float
     noise: float
-    right: str
+    right: tuple[str, ...]
+    tip: float = 0.0
 
 
+HEAD = (
+    "instrument",
+    "D",
+    "profiles",
+    "bias",
+    "sd",
+    "Cramer-Rao",
+    "sd over it",
+    "stated sd",
+    "2-sigma coverage",
+    "right model",
+    "without D",
+    "fractal over all lags",
+)
+SPREAD, BOTH = "point spread", "point spread and noise"
 SETTINGS = {
-    "clean": Setting(0.0, 0.0, "none"),
-    "noise": Setting(0.0, STEP, "noise"),
-    "point spread": Setting(4.0, 0.0, "point spread"),
-    "both": Setting(4.0, 5e-9, "point spread and noise"),
+    "clean": Setting(0.0, 0.0, ("none",)),
+    "noise": Setting(0.0, STEP, ("noise",)),
+    "little noise": Setting(0.0, 0.3 * STEP, ("noise",)),
+    "point spread": Setting(4.0, 0.0, (SPREAD,)),
+    "both": Setting(4.0, 5e-9, (BOTH,)),
+    "stylus": Setting(0.0, 0.0, (SPREAD, BOTH), tip=2e-6),
+    "stylus and noise": Setting(0.0, 2e-9, (SPREAD, BOTH), tip=2e-6),
 }
 
 
@@ -64,6 +87,7 @@ def measured(dimension: float, setting: Setting, seed: int) -> Profile:
         POINTS, spacing=SPACING, dimension=dimension, roughness=1e-10, seed=seed
     )
     heights = profile.heights * STEP / np.std(np.diff(profile.heights))
+    heights = traced(heights, (SPACING,), setting.tip)
     if setting.blur > 0:
         heights = scipy.ndimage.gaussian_filter1d(heights, setting.blur)
     noise = np.random.default_rng([seed, 77]).standard_normal(POINTS)
@@ -72,11 +96,12 @@ def measured(dimension: float, setting: Setting, seed: int) -> Profile:
 
 def line(name: str, dimension: float, seeds: range) -> str:
     """Return one line of the table."""
-    setting, found, models = SETTINGS[name], [], Counter[str]()
+    setting, found, models, whole = SETTINGS[name], [], Counter[str](), 0
     for seed in seeds:
         profile = measured(dimension, setting, seed)
         fit = fit_fractal(structure_function(profile))
         models[fit.instrument] += 1
+        whole += fit.verdict is SurfaceVerdict.FRACTAL
         if fit.scaling is not None:
             found.append((fit.scaling.dimension, fit.scaling.dimension_sd))
     value, stated = np.array(found).T
@@ -91,8 +116,9 @@ def line(name: str, dimension: float, seeds: range) -> str:
         f"{value.std(ddof=1) / bound:.3f}" if name == "clean" else "-",
         f"{stated.mean():.5f}",
         f"{100 * np.mean(np.abs(value - dimension) < 2 * stated):.1f} %",
-        f"{100 * models[setting.right] / len(seeds):.1f} %",
+        f"{100 * sum(models[name] for name in setting.right) / len(seeds):.1f} %",
         f"{len(seeds) - len(found)}",
+        f"{100 * whole / len(seeds):.1f} %",
     )
     return "| " + " | ".join(cells) + " |"
 
@@ -104,6 +130,7 @@ def main() -> None:
     parser.add_argument("--dimension", type=float, nargs="+", default=[1.3, 1.5, 1.7])
     parser.add_argument("--seeds", type=int, default=100)
     asked = parser.parse_args()
+    print("| " + " | ".join(HEAD) + " |\n" + "|---" * len(HEAD) + "|")
     for dimension in asked.dimension:
         print(line(asked.setting, dimension, range(asked.seeds)), flush=True)
 

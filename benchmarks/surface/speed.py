@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Time and memory of the structure function beside SurfaceTopography, in one run.
+"""Time, memory and precision beside SurfaceTopography and FracDimPy, in one run.
 
-python benchmarks/surface/speed.py prints a table for docs/surface.md.
+python -m benchmarks.surface.speed prints two tables. FracDimPy is no dependency: it
+takes part where it is installed (pip install --no-deps FracDimPy).
 """
 
+import importlib.util
 import resource
 import time
 
@@ -11,10 +13,15 @@ import numpy as np
 from SurfaceTopography import UniformLineScan
 
 from jointbench.acquisition.surfaces import Areal, Profile, all_valid
+from jointbench.signal.fractal import fit_fractal
+from jointbench.signal.papers_recipe import fit_papers_recipe
 from jointbench.signal.structure_function import structure_function
+from jointbench.signal.structure_map import structure_map
 from jointbench.simulators.brownian import brownian_lines
+from jointbench.simulators.rough_surface import rough_profile
 
 POINTS, REPEATS, SIDE = 1_000_000, 3, 4096
+FITTED, PROFILES = 20_000, 30
 
 
 def best(action: object) -> float:
@@ -50,6 +57,24 @@ def main() -> None:
         f"| SurfaceTopography, same lags | {theirs:.2f} s | "
         f"{theirs / direct:.1f} times, largest relative difference {apart:.1e} |"
     )
+    started = time.process_time()
+    found = structure_map(profile)
+    spent = time.process_time() - started
+    print(
+        f"| jointbench, all {found.value.size - 1} lags to a tenth | {spent:.2f} s | |"
+    )
+    if importlib.util.find_spec("fracDimPy"):
+        from fracDimPy import structural_function
+
+        started = time.process_time()
+        structural_function(heights[: POINTS // 10])
+        spent = 10 * (time.process_time() - started)
+        own = best(lambda: structure_function(profile, lags=range(2, 30)))
+        print(
+            f"| FracDimPy, lags 2 to 29 (ten times a tenth of the points) "
+            f"| {spent:.1f} s "
+            f"| jointbench at these {own:.2f} s, {spent / own:.0f} times |"
+        )
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     square = np.random.default_rng(2).standard_normal((SIDE, SIDE))
     areal = Areal("m", square, (1e-7, 1e-7), all_valid(square))
@@ -61,6 +86,40 @@ def main() -> None:
         f"| map of {SIDE} x {SIDE} | {spent:.1f} s | peak {peak / 2**20:.2f} GiB, "
         f"{(peak - before) / 2**20:.2f} GiB of it for the map |"
     )
+    accuracy()
+
+
+def accuracy() -> None:
+    """Print how D of exact profiles scatters by each route."""
+    print("\n| D of the profiles | route | bias | sd |\n|---|---|---|---|")
+    for dimension in (1.3, 1.7):
+        profiles = [
+            rough_profile(
+                FITTED, spacing=1e-7, dimension=dimension, roughness=1e-10, seed=seed
+            )
+            for seed in range(PROFILES)
+        ]
+        routes = {
+            "jointbench, fit_fractal": [
+                fit_fractal(structure_function(one)).dimension for one in profiles
+            ],
+            "jointbench, the papers' recipe": [
+                fit_papers_recipe([one]).dimension for one in profiles[:5]
+            ],
+        }
+        if importlib.util.find_spec("fracDimPy"):
+            from fracDimPy import structural_function
+
+            routes["FracDimPy, structural_function"] = [
+                structural_function(one.heights)[0] for one in profiles
+            ]
+        for name, values in routes.items():
+            error = np.array(values, dtype=float) - dimension
+            print(
+                f"| {dimension} | {name}, {error.size} profiles | {error.mean():+.4f} "
+                f"| {error.std(ddof=1):.4f} |",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

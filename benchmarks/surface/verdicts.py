@@ -27,7 +27,7 @@ def rough(dimension: float, seed: int) -> FloatArray:
     profile = rough_profile(
         POINTS, spacing=SPACING, dimension=dimension, roughness=1e-10, seed=seed
     )
-    return np.asarray(profile.heights / np.std(np.diff(profile.heights)))
+    return _of_unit_steps(profile.heights)
 
 
 def saturating(seed: int) -> FloatArray:
@@ -52,6 +52,24 @@ def two_slopes(seed: int) -> FloatArray:
     return np.asarray(jagged + smooth * 60 ** (0.15 - 0.85))
 
 
+def bent_spectrum(seed: int) -> FloatArray:
+    """Turn from one D to another, 0.4 or more apart, at a lag of 20 to 60 samples."""
+    rng = np.random.default_rng([seed, 5])
+    low = rng.uniform(1.15, 1.45)
+    ends = [low, low + rng.uniform(0.4, 0.45)]
+    short, long = ends if seed % 2 else ends[::-1]
+    frequency = np.fft.rfftfreq(8 * POINTS)[1:] * 2 * np.pi * rng.uniform(20, 60)
+    exponents = np.where(frequency > 1, 5 - 2 * short, 5 - 2 * long)
+    waves = rng.standard_normal((2, frequency.size))
+    heights = frequency ** (-exponents / 2) * (waves[0] + 1j * waves[1])
+    return _of_unit_steps(np.fft.irfft(np.append(0, heights))[:POINTS])
+
+
+def _of_unit_steps(heights: FloatArray) -> FloatArray:
+    """Return heights scaled so that neighbours differ by one on average."""
+    return np.asarray(heights / np.std(np.diff(heights)))
+
+
 def noise(seed: int) -> FloatArray:
     """Draw white noise."""
     return np.random.default_rng([seed, 3]).standard_normal(POINTS)
@@ -69,6 +87,7 @@ KINDS: dict[str, tuple[Callable[[int], FloatArray], str]] = {
     "saturating": (saturating, "not over the whole range"),
     "filtered": (filtered, "not over the whole range"),
     "two slopes": (two_slopes, "not over the whole range"),
+    "bent spectrum": (bent_spectrum, "not over the whole range"),
     "white noise": (noise, "never fractal"),
     "smooth form": (form, "never fractal"),
 }

@@ -15,12 +15,19 @@ from typing import Any
 import grpc
 
 from jointbench.acquisition.errors import InstrumentError, UsageError
+from jointbench.acquisition.source import Source
 from jointbench.simulators.chassis.faults import Fault, FaultKind
 from jointbench.simulators.chassis.inventory import Inventory
 from jointbench.simulators.chassis.protocol import add_servicer
 from jointbench.simulators.chassis.reading import ReadingService
+from jointbench.simulators.chassis.specimen import StreamedSpecimen
 from jointbench.simulators.chassis.task import Pace, Task
-from jointbench.simulators.plates_bench import LivePlates, PlannedStroke, PlatesBench
+from jointbench.simulators.plates_bench import (
+    LivePlates,
+    PlannedStroke,
+    PlatesBench,
+    PluggedSensor,
+)
 
 HAND_SERVICE = "jointbench.Hand"
 # Every event stream of a client holds a worker for as long as it is open.
@@ -37,7 +44,8 @@ class ChassisSetup:
     """What stands on the bench.
 
     Attributes:
-        bench: specimen, hand and sensors.
+        bench: specimen, hand and sensors; or a source of samples, whose channels are
+            then plugged in in their order.
         speed: seconds of signal per second; infinite for as fast as it is read.
         modules: of four inputs each.
         top_rate: samples per second and channel at the most [Hz].
@@ -46,7 +54,7 @@ class ChassisSetup:
         port: to listen on; 0 for any that is free.
     """
 
-    bench: PlatesBench = field(default_factory=PlatesBench)
+    bench: PlatesBench | Source = field(default_factory=PlatesBench)
     speed: float = 1.0
     modules: int = 1
     top_rate: float = 51_200.0
@@ -61,7 +69,11 @@ class SimulatedChassis:
     def __init__(self, setup: ChassisSetup) -> None:
         self._setup = setup
         self._pace = Pace(speed=setup.speed)
-        self._live = LivePlates(setup.bench)
+        self._live: LivePlates | StreamedSpecimen = (
+            LivePlates(setup.bench)
+            if isinstance(setup.bench, PlatesBench)
+            else StreamedSpecimen(setup.bench)
+        )
         self._faults = list(setup.faults)
         self._delivered = 0
         self._lock = threading.Lock()
@@ -77,8 +89,14 @@ class SimulatedChassis:
 
     @property
     def history(self) -> tuple[PlannedStroke, ...]:
-        """What the hand struck so far."""
-        return tuple(self._live.history)
+        """What the hand struck so far; nothing where there is none."""
+        live = self._live
+        return tuple(live.history) if isinstance(live, LivePlates) else ()
+
+    @property
+    def sensors(self) -> tuple[PluggedSensor, ...]:
+        """What is plugged into the first inputs."""
+        return self._live.sensors
 
     def __enter__(self) -> "SimulatedChassis":
         """Start listening."""
@@ -109,7 +127,9 @@ class SimulatedChassis:
             ) from error
         self._service = self._new_service()
         add_servicer(self._service, server)
-        server.add_generic_rpc_handlers((_hand_handler(self._live, self._service),))
+        if isinstance(self._live, LivePlates):
+            hand = _hand_handler(self._live, self._service)
+            server.add_generic_rpc_handlers((hand,))
         server.start()
         self._server = server
 
@@ -146,7 +166,7 @@ class SimulatedChassis:
     def _new_service(self) -> ReadingService:
         setup = self._setup
         service = ReadingService(
-            _inventory(setup),
+            _inventory(setup, self._live.sensors),
             lambda name: Task(name, self._pace, self._live.volts),
             begin=self._live.begin,
             pace=self._pace,
@@ -160,7 +180,7 @@ class SimulatedChassis:
 _FROM_THE_START = (FaultKind.REFUSE, FaultKind.WRONG_TEDS)
 
 
-def _inventory(setup: ChassisSetup) -> Inventory:
+def _inventory(setup: ChassisSetup, sensors: tuple[PluggedSensor, ...]) -> Inventory:
     def inputs(kind: FaultKind) -> frozenset[int]:
         return frozenset(int(f.value) for f in setup.faults if f.kind is kind)
 
@@ -168,7 +188,7 @@ def _inventory(setup: ChassisSetup) -> Inventory:
         modules=setup.modules,
         top_rate=setup.top_rate,
         analogue_trigger=setup.analogue_trigger,
-        sensors=setup.bench.sensors,
+        sensors=sensors,
         missing=inputs(FaultKind.REFUSE),
         swapped_teds=inputs(FaultKind.WRONG_TEDS),
     )

@@ -131,7 +131,8 @@ class Task:
         if self._started is None:
             return self._position
         if math.isinf(self._pace.speed):
-            return min(max(self._position, self._skipped), self._end)
+            looked = self._found_to - 1 if self.trigger is not None else 0
+            return min(max(self._position, self._skipped, looked), self._end)
         elapsed = (self._pace.now() - self._started) * self._pace.speed
         return min(int(elapsed * self.rate), self._end)
 

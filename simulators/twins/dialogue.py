@@ -11,6 +11,8 @@ the request is not whole."""
 
 ESC, ETX, EOT, ACK, CR = b"\x1b", b"\x03", b"\x04", b"\x06", b"\r"
 _PARAMETER = (b"P", b"Q")
+# Share of its torque that a bolt has while the wrench turns, clicks and is let go.
+_WRENCH = (0.0, 0.18, 0.55, 0.83, 1.0, 0.97, 0.31, 0.02)
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,6 +103,37 @@ class Mark10Twin:
             return None
         reply = self.shown if request == b"?" else "*10"
         return len(request) + 1, f"{reply}\r\n".encode()
+
+
+@dataclass(slots=True)
+class WrenchTwin:
+    """A Mark-10 torque tester on a wrench that tightens bolt after bolt.
+
+    Attributes:
+        torques: targets, in their order [N m].
+        bolts: of each target.
+        error: torque of a bolt over its target less one, in turn [-].
+    """
+
+    torques: tuple[float, ...]
+    bolts: int = 4
+    error: tuple[float, ...] = (0.0,)
+    _asked: int = 0
+
+    def answer(self, received: bytes) -> tuple[int, bytes] | None:
+        """Answer ``?`` with the reading of the moment, which the next one follows."""
+        request, end, _ = received.partition(CR)
+        if not end:
+            return None
+        shown = f"{self._shown():.3f} Nm" if request == b"?" else "*10"
+        return len(request) + 1, f"{shown}\r\n".encode()
+
+    def _shown(self) -> float:
+        """Return the reading of the moment [N m]; the wrench stays at the last one."""
+        bolt, at = divmod(self._asked, len(_WRENCH))
+        self._asked += 1
+        target = self.torques[min(bolt // self.bolts, len(self.torques) - 1)]
+        return target * (1 + self.error[bolt % len(self.error)]) * _WRENCH[at]
 
 
 def answer_all(answer: Answer, received: bytes) -> tuple[bytes, bytes]:

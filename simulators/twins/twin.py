@@ -9,6 +9,7 @@ import select
 import socket
 import sys
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from types import TracebackType
@@ -16,6 +17,7 @@ from types import TracebackType
 from jointbench.simulators.twins.dialogue import Answer, answer_all
 
 _POLL = 0.05  # [s]
+_LONGEST_DRAIN = 2.0  # [s]
 
 
 class Twin:
@@ -27,6 +29,7 @@ class Twin:
         *,
         over_socket: bool = False,
         unplug_after: int | None = None,
+        comes_back: bool = False,
     ) -> None:
         """Plug the instrument in.
 
@@ -34,8 +37,10 @@ class Twin:
             answer: of the instrument.
             over_socket: a socket instead of a pseudo-terminal; always so on Windows.
             unplug_after: bytes sent after which the line breaks, None for never.
+            comes_back: whether a socket that broke takes a new caller.
         """
         self._answer, self._left = answer, unplug_after
+        self._comes_back = comes_back
         self._closing = threading.Event()
         self._end: _Socket | _Terminal
         use_socket = over_socket or sys.platform == "win32"
@@ -68,7 +73,12 @@ class Twin:
                 sent, received = answer_all(self._answer, received + new)
                 if self._left is not None and len(sent) >= self._left:
                     self._end.send(sent[: self._left])
-                    return
+                    self._end.drain()
+                    if not self._comes_back:
+                        return
+                    self._end.hang_up()
+                    self._left, received = None, b""
+                    continue
                 self._end.send(sent)
                 if self._left is not None:
                     self._left -= len(sent)
@@ -91,9 +101,23 @@ class _Socket:
             if self._peer is None:
                 self._peer = self._listener.accept()[0]
                 self._peer.settimeout(_POLL)
-            return self._peer.recv(4096) or None
-        except (TimeoutError, ConnectionError):
+            received = self._peer.recv(4096)
+        except TimeoutError:
             return None
+        except ConnectionError:
+            received = b""
+        if not received:
+            self.hang_up()
+        return received or None
+
+    def drain(self) -> None:
+        """Do nothing: what a socket took, its reader gets."""
+
+    def hang_up(self) -> None:
+        """Let go of the caller; another may call."""
+        if self._peer is not None:
+            self._peer.close()
+            self._peer = None
 
     def send(self, data: bytes) -> None:
         """Send all of `data`."""
@@ -103,8 +127,7 @@ class _Socket:
 
     def close(self) -> None:
         """Hang up."""
-        if self._peer is not None:
-            self._peer.close()
+        self.hang_up()
         self._listener.close()
 
 
@@ -114,6 +137,7 @@ class _Terminal:
     def __init__(self) -> None:
         # Looked up by name: there is no such module on Windows.
         tty: Callable[[int], object] = __import__("tty").setraw
+        self._closing = threading.Event()
         self._near, self._far = os.openpty()
         tty(self._far)
         self.name = os.ttyname(self._far)
@@ -132,6 +156,16 @@ class _Terminal:
         with suppress(OSError):
             while data:
                 data = data[os.write(self._near, data) :]
+
+    def drain(self) -> None:
+        """Wait until the reader has taken all: a hang-up throws away what waits."""
+        until = time.monotonic() + _LONGEST_DRAIN
+        while select.select([self._far], [], [], 0)[0] and time.monotonic() < until:
+            self._closing.wait(_POLL / 10)
+
+    def hang_up(self) -> None:
+        """Pull the plug: a terminal that was closed has no name to come back under."""
+        self.close()
 
     def close(self) -> None:
         """Pull the plug."""

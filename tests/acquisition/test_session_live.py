@@ -175,7 +175,7 @@ from pathlib import Path
 from jointbench.acquisition.errors import InstrumentError
 from jointbench.acquisition.session_live import LiveSession
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
+resource.setrlimit(resource.RLIMIT_FSIZE, (2_400_000, 2_400_000))
 live = LiveSession(Path({out!r}), {meta!r}, channels=2, block=1000)
 try:
     for k in range(2000):
@@ -190,7 +190,7 @@ os._exit(0)
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of files are POSIX")
 def test_a_full_disk_is_one_line_and_what_was_written_opens(tmp_path: Path) -> None:
-    """A file that may not grow past 400 kB stands for the disk."""
+    """A file that may not grow past 2.4 MB stands for the disk."""
     out = tmp_path / "s.h5"
     code = LIMITED.format(path=sys.path, out=str(out), meta=META)
     done = subprocess.run(

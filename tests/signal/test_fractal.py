@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""D, G and the instrument are found where they can be, and refused elsewhere."""
-
-from collections.abc import Callable
-from pathlib import Path
+"""D, G and the instrument are found where they can be."""
 
 import numpy as np
 import pytest
@@ -19,7 +16,6 @@ from jointbench.signal.structure_constant import structure_constant
 from jointbench.signal.structure_function import combine, structure_function
 from jointbench.signal.surface_verdict import FractalFit, SurfaceVerdict
 
-DATA = Path(__file__).parents[3] / "shared" / "data" / "surfaces"
 SPACING = 0.5e-6
 STEP = 1e-8
 
@@ -197,15 +193,6 @@ def test_heights_read_in_steps_keep_their_dimension(step: float):
     assert sd < 0.02
 
 
-def test_a_surface_hidden_by_the_steps_of_its_heights_is_instrument_limited():
-    """Steps of 60 times the roughness of a sample leave no decade."""
-    quantum = 60 * STEP
-    heights = quantum * np.round(brownian(4000, 1.5, 22) / quantum)
-    found = fit(heights + 0.0)
-    assert found.verdict is not SurfaceVerdict.FRACTAL
-    assert found.dimension is None
-
-
 def test_pooled_profiles_add_their_knowledge():
     """Nine profiles: sd a third of one's, and the truth within three of it."""
     profiles = [
@@ -217,54 +204,6 @@ def test_pooled_profiles_add_their_knowledge():
     alone = known(fit_fractal(structure_function(profiles[0])))[1]
     assert abs(value - 1.5) < 3 * sd
     assert 0.2 < sd / alone < 0.7
-
-
-X = np.arange(6000.0)
-
-
-@pytest.mark.parametrize(
-    ("name", "shape"),
-    [
-        ("noise", lambda: noise(6000, 1e-9, 1)),
-        ("parabola", lambda: 1e-5 * (X / 6000) ** 2),
-        ("sine", lambda: 1e-6 * np.sin(X / 40)),
-        ("turning marks", lambda: 1e-6 * np.abs(np.sin(X / 30)) + noise(6000, 1e-8, 2)),
-        ("one step", lambda: 1e-6 * (X > 2500)),
-        ("step with noise", lambda: 1e-6 * (X > 2500) + noise(6000, 1e-8, 3)),
-        ("smooth", lambda: 1e-7 * gaussian_filter1d(noise(6000, 1.0, 4), 20)),
-        (
-            "short correlation",
-            lambda: lfilter([1.0], [1.0, -0.8], noise(6000, 1e-8, 5)),
-        ),
-        ("blocks", lambda: np.repeat(noise(300, 1e-7, 6), 20)),
-        ("flat", lambda: np.zeros(200)),
-        ("short", lambda: brownian(60, 1.5, 1)),
-    ],
-)
-def test_other_shapes_are_not_called_fractal(
-    name: str, shape: Callable[[], FloatArray]
-):
-    """Each gets a reason with numbers or a way out, and no dimension."""
-    found = fit(shape())
-    assert found.verdict in {SurfaceVerdict.NONE, SurfaceVerdict.INSTRUMENT}
-    assert found.dimension is None
-    assert found.fit_band is None
-    assert len(found.reason) > 20
-    assert "\n" not in found.reason
-
-
-def test_noise_alone_is_the_instruments():
-    """White noise of 1 nm is called so, with its size."""
-    found = fit(noise(6000, 1e-9, 1))
-    assert found.verdict is SurfaceVerdict.INSTRUMENT
-    assert "white noise of 1 nm" in found.reason or "0.99" in found.reason
-
-
-def test_a_surface_buried_in_noise_is_instrument_limited():
-    """Where noise rules up to 100 samples no decade is left of 4,000 points."""
-    found = fit(brownian(4000, 1.5, 9) + noise(4000, 8 * STEP, 9))
-    assert found.verdict is SurfaceVerdict.INSTRUMENT
-    assert "noise of" in found.reason
 
 
 def test_heights_and_lengths_scale_as_units_do():
@@ -307,48 +246,3 @@ def test_a_line_without_slope_has_no_dimension_below_two():
     """Slope 0 is D = 2, which no profile has: a usage error."""
     with pytest.raises(UsageError, match="between 1 and 2"):
         fractal_from_line(0.0, -12.0)
-
-
-@pytest.mark.parametrize("name", ["GII-EII"])
-def test_a_real_stylus_trace_gets_a_reason(name: str):
-    """Smooth below 5 um and bent above: no power law, and the slopes say so."""
-    path = DATA / "surfcom" / f"{name}.tx1"
-    if not path.exists():
-        pytest.skip(f"{path} is not beside the checkout")
-    length, count, *values = path.read_text(encoding="latin-1").split()
-    heights = np.array(values[: int(count)], dtype=float) * 1e-6
-    spacing = float(length) * 1e-3 / (int(count) - 1)
-    surface = Profile(name, heights, spacing, all_valid(heights))
-    found = fit_fractal(structure_function(surface))
-    assert found.verdict is SurfaceVerdict.NONE
-    assert found.local_slope.slope[0] == pytest.approx(2, abs=0.05)
-
-
-@pytest.mark.parametrize("name", ["test1", "test2"])
-def test_a_real_map_gets_a_verdict(name: str):
-    """A coarse areal scan with spikes: any verdict, with a reason, no exception."""
-    path = DATA / "nanovea" / f"{name}.txt"
-    if not path.exists():
-        pytest.skip(f"{path} is not beside the checkout")
-    heights = np.loadtxt(path, delimiter=",")[:, 2].reshape(101, 101) * 1e-6
-    surface = Areal(name, heights, (5e-6, 5e-6), all_valid(heights))
-    found = fit_fractal(structure_function(surface))
-    assert found.verdict in SurfaceVerdict
-    assert len(found.reason) > 20
-
-
-def test_the_real_keyence_map_has_no_scaling_range():
-    """Its slope rises from noise to nearly a form and falls to a plateau."""
-    paths = sorted((DATA / "keyence").glob("*.vk6"))
-    if not paths:
-        pytest.skip(f"{DATA / 'keyence'} is not beside the checkout")
-    reader = pytest.importorskip("SurfaceTopography")
-    topography = reader.open_topography(str(paths[0])).topography(0)
-    assert topography.unit == "pm"
-    heights = np.ascontiguousarray(topography.heights().T) * 1e-12
-    spacing = topography.physical_sizes[0] * 1e-12 / topography.nb_grid_pts[0]
-    surface = Areal("vk6", heights, (spacing, spacing), all_valid(heights))
-    found = fit_fractal(structure_function(surface))
-    assert found.verdict is SurfaceVerdict.NONE
-    assert found.local_slope.slope.max() > 1.5
-    assert found.local_slope.slope[-1] < 0.5

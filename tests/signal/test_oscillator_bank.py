@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.acquisition.records import Recording
+from jointbench.acquisition.records import Channel, Quantity, Recording
 from jointbench.signal.frf import estimate_frf
 from jointbench.signal.kalman_reference import reference_states
 from jointbench.signal.oscillator_bank import (
@@ -49,6 +49,18 @@ def test_a_gap_agrees_with_filterpy_as_well() -> None:
     _, wanted = reference_states(model, samples, at_rest=True, lost=lost)
     found = smooth_with_gaps(model, samples, lost)
     assert np.abs(found - wanted).max() < 1e-12 * np.abs(wanted).max()
+
+
+def test_the_steps_of_a_converter_are_no_dropouts_but_a_longer_stop_is() -> None:
+    """Noise of four steps repeats itself often; twenty equal samples it never gives."""
+    samples = np.round(np.random.default_rng(4).normal(0.0, 4.0, size=(2, 80_000)))
+    samples[1, 50_000:50_020] = samples[1, 50_000]
+    channels = (
+        Channel("force", Quantity.FORCE, point="1"),
+        Channel("a1", Quantity.ACCELERATION, point="1"),
+    )
+    lost = find_dropouts(Recording("quiet", samples, 25600.0, channels))
+    assert np.flatnonzero(lost[1]).tolist() == list(range(50_001, 50_020))
 
 
 def test_dropouts_are_found_where_they_are_and_nowhere_else(

@@ -13,6 +13,7 @@ from jointbench.simulators.profilometer import (
     Profilometer,
     measure_areal,
     measure_profile,
+    traced,
 )
 from jointbench.simulators.rough_surface import rough_map, rough_profile
 from jointbench.simulators.surface_files import write_keyence_csv
@@ -95,3 +96,33 @@ def test_a_share_of_missing_points_above_one_is_refused():
     """Shares lie in 0..1."""
     with pytest.raises(UsageError, match=r"0\.\.1"):
         Profilometer(missing=1.5)
+
+
+def test_a_round_tip_touches_a_ridge_with_its_radius():
+    """Over a single spike its path is the circle of the tip."""
+    heights = np.zeros(201)
+    heights[100] = 1e-6
+    path = traced(heights, (1e-7,), 5e-6)
+    x = 1e-7 * (np.arange(201) - 100)
+    circle = 1e-6 - 5e-6 + np.sqrt(25e-12 - x[70:131] ** 2)
+    assert_allclose(path[70:131], np.maximum(circle, 0), atol=1e-15)
+
+
+def test_a_tip_never_goes_below_the_surface():
+    """The dilation lies on or above every point of the map, and a point tip on it."""
+    path = traced(MAP.heights, MAP.spacing, 2e-6)
+    assert np.all(path >= MAP.heights)
+    assert traced(MAP.heights, MAP.spacing, 0.0) is MAP.heights
+
+
+def test_drift_is_a_slow_wave_of_its_size():
+    """Half a wave over the scan: no neighbours differ by more than pi / n of it."""
+    flat = type(MAP)(
+        name="flat",
+        heights=np.zeros((50, 40)),
+        spacing=(1e-6, 1e-6),
+        valid=all_valid(np.zeros((50, 40))),
+    )
+    seen = measure_areal(flat, Profilometer(noise=0.0, drift=1e-7), seed=4).heights
+    assert np.ptp(seen) > 0.4e-7
+    assert np.max(np.abs(np.diff(seen.ravel()))) < 1e-7 * np.pi / 2000 + 1e-10

@@ -188,20 +188,19 @@ def test_modes_of_each_torque_are_the_specimens_own(tmp_path: Path) -> None:
     """Two torques are never averaged: each finds its modes within 0.2 %."""
     run(
         tmp_path,
-        points='["1", "3"]',
         torques='["20 N m", "80 N m"]',
-        length='"1 s"',
     )
     run_modal(
         [tmp_path / "s.h5"],
-        ChainSettings(modal=ModalSettings(band=(200.0, 2000.0))),
+        ChainSettings(modal=ModalSettings(band=(200.0, 1100.0))),
         json_target=str(tmp_path / "m.json"),
     )
     pages = json.loads((tmp_path / "m.json").read_text())["preloads"]
     assert [page["preload_n"] for page in pages] == pytest.approx([25e3, 100e3])
     for page, torque in zip(pages, (20.0, 80.0), strict=True):
         own = natural_frequencies(PlatesDesign(), torque)
-        own = own[(own > 210) & (own < 1900)]
+        own = own[(own > 210) & (own < 1090)]
+        assert own.size >= 5
         found = np.array([mode["frequency_hz"] for mode in page["modes"]])
         nearest = found[np.argmin(np.abs(found[:, None] - own), axis=0)]
         np.testing.assert_allclose(nearest, own, rtol=2e-3)

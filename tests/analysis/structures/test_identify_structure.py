@@ -15,8 +15,8 @@ from jointbench.analysis.structures.predict import (
     predict_frf,
     predict_modes,
 )
+from jointbench.analysis.structures.problem import pose_problem, residuals, states_apart
 from jointbench.analysis.structures.reduced import ReducedModel
-from jointbench.analysis.structures.search import pose_problem, residuals
 from jointbench.analysis.structures.structure import Structure
 from jointbench.signal.frf import Frf, FrfKind
 
@@ -164,6 +164,37 @@ def test_several_torques_share_what_they_have_in_common(
     value = found.parameter("50 N m:joint.normal_stiffness").value
     assert value == pytest.approx(9e8, rel=1e-5)
     assert found.parameter("joint.tangential_2_stiffness").value == pytest.approx(2e8)
+
+
+def test_states_that_share_nothing_are_found_as_if_alone(
+    reduced: ReducedModel, rows: FloatArray, truth: JointValues
+) -> None:
+    """Values and standard deviations of a state do not know of the other."""
+    tighter = replace(truth, stiffness=truth.stiffness * np.array([1.5, 2.0, 1.2]))
+    evidence = [
+        modal_evidence(reduced, rows, truth, "20 N m"),
+        modal_evidence(reduced, rows, tighter, "50 N m"),
+    ]
+    both = identify_structure(reduced, evidence, starts=4, profiles=False)
+    alone = identify_structure(reduced, evidence[1:], starts=4, profiles=False)
+    for one in alone.parameters:
+        found = both.parameter(f"50 N m:{one.name}")
+        assert found.value == pytest.approx(one.value, rel=1e-6)
+        assert found.sd == pytest.approx(one.sd, rel=1e-5)
+    problem = pose_problem(reduced, evidence)
+    assert len(states_apart(problem)) == 2
+
+
+def test_a_slack_joint_is_told_from_a_tight_one(
+    reduced: ReducedModel, rows: FloatArray, truth: JointValues
+) -> None:
+    """A stiffness of zero in one direction predicts, and every frequency falls."""
+    slack = replace(truth, stiffness=truth.stiffness * np.array([0.0, 1.0, 1.0]))
+    tight = predict_modes(reduced, truth, rows).natural_frequency
+    loose = predict_modes(reduced, slack, rows).natural_frequency
+    assert np.all(np.isfinite(loose))
+    assert loose.size < tight.size
+    assert loose.max() <= tight.max()
 
 
 def test_more_modes_than_the_model_predicts_are_refused(

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: MIT
+"""A serial instrument without hardware by its URL, ``sim:mark10?torques=20,50``."""
+
+from collections.abc import Callable
+from urllib.parse import parse_qsl, urlsplit
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import UsageError
+from jointbench.simulators.rough_surface import rough_profile
+from jointbench.simulators.twins.dialogue import (
+    Answer,
+    DiaviteTwin,
+    MitutoyoTwin,
+    WrenchTwin,
+)
+from jointbench.simulators.twins.twin import Twin
+
+INSTRUMENTS = ("diavite", "mitutoyo", "mark10")
+_WRENCH_ERROR = 0.02  # relative standard deviation of a good wrench
+_COUNTS_PER_METRE = 128e6  # of a DH-8
+_TRAVERSE = 4.8e-3  # [m]
+_DIMENSION, _ROUGHNESS = 1.45, 5e-11  # [-], [m] of the ground face that was traced
+_KEYS = "seed, torques, bolts, points, unplug"
+
+
+def is_twin_url(url: str) -> bool:
+    """Tell whether a URL names a serial instrument without hardware."""
+    parts = urlsplit(url)
+    return parts.scheme == "sim" and parts.path in INSTRUMENTS
+
+
+def twin_from_url(url: str) -> Twin:
+    """Plug in the instrument that a URL names.
+
+    Args:
+        url: ``sim:diavite``, ``sim:mitutoyo`` or ``sim:mark10`` and, as a query, any
+            of: ``seed``; ``points`` of the profile; ``torques`` [N m] of a wrench that
+            tightens ``bolts`` to each of them; ``unplug``, bytes sent after which the
+            line breaks.
+
+    Raises:
+        UsageError: an unknown instrument or key, or a value that does not read so.
+    """
+    if not is_twin_url(url):
+        known = ", ".join(f"sim:{name}" for name in INSTRUMENTS)
+        raise UsageError(f"{url!r} is no serial instrument; there are {known}")
+    parts = urlsplit(url)
+    values = dict(parse_qsl(parts.query, keep_blank_values=True))
+
+    def take(key: str, default: str) -> tuple[float, ...]:
+        text = values.pop(key, default)
+        try:
+            return tuple(float(word) for word in text.split(",") if word)
+        except ValueError:
+            raise UsageError(f"{key} is {text!r} in {url!r}; give a number") from None
+
+    seed, points = int(take("seed", "1")[0]), int(take("points", "4800")[0])
+    torques, bolts = take("torques", "20"), int(take("bolts", "4")[0])
+    unplug = take("unplug", "")
+    if values:
+        raise UsageError(
+            f"unknown key {next(iter(values))!r} in {url!r}; known: {_KEYS}"
+        )
+    if points < 16 or bolts < 1 or not torques:
+        raise UsageError(
+            f"{url!r} makes no instrument; give 16 points or more, a bolt and a torque"
+        )
+    made: dict[str, Callable[[], Answer]] = {
+        "diavite": lambda: _diavite(seed, points),
+        "mitutoyo": lambda: _mitutoyo(seed, points),
+        "mark10": lambda: _wrench(seed, torques, bolts),
+    }
+    return Twin(made[parts.path](), unplug_after=int(unplug[0]) if unplug else None)
+
+
+def _heights(seed: int, points: int) -> FloatArray:
+    """Return the heights of a ground face along a traverse [m]."""
+    face = rough_profile(
+        points,
+        spacing=_TRAVERSE / points,
+        dimension=_DIMENSION,
+        roughness=_ROUGHNESS,
+        seed=seed,
+    )
+    centred: FloatArray = face.heights - face.heights.mean()
+    return centred
+
+
+def _diavite(seed: int, points: int) -> Answer:
+    counts = np.round(_COUNTS_PER_METRE * _heights(seed, points)).astype(int)
+    return DiaviteTwin(tuple(np.clip(counts, -32768, 32767).tolist())).answer
+
+
+def _mitutoyo(seed: int, points: int) -> Answer:
+    heights = 1e6 * _heights(seed, points)
+    per_file = max(100, -(-points // 50))
+    length = 1e3 * _TRAVERSE
+    return MitutoyoTwin(tuple(heights.tolist()), per_file, length).answer
+
+
+def _wrench(seed: int, torques: tuple[float, ...], bolts: int) -> Answer:
+    drawn = np.random.default_rng([seed, 17]).standard_normal(len(torques) * bolts)
+    errors = _WRENCH_ERROR * np.clip(drawn, -2.5, 2.5)
+    return WrenchTwin(torques, bolts, tuple(errors.tolist())).answer

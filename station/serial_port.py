@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: MIT
+"""Serial lines by name, with an instrument without hardware behind ``sim:``."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def line_name(name: str) -> Iterator[str]:
+    """Give the name under which pyserial opens a line.
+
+    Args:
+        name: ``COM3``, ``/dev/ttyUSB0``, ``socket://host:port``, or ``sim:diavite``,
+            ``sim:mitutoyo``, ``sim:mark10?torques=20,50&bolts=4`` for a twin, which
+            stays plugged in while this context lasts.
+
+    Raises:
+        UsageError: the URL of a twin makes no sense.
+    """
+    if not name.startswith("sim:"):
+        yield name
+        return
+    from jointbench.simulators.twins.twin_url import twin_from_url
+
+    with twin_from_url(name) as twin:
+        yield twin.name
