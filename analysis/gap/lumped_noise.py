@@ -121,7 +121,9 @@ def _scatter_of(
     patterns = _patterns(bench.excitation.conditions)
     scatter = tuple(
         gain_scatter(
-            without_trend(coefficients[:, i], patterns), variances[:, i], groups
+            without_trend(coefficients[:, i], variances[:, i], patterns),
+            variances[:, i],
+            groups,
         )
         for i in range(count)
     )

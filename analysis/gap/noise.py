@@ -118,7 +118,7 @@ def gain_scatter(
     Returns:
         Standard deviation of the gain [-].
     """
-    grid = np.concatenate([[0.0], np.geomspace(SCATTER_MIN, SCATTER_MAX, 240)]) ** 2
+    grid = _scatter_grid() ** 2
     everywhere = _deviance(gains, variances, grid)
     wide = float(grid[int(np.argmin(everywhere))])
     pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
@@ -134,32 +134,63 @@ def gain_scatter(
     return float(np.sqrt(np.clip(wide, low, high)))
 
 
-def without_trend(values: FloatArray, patterns: FloatArray) -> FloatArray:
+def without_trend(
+    values: FloatArray, variances: FloatArray, patterns: FloatArray
+) -> FloatArray:
     """Take out of one value a record the pattern that explains them best, if one does.
 
     A trend over the records is no scatter, but counts as scatter if nothing is done:
     then it hides itself. Only a pattern that chance would hardly make is taken out.
+    Records say very different amounts (a soft hit hardly anything), so that each
+    counts by its own variance and the scatter that the pattern leaves.
 
     Args:
         values: shape (n_records,).
+        variances: of the values by noise alone, same shape.
         patterns: what records could depend on, shape (n_patterns, n_records).
 
     Returns:
         Values less their dependence on one pattern, shape (n_records,).
     """
     best, least = values, TREND_CHANCE
-    centred = values - values.mean()
     for pattern in patterns:
         q = pattern - pattern.mean()
         if q @ q < 1e-12 or values.size < 4:
             continue
-        slope = float(q @ centred) / float(q @ q)
-        left = centred - slope * q
-        ratio = (values.size - 2) * (centred @ centred / max(left @ left, 1e-300) - 1)
-        chance = float(scipy.stats.f.sf(ratio, 1, values.size - 2))
+        slope, squared = _trend(values, variances, q)
+        chance = float(scipy.stats.f.sf(squared, 1, values.size - 2))
         if chance < least:
             best, least = values - slope * q, chance
     return best
+
+
+def _trend(
+    values: FloatArray, variances: FloatArray, q: FloatArray
+) -> tuple[float, float]:
+    """Return the slope along a pattern and the square of slope over sd.
+
+    Source:
+        Weighted least squares of a mean and a slope, the scatter by restricted
+        maximum likelihood (Patterson and Thompson 1971) on the grid of scatters.
+    """
+    grid = _scatter_grid() ** 2
+    total = variances + grid[:, None]
+    weight = 1 / total
+    columns = np.stack([np.ones_like(q), q], axis=1)
+    normal = np.einsum("sr,ri,rj->sij", weight, columns, columns)
+    right = np.einsum("sr,ri,r->si", weight, columns, values)
+    solution = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
+    left = values - solution @ columns.T
+    deviance = np.sum(left**2 * weight + np.log(total), axis=1)
+    deviance += np.linalg.slogdet(normal)[1]
+    at = int(np.argmin(deviance))
+    slope = float(solution[at, 1])
+    return slope, slope**2 / float(np.linalg.inv(normal[at])[1, 1])
+
+
+def _scatter_grid() -> FloatArray:
+    """Return the scatters that are tried [-], the first none at all."""
+    return np.concatenate([[0.0], np.geomspace(SCATTER_MIN, SCATTER_MAX, 240)])
 
 
 def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:

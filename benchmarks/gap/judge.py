@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Diagnose a folder of campaigns and put each answer beside its truth.
 
-Usage: python benchmarks/gap/judge.py FOLDER RUNS.jsonl --jobs 2 [--kind single]
+Usage: python benchmarks/gap/judge.py FOLDER RUNS.jsonl [--jobs 2] [--kind single]
 
 One JSON line a campaign: truth, the whole diagnosis, CPU seconds. Campaigns that the
 file already holds are passed over, so that an interrupted run goes on where it was.
@@ -13,19 +13,26 @@ import multiprocessing
 import os
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 
-def judge_one(truth_path: Path) -> dict[str, Any]:
+def judged_as(name: str, whole: bool) -> str:
+    """Return what a campaign counts as; judged by the whole catalogue, none hides."""
+    return name.replace("hidden", "single") if whole else name
+
+
+def judge_one(truth_path: Path, *, whole: bool) -> dict[str, Any]:
     """Return the truth and the diagnosis of one campaign."""
     from jointbench.analysis.gap.campaign import read_campaign
     from jointbench.analysis.gap.diagnose import diagnose
     from jointbench.analysis.gap.records import diagnosis_json
 
     truth: dict[str, Any] = json.loads(truth_path.read_text(encoding="utf-8"))
+    truth["kind"] = judged_as(truth["kind"], whole)
     without = frozenset(truth["truth"]) if truth["kind"] == "hidden" else frozenset()
     campaign = read_campaign(truth_path.with_suffix(".h5"))
     start = time.process_time()
@@ -48,7 +55,9 @@ def main() -> None:
     parser.add_argument("runs", type=Path)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--kind", default="")
+    parser.add_argument("--whole", action="store_true")
     arguments = parser.parse_args()
+    whole = arguments.whole
     done = set()
     if arguments.runs.exists():
         lines = arguments.runs.read_text(encoding="utf-8").splitlines()
@@ -56,13 +65,14 @@ def main() -> None:
     paths = sorted(
         path
         for path in arguments.folder.glob(f"{arguments.kind}*.json")
-        if path.stem not in done and "truth" not in path.name
+        if "truth" not in path.name and judged_as(path.stem, whole) not in done
     )
+    judge = partial(judge_one, whole=whole)
     with (
         multiprocessing.Pool(arguments.jobs, maxtasksperchild=50) as pool,
         arguments.runs.open("a", encoding="utf-8") as out,
     ):
-        for k, run in enumerate(pool.imap_unordered(judge_one, paths)):
+        for k, run in enumerate(pool.imap_unordered(judge, paths)):
             out.write(json.dumps(run) + "\n")
             out.flush()
             sys.stderr.write(f"\r{k + 1}/{len(paths)} {key_of(run)}   ")

@@ -17,6 +17,7 @@ from jointbench.analysis.gap.noise import (
     channel_sigma,
     gain_scatter,
     whitening_basis,
+    without_trend,
 )
 from jointbench.analysis.gap.slider_march import slide, slider_tables
 
@@ -145,6 +146,30 @@ def test_scatter_is_found_when_repeats_differ_by_more_than_noise() -> None:
     groups = [np.array([i, i + 8]) for i in range(8)]
     found = gain_scatter(gains, np.full(16, 1e-8), groups)
     assert found == pytest.approx(1.5e-3, rel=0.4)
+
+
+PRELOADS = np.log([2e3, 2e3, 2e3, 2e3, 2e3, 2e3, 8e3, 8e3])
+
+
+def test_a_trend_is_seen_past_a_record_that_says_hardly_anything() -> None:
+    """Seven sharp records make the law; the soft hit among them is no evidence."""
+    sd = np.array([1e-4, 9e-6, 2e-6, 9e-6, 2e-5, 4e-6, 9e-6, 2e-5])
+    drawn = sd * np.random.default_rng(3).standard_normal(8)
+    values = drawn - 7e-5 * (PRELOADS - PRELOADS.mean())
+    left = without_trend(values, sd**2, PRELOADS[None, :])
+    assert np.polyfit(PRELOADS[1:], left[1:], 1)[0] == pytest.approx(0, abs=1e-5)
+
+
+def test_scatter_alone_is_rarely_taken_for_a_trend() -> None:
+    """2,000 draws of pure scatter over unequal noise: about 3e-4 may be changed."""
+    rng = np.random.default_rng(4)
+    sd = np.array([1e-3, 1e-4, 2e-5, 1e-4, 2e-4, 4e-5, 1e-4, 2e-4])
+    changed = 0
+    for _ in range(2000):
+        values = rng.standard_normal(8) * np.sqrt(sd**2 + 1.5e-3**2)
+        left = without_trend(values, sd**2, PRELOADS[None, :])
+        changed += not np.array_equal(left, values)
+    assert changed <= 4
 
 
 def test_whitening_leaves_unit_noise_where_a_direction_was_loud() -> None:
