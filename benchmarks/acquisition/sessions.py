@@ -3,8 +3,9 @@
     python benchmarks/acquisition/sessions.py > docs/bench-sessions.md
 
 Two hundred hits, thirty of them double, twenty overloaded, twenty weak, in random
-order; a server that goes away ten times; and three torques x five points x three hits
-from `measure` to the modes, against the specimen's own natural frequencies.
+order, and the trigger at the very edge of each; a server that goes away ten times; and
+three torques x five points x three hits from `measure` to the modes, against the
+specimen's own natural frequencies.
 """
 
 import argparse
@@ -17,9 +18,12 @@ from pathlib import Path
 
 import numpy as np
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.ni.driver import Chassis
-from jointbench.acquisition.records import Verdict
+from jointbench.acquisition.records import Quantity, Verdict
+from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_file import read_session
+from jointbench.signal.live_hits import HitCutter
 from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
 from jointbench.simulators.hand import Fate, Hand
 from jointbench.simulators.plates import PlatesDesign, natural_frequencies
@@ -84,7 +88,8 @@ def many_hits(folder: Path, seed: int) -> None:
         wanted = [VERDICTS[stroke.fate] for stroke in server.history]
     found = [hit.verdict for hit in measured.record.hits]
     wrong = sum(a is not b for a, b in zip(wanted, found, strict=True))
-    stored = [h for r in read_session(out).recordings for h in r.hits]
+    session = read_session(out)
+    stored = [h for r in session.recordings for h in r.hits]
     averaged = sum(
         hit.verdict is Verdict.OK and want is not Verdict.OK
         for hit, want in zip(stored, wanted, strict=True)
@@ -92,6 +97,32 @@ def many_hits(folder: Path, seed: int) -> None:
     counts = Counter(word.value for word in found)
     print(f"- strokes {len(wanted)}, hits found {len(found)}: {dict(counts)}")
     print(f"- wrong verdicts: {wrong}; bad hits in an average: {averaged}")
+    edges(session)
+
+
+def edges(session: Session) -> None:
+    """Print whether a sample exactly at the level fires, and one a rounding below."""
+    at, below, count = 0, 0, 0
+    for recording in session.recordings:
+        force = recording.samples[recording.row(Quantity.FORCE)]
+        for hit in recording.hits:
+            edge = float(force[hit.trigger])
+            cut = force[hit.start : hit.stop]
+            at += _fires(cut, edge) == hit.trigger - hit.start
+            next_level = float(np.nextafter(edge, np.inf))
+            below += _fires(cut, next_level) == hit.trigger - hit.start
+            count += 1
+    print(
+        f"- level set to the very sample at the edge of each hit: {at} of {count} fire "
+        f"at that sample; one rounding step above it: {below} fire there"
+    )
+
+
+def _fires(force: FloatArray, level: float) -> int | None:
+    """Return the sample at which the program's trigger fires."""
+    cutter = HitCutter(row=0, level=level, before=force.size, after=1)
+    hit = cutter.feed(force[None])
+    return None if hit is None else hit.start + hit.trigger
 
 
 def drops(folder: Path) -> None:

@@ -9,19 +9,18 @@ data included, from the moment the FRFs are there (Linux only).
 """
 
 import argparse
-import re
 import sys
 import time
 from pathlib import Path
 
 import numpy as np
 from case import benchmark_case
+from memory import peak_mib, reset_peak
 
 from jointbench.signal.frf import Frf, FrfKind
 from jointbench.signal.lscf import fit_poles
 from jointbench.signal.modes import ModalSettings, identify_modes
 
-_STATUS, _RESET = Path("/proc/self/status"), Path("/proc/self/clear_refs")
 _NOISE = 10.0 ** (-40.0 / 20.0)
 
 
@@ -34,12 +33,6 @@ def measured(outputs: int, inputs: int, lines: int) -> Frf:
         sd = _NOISE * np.sqrt(np.mean(np.abs(row) ** 2, axis=1, keepdims=True) / 2.0)
         row += sd * (rng.normal(size=row.shape) + 1j * rng.normal(size=row.shape))
     return Frf(case.frequency, response, FrfKind.ACCELERANCE)
-
-
-def peak_mib() -> float:
-    """Return the peak memory of the process since the last reset [MiB]."""
-    found = re.search(r"VmHWM:\s+(\d+)", _STATUS.read_text())
-    return int(found.group(1)) / 1024.0 if found else float("nan")
 
 
 def show(what: str, share: float) -> None:
@@ -61,13 +54,13 @@ def main() -> None:
     given = parser.parse_args()
     frf = measured(given.outputs, given.inputs, given.lines)
     data = frf.response.nbytes / 2**20
-    _RESET.write_text("5")
+    reset_peak()
     start = time.process_time()
     fit_poles(frf.frequency, frf.response, range(2, given.order + 1), progress=show)
     took = time.process_time() - start
     rows = [("poles of all orders (p-LSCF)", took, peak_mib())]
     if not given.poles_only:
-        _RESET.write_text("5")
+        reset_peak()
         start = time.process_time()
         settings = ModalSettings(highest_order=given.order)
         model = identify_modes(frf, settings, progress=show).model

@@ -10,20 +10,19 @@ import argparse
 from pathlib import Path
 
 PAGE = Path(__file__).parents[2] / "docs" / "surface-benchmark.md"
+PRECISION = "python -m benchmarks.surface.precision"
 HEADINGS = {
     "clean": "Precision of D on clean exact profiles of 20,000 points: "
-    "`python -m benchmarks.surface.precision --seeds 300`",
-    "noise": "With noise of one step between neighbours: "
-    "`python -m benchmarks.surface.precision --setting noise --seeds 60`",
+    f"`{PRECISION} --seeds N`",
+    "noise": f"With noise of one step: `{PRECISION} --setting noise`",
+    "little": f'With noise of 0.3 steps: `{PRECISION} --setting "little noise"`',
+    "psf": f'With a point spread of 4 samples: `{PRECISION} --setting "point spread"`',
     "both": "With a point spread of 4 samples and noise of 5 nm: "
-    "`python -m benchmarks.surface.precision --setting both --seeds 60`",
-    "psf": "With a point spread of 4 samples: "
-    '`python -m benchmarks.surface.precision --setting "point spread" --seeds 60`',
-    "stylus": "Traced by a tip of 2 um: "
-    "`python -m benchmarks.surface.precision --setting stylus --seeds 40`",
-    "little": "With noise of 0.3 steps: "
-    '`python -m benchmarks.surface.precision --setting "little noise" --seeds 60`',
-    "verdicts": "Verdicts: `python -m benchmarks.surface.verdicts --seeds 60`",
+    f"`{PRECISION} --setting both`",
+    "stylus": f"Traced by a tip of 2 um: `{PRECISION} --setting stylus`",
+    "stylus-noise": "Traced by a tip of 2 um with noise of 2 nm: "
+    f'`{PRECISION} --setting "stylus and noise"`',
+    "verdicts": "Verdicts: `python -m benchmarks.surface.verdicts --seeds N`",
     "weierstrass": "Weierstrass-Mandelbrot profiles: "
     "`python -m benchmarks.surface.weierstrass --profiles 100`",
     "figure9": "The 2023 paper's Fig. 9: `python -m benchmarks.surface.figure_9`",
