@@ -6,38 +6,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.signal.fractal_gls import (
-    GlsFit,
-    Model,
-    Weights,
-    by_own_weights,
-    fit_model,
-    settle,
-    weigh,
+from jointbench.signal.fractal_gls import GlsFit, Model, Weights, fit_model, settle
+from jointbench.signal.fractal_instrument import (
+    ACCEPT_PROBABILITY,
+    Doubt,
+    choose_instrument,
+    no_doubt,
 )
 from jointbench.signal.fractal_long_lags import long_lag_probability
 from jointbench.signal.fractal_problem import FractalProblem
-from jointbench.signal.self_affine import InstrumentModel, rolled_off
+from jointbench.signal.self_affine import rolled_off
 
-ACCEPT_PROBABILITY = 0.01
-"""A model is accepted if a true one would fit worse at least this often [-]."""
 ACCEPT_LONG_PROBABILITY = 0.002
 """The same of values at long lags by themselves [-]."""
-HOPELESS_PROBABILITY = 1e-6
-"""Where the richest model fits with a smaller chance, simpler ones need no trial."""
-ONE_MORE = 7.88
-"""Gain of chi2 by one more parameter that chance brings in half a percent [-], so that
-all tests together take a larger model by chance in 1 % at the most."""
-TWO_MORE = 11.4
-"""The same for two more parameters, in a third of a percent [-]."""
-CAST_DOUBT = {1: 1.5, 2: 5.0}
-"""Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
-limits cover more of the noise that cannot be proven, and widen more clean profiles."""
-EVEN = {1: 8.0, 2: 14.0}
-"""Gain by so many more parameters at which both models weigh alike in D [-]. With
-Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
-SETTLED_WEIGHT = 0.999
-"""Weight of the larger model in D from which the smaller has no say [-]."""
 DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
 CLEAR_CORNER = 9.0
@@ -119,23 +100,11 @@ class Choice:
             words.append(f"noise of {np.sqrt(seen.noise) * 1e9:.3g} nm")
         if seen.psf_width > 0:
             width = seen.psf_width * self.problem.estimate.spacing * 1e6
-            words.append(f"a point spread of {width:.3g} um")
+            blur = "a tip that blurs like a point spread" if seen.traced else ""
+            words.append(f"{blur or 'a point spread'} of {width:.3g} um")
         if seen.band_limited:
             words.append("wavelengths under two samples cut off")
         return " and ".join(words) or "the instrument"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Doubt:
-    """What a larger model that is not proven does to the power law of the chosen one.
-
-    Attributes:
-        shift: of the power law, shape (2,).
-        covariance: that it adds, shape (2, 2).
-    """
-
-    shift: FloatArray
-    covariance: FloatArray
 
 
 def spans_decade(band: tuple[float, float] | None) -> bool:
@@ -176,7 +145,7 @@ def choose(problem: FractalProblem) -> Choice:
         below zero, chance brings a gain in about half of what chi-squared says: Self
         and Liang, J. Am. Stat. Assoc. 82 (1987) 605.
     """
-    endless = _chosen(problem, *_choose_instrument(problem, rolls_off=False))
+    endless = _chosen(problem, *choose_instrument(problem, rolls_off=False))
     criterion = endless.fit.likelihood_criterion
     nearest = Model(endless.fit.model.instrument, rolls_off=True)
     # A plateau at long lags lies in the short tail of a skewed spread: only weights of
@@ -184,7 +153,7 @@ def choose(problem: FractalProblem) -> Choice:
     glance = settle(problem, nearest, endless.fit.seen)
     if endless.accepted and criterion - glance.likelihood_criterion < CLEAR_CORNER:
         return endless
-    cornered = _chosen(problem, *_choose_instrument(problem, rolls_off=True))
+    cornered = _chosen(problem, *choose_instrument(problem, rolls_off=True))
     clear = criterion - cornered.fit.likelihood_criterion > CLEAR_CORNER
     better = clear or (cornered.accepted and not endless.accepted)
     return cornered if better and cornered.ends_early else endless
@@ -192,120 +161,10 @@ def choose(problem: FractalProblem) -> Choice:
 
 def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
     """Fit a straight line, without instrument or corner; it may be unacceptable."""
-    return _chosen(problem, fit_model(problem, Model(), weights), _no_doubt())
+    return _chosen(problem, fit_model(problem, Model(), weights), no_doubt())
 
 
-def _choose_instrument(
-    problem: FractalProblem, *, rolls_off: bool
-) -> tuple[GlsFit, _Doubt]:
-    """Take the smallest instrument model that no larger one clearly beats.
-
-    Returns:
-        The fit, and what a larger model that gains without proof does to its law.
-    """
-    kinds = InstrumentModel
-    plain = settle(problem, Model(kinds.NONE, rolls_off), problem.straight())
-    own = weigh(problem, plain.seen)
-    # Where the model is far off its weights never settle; all three share the last.
-    plain = fit_model(problem, plain.model, own, start=plain.parameters)
-    noisy = fit_model(problem, Model(kinds.NOISE, rolls_off), own)
-    both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
-    gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
-    if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
-        doubt = _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
-        return by_own_weights(problem, plain), doubt
-    richest = settle(problem, both.model, both.seen)
-    if richest.probability < HOPELESS_PROBABILITY:
-        return richest, _no_doubt()
-    single = [
-        settle(problem, Model(kind, rolls_off), start.seen)
-        for kind, start in (
-            (kinds.BAND_LIMIT, plain),
-            (kinds.NOISE, noisy),
-            (kinds.PSF, richest),
-        )
-    ]
-    best, doubt = richest, _no_doubt()
-    for fit in single:
-        small, rival = _with_rival(problem, fit, richest)
-        more = richest.parameters.size - fit.parameters.size
-        stands = small.chi2 - rival.chi2 < (ONE_MORE if more == 1 else TWO_MORE)
-        better = fit.likelihood_criterion < best.likelihood_criterion
-        accepted = fit.probability >= ACCEPT_PROBABILITY
-        if stands and accepted and (better or best is richest):
-            best, doubt = fit, _doubt(small, rival)
-    known = {kinds.NOISE: noisy, kinds.PSF_AND_NOISE: both}
-    if best.model.instrument in known:
-        doubt = _held_back(plain, known[best.model.instrument], best, doubt)
-    return best, doubt
-
-
-def _with_rival(
-    problem: FractalProblem, small: GlsFit, large: GlsFit
-) -> tuple[GlsFit, GlsFit]:
-    """Fit a model and a larger one, both with the weights of the smaller."""
-    own = weigh(problem, small.seen)
-    return (
-        fit_model(problem, small.model, own, start=small.parameters),
-        fit_model(problem, large.model, own, start=large.parameters),
-    )
-
-
-def _no_doubt() -> _Doubt:
-    """Return what no larger model does."""
-    return _Doubt(np.zeros(2), np.zeros((2, 2)))
-
-
-def _doubt(small: GlsFit, large: GlsFit) -> _Doubt:
-    """Return what a larger model does to the power law where it gains at all.
-
-    A noise too small to be proven still moves D. The larger model holds in any case,
-    so its whole distance from the average counts as uncertainty, not only the share
-    that its weight would leave of it.
-
-    Source:
-        Weights by likelihood and the variance within the models: Burnham and Anderson,
-        Model Selection and Multimodel Inference (2002), eq. (4.9).
-    """
-    more = large.parameters.size - small.parameters.size
-    gain = small.chi2 - large.chi2
-    if gain < CAST_DOUBT[more]:
-        return _no_doubt()
-    weight = _weight(small, large)
-    apart = large.parameters[:2] - small.parameters[:2]
-    widened = large.covariance[:2, :2] - small.covariance[:2, :2]
-    left = (1 - weight) * apart
-    return _Doubt(weight * apart, weight * widened + np.outer(left, left))
-
-
-def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: _Doubt) -> _Doubt:
-    """Return the doubt of a model that is only just proven.
-
-    Without it D would leap where the gain passes its limit, and the few clean profiles
-    that chance takes there would rule the scatter of all.
-
-    Args:
-        plain: without instrument.
-        large: the model of `best` by the weights of `plain`.
-        best: the model that was taken.
-        doubt: what a still larger model does.
-    """
-    weight = _weight(plain, large)
-    # Where `plain` is far off its weights tell nothing of the larger model either.
-    if weight > SETTLED_WEIGHT or large.chi2 >= plain.chi2:
-        return doubt
-    back = (1 - weight) * (plain.parameters[:2] - best.parameters[:2])
-    return _Doubt(doubt.shift + back, doubt.covariance + np.outer(back, back))
-
-
-def _weight(small: GlsFit, large: GlsFit) -> float:
-    """Return the weight of the larger of two models with the same weights of lags."""
-    more = large.parameters.size - small.parameters.size
-    excess = small.chi2 - large.chi2 - EVEN[more]
-    return float(1 / (1 + np.exp(-np.clip(excess, -100.0, 100.0) / 2)))
-
-
-def _chosen(problem: FractalProblem, fit: GlsFit, doubt: _Doubt) -> Choice:
+def _chosen(problem: FractalProblem, fit: GlsFit, doubt: Doubt) -> Choice:
     """Return a fit as a choice; on a map with no less scatter than its strips show."""
     covariance = fit.covariance[:2, :2] + doubt.covariance
     strips = _strip_scatter(problem, fit) / fit.dimension_sd

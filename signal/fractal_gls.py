@@ -271,6 +271,7 @@ def _unpack(
         band_limited=instrument is InstrumentModel.BAND_LIMIT,
         corner=float(np.exp(rest.pop(0))) if model.rolls_off else np.inf,
         quantum=problem.estimate.quantum,
+        traced=instrument.is_traced,
     )
 
 

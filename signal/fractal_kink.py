@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.signal.fractal_problem import FractalProblem
-from jointbench.signal.self_affine import SeenSurface
+from jointbench.signal.self_affine import SeenSurface, tip_fall
 from jointbench.signal.structure_constant import spectral_integral
 
 CLEAR_GAIN = 14.0
@@ -92,7 +92,10 @@ def expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
     images = 0 if seen.band_limited else ALIASES
     waves = omega[:, None] + 2 * np.pi * np.arange(-images, images + 1)
     power = np.abs(waves) ** (-1 - seen.exponent)
-    if seen.psf_width > 0:
+    if seen.psf_width > 0 and seen.traced:
+        fall = tip_fall(seen.exponent)
+        power *= (1 + (waves * seen.psf_width) ** 2 / fall) ** -fall
+    elif seen.psf_width > 0:
         power *= np.exp(-((waves * seen.psf_width) ** 2))
     total = power.sum(axis=1)
     if images and seen.psf_width == 0:  # images beyond, as an integral

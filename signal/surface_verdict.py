@@ -28,7 +28,8 @@ class InstrumentParameter:
 
     Attributes:
         name: ``"noise"`` (standard deviation of each height) or
-            ``"point_spread"`` (standard deviation of the Gaussian blur).
+            ``"point_spread"`` (standard deviation of the Gaussian blur, or of the one
+            that takes as much from long waves as a stylus).
         value: [m].
         sd: its standard deviation [m].
     """

@@ -28,7 +28,7 @@ STEP = 20e-9  # standard deviation of neighbouring heights' difference [m]
 class Setting:
     """An instrument: blur [samples], noise [m], tip [m] and the models that are right.
 
-    A stylus counts as a point spread.
+    A stylus and a point spread count as one.
     """
 
     blur: float
@@ -51,15 +51,18 @@ HEAD = (
     "without D",
     "fractal over all lags",
 )
-SPREAD, BOTH = "point spread", "point spread and noise"
+SPREAD, BOTH = (
+    ("point spread", "stylus"),
+    ("point spread and noise", "stylus and noise"),
+)
 SETTINGS = {
     "clean": Setting(0.0, 0.0, ("none",)),
     "noise": Setting(0.0, STEP, ("noise",)),
     "little noise": Setting(0.0, 0.3 * STEP, ("noise",)),
-    "point spread": Setting(4.0, 0.0, (SPREAD,)),
-    "both": Setting(4.0, 5e-9, (BOTH,)),
-    "stylus": Setting(0.0, 0.0, (SPREAD, BOTH), tip=2e-6),
-    "stylus and noise": Setting(0.0, 2e-9, (SPREAD, BOTH), tip=2e-6),
+    "point spread": Setting(4.0, 0.0, SPREAD),
+    "both": Setting(4.0, 5e-9, BOTH),
+    "stylus": Setting(0.0, 0.0, (*SPREAD, *BOTH), tip=2e-6),
+    "stylus and noise": Setting(0.0, 2e-9, (*SPREAD, *BOTH), tip=2e-6),
 }
 
 

@@ -15,6 +15,7 @@ from jointbench.signal.pooled_profiles import pool_profiles
 from jointbench.signal.structure_constant import structure_constant
 from jointbench.signal.structure_function import combine, structure_function
 from jointbench.signal.surface_verdict import FractalFit, SurfaceVerdict
+from jointbench.simulators.profilometer import traced
 
 SPACING = 0.5e-6
 STEP = 1e-8
@@ -118,6 +119,17 @@ def test_a_point_spread_is_told_from_smoothness():
     assert width.value == pytest.approx(3.0 * SPACING, abs=4 * width.sd)
     assert found.fit_band is not None
     assert found.fit_band[0] > 2 * SPACING
+
+
+def test_a_tip_is_told_from_a_point_spread():
+    """A tip leaves creases where it turns; D comes back."""
+    dimension = 1.3
+    heights = 10 * brownian(12_000, dimension, 6)
+    found = fit(traced(heights, (SPACING,), 10e-6))
+    value, sd = known(found)
+    assert abs(value - dimension) < 2.5 * sd
+    assert found.instrument in {"stylus", "stylus and noise"}
+    assert found.verdict is SurfaceVerdict.FRACTAL
 
 
 def test_a_surface_made_of_waves_up_to_nyquist_is_recognised():

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Closed forms of what instruments and levelling do to a self-affine surface."""
 
+import itertools
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -12,6 +14,8 @@ from jointbench.signal.self_affine import (
     blurred_power,
     levelling_loss,
     rolled_off,
+    tip_fall,
+    traced_power,
 )
 from jointbench.signal.structure_constant import spectral_integral
 
@@ -35,6 +39,26 @@ def test_a_blurred_profile_has_the_spectrum_times_the_transfer(
     )
     found = blurred_power(np.array([lag]), exponent, width, 1)[0]
     assert found == pytest.approx(integral / spectral_integral(exponent), rel=1e-6)
+
+
+@pytest.mark.parametrize("exponent", EXPONENTS)
+@pytest.mark.parametrize("lag", [0.5, 2.0, 9.0, 40.0])
+def test_the_path_of_a_tip_has_the_spectrum_times_its_transfer(
+    exponent: float, lag: float
+):
+    """The mean over blurs equals the integral with (1 + q^2 w^2 / n)^-n."""
+    width, fall = 1.3, tip_fall(exponent)
+
+    def density(q: float) -> float:
+        return q ** (-1 - exponent) * (1 + (q * width) ** 2 / fall) ** -fall * 2
+
+    edges = np.geomspace(1e-10, 300.0, 35)
+    integral = sum(
+        quad(lambda q: density(q) * np.sin(q * lag / 2) ** 2, a, b, limit=2000)[0]
+        for a, b in itertools.pairwise(edges)
+    )
+    found = traced_power(np.array([lag]), exponent, width)[0]
+    assert found == pytest.approx(integral / spectral_integral(exponent), rel=3e-3)
 
 
 @pytest.mark.parametrize("axes", [1, 2])
