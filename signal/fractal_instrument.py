@@ -118,8 +118,8 @@ def _or_tip(
 
     The path of a tip has creases, so that its spectrum falls by a power where that
     behind a Gaussian point spread ends; both have as many parameters. A bend of the
-    spectrum looks alike, so a tip must hold without any misfit allowed, and be one
-    that a stylus can have.
+    spectrum looks alike, so a tip must hold with no more misfit than the form of its
+    path has, and be one that a stylus can have.
     """
     kinds = InstrumentModel
     begin = [*blurred.parameters[:2], NOISE_START, blurred.seen.psf_width]
@@ -127,7 +127,9 @@ def _or_tip(
     glance = fit_model(
         problem, Model(kinds.STYLUS_AND_NOISE), own, start=np.array(begin)
     )
-    if glance.chi2 > blurred.chi2 or glance.probability < HOPELESS_PROBABILITY:
+    sizes = glance.parameters.size, blurred.parameters.size
+    likelier = glance.chi2 + 2 * sizes[0] < blurred.chi2 + 2 * sizes[1]
+    if not likelier or glance.probability < HOPELESS_PROBABILITY:
         return blurred, doubt
     large = settle(problem, glance.model, glance.seen)
     fit = settle(problem, Model(kinds.STYLUS), glance.seen)
@@ -136,9 +138,8 @@ def _or_tip(
     if small.chi2 - rival.chi2 < ONE_MORE and fit.probability >= ACCEPT_PROBABILITY:
         found = (fit, _doubt(small, rival))
     tip = found[0]
-    likelier = tip.likelihood_criterion < blurred.likelihood_criterion
     holds = tip.probability >= ACCEPT_PROBABILITY and _sharp_enough(problem, tip)
-    return found if likelier and holds else (blurred, doubt)
+    return found if holds else (blurred, doubt)
 
 
 def _sharp_enough(problem: FractalProblem, fit: GlsFit) -> bool:

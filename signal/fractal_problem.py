@@ -8,7 +8,8 @@ import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.signal.fractal_covariance import Seen, structure_covariance
-from jointbench.signal.self_affine import SeenSurface, levelling_loss, rolled_off
+from jointbench.signal.levelling_loss import levelling_loss
+from jointbench.signal.self_affine import TIP_TOLERANCE, SeenSurface, rolled_off
 from jointbench.signal.structure_function import StructureFunction
 
 PLANE_LOSS = 0.5
@@ -93,8 +94,11 @@ class FractalProblem:
         Where a misfit is allowed, and on a map, the whole loss by levelling enters
         once more as an unknown of that size: how much a mean plane takes is not known,
         and a surface may lack waves longer than the profile, which bends S likewise.
-        The loss of a self-affine profile is known exactly.
+        The loss of a self-affine profile is known exactly. Of the path of a tip the
+        form is known to a percent only.
         """
+        if seen.traced:
+            return TIP_TOLERANCE**2 * np.eye(self.lag.size)
         if self.tolerance == 0 and self.estimate.separate:
             return np.zeros((self.lag.size, self.lag.size))
         loss = self.loss(seen) / seen.seen(self.lag)

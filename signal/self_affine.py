@@ -19,8 +19,10 @@ _QUADRATURE_NODES = 96
 _QUADRATURE_LAGS = 60.0
 """Lag beyond which a cosine over the band averages out [samples]; the nodes follow
 it up to there."""
-_TIP_FALL = 1.2
+_TIP_FALL = 1.3
 """Times 1 / s: half the power by which a tip's path falls off [-], see `tip_fall`."""
+TIP_TOLERANCE = 0.01
+"""How far S of the mean path of simulated tips lies from `traced_power` [-]."""
 _TIP_BLURS = 16
 """Gaussian blurs that make up the path of a tip: S within 2e-3 at all lags [-]."""
 _TIP_TAILS = (1e-4, 1.0 - 1e-7)
@@ -201,9 +203,9 @@ def tip_fall(exponent: float) -> float:
     of contact, so |K|^2 is one function of it for each D. The path has creases: far out
     its spectrum falls as omega^-4, n = (3 - s) / 2, but few data see so far. Fitted to
     the mean S of paths of tips of 1 to 5 um on profiles of D = 1.3, 1.5 and 1.7, with
-    points eight times as dense as well, n = 1.2 / s leaves an error of D of 0.007 at
-    most at 1.3 and 1.5 and 0.018 at 1.7; a Gaussian leaves up to 0.035, and five to a
-    hundred times the squares.
+    points eight times as dense as well, n = 1.3 / s leaves an error of D of 0.005 at
+    most at 1.3 and 1.5 and 0.016 at 1.7; a Gaussian leaves up to 0.035, and five to a
+    hundred times the squares. Tips many points wide (15 um here) see more of the fall.
 
     Args:
         exponent: s = 4 - 2D [-].
@@ -305,42 +307,3 @@ def _exponential_integral(
         value = argument + order + 2 * (k - 1) - k * (order + k - 1) / value
     result: NDArray[np.complex128] = np.exp(-argument) / value
     return result
-
-
-def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
-    """Return what removing the mean line takes from S = t^s of a unit length.
-
-    Args:
-        share: lag over the length of the profile, between 0 and 1 [-].
-        exponent: s [-].
-
-    Returns:
-        Loss of the mean of S over all pairs of one profile, same shape [-].
-
-    Source:
-        The slope b of the line is 12 times the integral of (t - 1/2) z. With it
-        S_levelled = S - 2 lag mean(cov(dz, b)) + lag^2 var(b), and both moments
-        follow from cov = -S/2 for weights that sum to zero.
-    """
-    s = exponent
-    slope_variance = 36 * _beta(s + 3, 2) - 12 * _beta(s + 1, 4)
-
-    def moment(t: FloatArray) -> FloatArray:
-        """Integrate cov(z(t), b) from 0 to t."""
-        rest = 1 - t
-        ahead = t ** (s + 3) / (s + 3) - t ** (s + 2) / (2 * (s + 2))
-        behind = rest ** (s + 3) / (s + 3) - rest ** (s + 2) / (2 * (s + 2))
-        start = 1 / (s + 3) - 1 / (2 * (s + 2))
-        first = (ahead + behind - start) / (s + 1)
-        second = (t ** (s + 3) + rest ** (s + 3) - 1) / ((s + 2) * (s + 3))
-        integral: FloatArray = -6 * (first - second)
-        return integral
-
-    ends = moment(np.ones_like(share)) - moment(1 - share) - moment(share)
-    loss: FloatArray = 2 * share * ends / (1 - share) - share**2 * slope_variance
-    return loss
-
-
-def _beta(a: float, b: float) -> float:
-    """Return Euler's beta function."""
-    return float(gamma_function(a) * gamma_function(b) / gamma_function(a + b))

@@ -8,11 +8,11 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
+from jointbench.signal.levelling_loss import levelling_loss
 from jointbench.signal.self_affine import (
     SeenSurface,
     band_limited_power,
     blurred_power,
-    levelling_loss,
     rolled_off,
     tip_fall,
     traced_power,
