@@ -181,6 +181,10 @@ def root_error(decibel: float) -> float:
         theirs = fit_poles(frf.frequency, frf.response, orders)
     worst = 0.0
     for one, other in zip(ours, theirs, strict=True):
+        if one.pole.size != other.pole.size:
+            return float("inf")
+        if one.pole.size == 0:
+            continue
         away = np.abs(one.pole[:, None] - other.pole).min(axis=1) / np.abs(one.pole)
         worst = max(worst, float(away.max()))
     return worst
