@@ -20,12 +20,14 @@ from typing import IO, Any
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_lock import drop_lock, hold_lock
-from jointbench.acquisition.text_files import named
+from jointbench.acquisition.text_files import file_size, named, read_bytes, visible
 from jointbench.station.outputs import write_text
 from jointbench.station.process import outcome_json
 from jointbench.station.process_file import Outcome, State
 
 LEDGER_SCHEMA = "jointbench-ledger/1"
+MOST_BYTES = 2**30
+"""Two million files' lines; a longer ledger is none [bytes]."""
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -103,14 +105,15 @@ def read_ledger(path: Path) -> list[dict[str, Any]]:
     if not path.exists():
         return []
     lines = []
-    for text in path.read_text(encoding="utf-8", errors="replace").splitlines():
+    data = read_bytes(path, limit=MOST_BYTES) if file_size(path) else b""
+    for text in data.decode("utf-8", errors="replace").split("\n"):
         try:
             line = json.loads(text)
-        except ValueError:
+        except (ValueError, RecursionError):
             continue
         if isinstance(line, dict):
             lines.append(line)
-    if path.stat().st_size and not (
+    if data and not (
         lines and str(lines[0].get("schema", "")).startswith("jointbench-ledger/")
     ):
         raise UsageError(f"{named(path)} is no ledger; give --ledger another name")
@@ -150,7 +153,9 @@ def write_quarantine(path: Path, failed: Sequence[Outcome]) -> None:
     writer.writerow(("file", "reason", "comes again"))
     for outcome in sorted(failed, key=lambda o: o.path):
         again = "yes" if outcome.lasting else "perhaps not: run again"
-        writer.writerow([escaped(str(outcome.path)), escaped(outcome.reason), again])
+        writer.writerow(
+            [escaped(visible(str(outcome.path))), escaped(outcome.reason), again]
+        )
     write_text(path, buffer.getvalue())
 
 

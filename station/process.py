@@ -4,6 +4,7 @@
 from pathlib import Path
 
 from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.acquisition.text_files import visible
 from jointbench.station.output import console, table, with_sd, working, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.process_file import Outcome, State, Task, process_task
@@ -67,7 +68,7 @@ def run_process(
 
 def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> None:
     screen = console(json_target)
-    title = f"{result.path.name}: recipe {result.facts['recipe_name']!r}"
+    title = f"{visible(result.path.name)}: recipe {result.facts['recipe_name']!r}"
     columns = ("of", "quantity", "value ± sd", "unit")
     rows = [quantity_cells(one) for one in result.quantities]
     screen.print(table(title, columns, rows))
@@ -85,7 +86,7 @@ def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> No
     for remark in result.remarks:
         screen.print(remark, soft_wrap=True)
     screen.print(f"\nstages: {stage_words(outcome)}", soft_wrap=True)
-    screen.print(f"result: {result.path}", soft_wrap=True)
+    screen.print(f"result: {visible(str(result.path))}", soft_wrap=True)
 
 
 def quantity_cells(one: Quantity) -> tuple[str, str, str, str]:

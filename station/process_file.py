@@ -15,7 +15,12 @@ from pathlib import Path
 
 import h5py
 
-from jointbench.acquisition.errors import BadData, HostileFile, JointbenchError
+from jointbench.acquisition.errors import (
+    BadData,
+    HostileFile,
+    JointbenchError,
+    UsageError,
+)
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_file import read_session
 from jointbench.acquisition.text_files import file_digest, file_size, named
@@ -157,7 +162,7 @@ def _done(task: Task, recipe: Recipe, digest: str, key: str, begun: float) -> Ou
     try:
         origin = Origin(task.path, digest, key, seconds)
         write_processed(task.result, result, recipe, origin)
-    except JointbenchError as error:
+    except UsageError as error:
         return _failed(task, key, str(error), begun, lasting=False, unwritable=True)
     return Outcome(
         task.path,

@@ -34,6 +34,7 @@ from jointbench.acquisition.netcdf import (
 from jointbench.acquisition.records import Recording, Verdict
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_streams import free_name
+from jointbench.acquisition.text_files import visible
 from jointbench.station.judge_again import NOT_THERE, VerdictChange
 from jointbench.station.process_session import PreloadModes, ProcessedSession
 from jointbench.station.quantities import Quantity, quantities_of
@@ -100,7 +101,7 @@ def _write_origin(
         file,
         {
             "key": origin.key,
-            "input_file": origin.path.name,
+            "input_file": visible(origin.path.name),
             "input_sha256": origin.sha256,
             "recipe_name": recipe.name,
             "software": software_version(),

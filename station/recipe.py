@@ -6,18 +6,31 @@ is chosen by the data, as `jointbench modal` chooses it.
 """
 
 import json
+import re
 from hashlib import sha256
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    model_validator,
+)
 
-from jointbench.acquisition.errors import UnitError
+from jointbench.acquisition.errors import BadData, JointbenchError, UnitError
+from jointbench.acquisition.text_files import named, shown
 from jointbench.acquisition.units import parse_value
+from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.gap.catalogue import CATALOGUE, check_names
 from jointbench.station.bench_model import BenchModel, Force, Pressure
 from jointbench.station.toml_file import read_toml
 
 AUTO, NONE = "auto", "none"
+_NAME = re.compile(r"\w([\w .-]{0,58}\w)?")
+"""A recipe's name becomes part of file names: of the results, of the ledger."""
 
 
 def _quantity(kind: str, *words: str) -> BeforeValidator:
@@ -49,6 +62,17 @@ WindowRate = Annotated[float | None, _quantity("frequency", AUTO, NONE), Field(g
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def _beside(text: str) -> str:
+    """Refuse a file that is not below the recipe's folder."""
+    for path in (Path(text), PureWindowsPath(text)):
+        if path.anchor or ".." in path.parts or not text.isprintable():
+            raise ValueError("name a file beside the recipe, or in a folder below it")
+    return text
+
+
+FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
 
 
 class HitsPart(_Strict):
@@ -137,13 +161,13 @@ class ContactPart(_Strict):
 class IdentificationPart(_Strict):
     """The bench model whose links are identified, beside the recipe."""
 
-    model: str
+    model: FileBeside
 
 
 class GapPart(_Strict):
     """The bench model whose gap is examined, and effects left out."""
 
-    model: str
+    model: FileBeside
     without: tuple[str, ...] = ()
 
 
@@ -184,12 +208,33 @@ def read_recipe(path: Path) -> Recipe:
             and rule.
     """
     recipe = read_toml(path, Recipe)
-    named = {
+    name = recipe.name or path.stem
+    if _NAME.fullmatch(name) is None:
+        raise BadData(
+            f"{named(path)}: the recipe's name is {shown(name)}, and becomes part of "
+            "file names: write letters, digits, spaces, dots, - and _, 60 at "
+            "the most, as name = '...' or as the file's own name"
+        )
+    _check_names(recipe, path)
+    wanted = {
         part.model for part in (recipe.identification, recipe.gap) if part is not None
     }
-    models = {name: read_toml(path.parent / name, BenchModel) for name in named}
-    name = recipe.name or path.stem
+    models = {model: read_toml(path.parent / model, BenchModel) for model in wanted}
     return recipe.model_copy(update={"models": models, "name": name})
+
+
+def _check_names(recipe: Recipe, path: Path) -> None:
+    """Refuse names of contact models and effects that nobody has, before any work."""
+    key = ""
+    try:
+        if recipe.contact is not None:
+            key = "contact.model"
+            contact_model(recipe.contact.model)
+        if recipe.gap is not None:
+            key = "gap.without"
+            check_names(recipe.gap.without, CATALOGUE)
+    except JointbenchError as error:
+        raise BadData(f"{named(path)}: key {key!r}: {error}") from error
 
 
 def recipe_content(recipe: Recipe) -> dict[str, object]:

@@ -14,6 +14,7 @@ from pathlib import Path
 from types import FrameType
 
 from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.text_files import visible
 from jointbench.station.archive_files import common_folder, session_files
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
@@ -278,7 +279,8 @@ def _show(
     screen.print(table("Reprocessed", ("files", "number"), rows))
     failed = summary.failed
     for outcome in failed[:MOST_SHOWN]:
-        screen.print(f"quarantined: {outcome.path}: {outcome.reason}", soft_wrap=True)
+        named = visible(str(outcome.path))
+        screen.print(f"quarantined: {named}: {outcome.reason}", soft_wrap=True)
     if len(failed) > MOST_SHOWN:
         screen.print(f"and {len(failed) - MOST_SHOWN} more, see the quarantine list")
     screen.print(f"\nledger: {places.ledger}", soft_wrap=True)

@@ -1,16 +1,18 @@
 """A recorded session under a recipe: results, kept stages, verdicts that changed."""
 
+import io
+import os
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from jointbench.acquisition.errors import BadData
-from jointbench.acquisition.records import Hit, Recording, Verdict
+from jointbench.acquisition.errors import BadData, FormatError
+from jointbench.acquisition.records import Channel, Hit, Recording, Verdict
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.text_files import file_digest
-from jointbench.signal.frf import Frf
+from jointbench.signal.frf import Frf, FrfKind
 from jointbench.station.chain import run_chain
 from jointbench.station.process import run_process
 from jointbench.station.process_file import State, Task, process_task
@@ -166,7 +168,7 @@ def test_records_survive_being_kept() -> None:
     frf = Frf(
         np.arange(1.0, 9.0),
         rng.normal(size=(1, 1, 8)) + 1j * rng.normal(size=(1, 1, 8)),
-        kind="accelerance",  # type: ignore[arg-type]
+        kind=FrfKind.ACCELERANCE,
     )
     data = encode_record(frf)
     assert encode_record(decode_record(data, Frf)) == data
@@ -174,19 +176,64 @@ def test_records_survive_being_kept() -> None:
 
 def test_a_kept_stage_cannot_name_a_record_of_its_choice() -> None:
     """A file that says Recording where an Frf is wanted is refused."""
-    from jointbench.acquisition.errors import FormatError
-
     recording = Recording("r", np.zeros((0, 4)), 1.0, ())
     with pytest.raises(FormatError):
         decode_record(encode_record(recording), Frf)
+
+
+@pytest.mark.parametrize(
+    ("value", "kind"),
+    [
+        ("text", float),
+        ((1.0, "a"), tuple[float, ...]),
+        ({"a": 1.0}, tuple[float, ...]),
+        (Channel("force", "newton"), Channel),  # type: ignore[arg-type]
+    ],
+)
+def test_a_kept_stage_holds_what_it_should(value: object, kind: type) -> None:
+    """Another type, at the top or in a field, is refused before it is used."""
+    with pytest.raises(FormatError):
+        decode_record(encode_record(value), kind)
+
+
+def test_a_kept_stage_that_would_unpack_to_more_is_refused() -> None:
+    """Zeros that take a thousandth of their place: nothing of ours is packed."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, record=np.zeros(10_000, np.uint8))
+    with pytest.raises(FormatError, match="packed"):
+        decode_record(buffer.getvalue(), Frf)
+
+
+def test_a_stage_under_the_name_of_another_is_run_again(tmp_path: Path) -> None:
+    """A whole stage copied over another of its kind is found out by its key."""
+    keys = [stage_key("s", number) for number in range(2)]
+    for value, key in enumerate(keys):
+        StageStore(tmp_path).run("s", key, float, lambda value=value: float(value))
+    first, second = (next(tmp_path.rglob(f"{key}.stage")) for key in keys)
+    second.write_bytes(first.read_bytes())
+    store = StageStore(tmp_path)
+    assert store.run("s", keys[1], float, lambda: 1.0) == 1.0
+    assert store.computed == ["s"]
+    assert store.run("s", keys[0], float, lambda: 9.0) == 0.0
+
+
+def test_half_written_stages_of_killed_workers_go(tmp_path: Path) -> None:
+    """An old one is dropped with the rest; a fresh one may be in work."""
+    key = stage_key("s", 1)
+    old, fresh = (tmp_path / key[:2] / f"{key}.stage.{n}.part" for n in (1, 2))
+    old.parent.mkdir()
+    for path in (old, fresh):
+        path.write_bytes(b"half")
+    os.utime(old, (1e9, 1e9))
+    prune_stages(tmp_path, 10**9)
+    assert not old.exists()
+    assert fresh.exists()
 
 
 def test_stages_that_were_not_used_for_longest_are_dropped_first(
     tmp_path: Path,
 ) -> None:
     """Three stages of equal size, room for two: the oldest goes."""
-    import os
-
     store = StageStore(tmp_path)
     keys = [stage_key("s", number) for number in range(3)]
     for age, key in zip((100, 300, 200), keys, strict=True):

@@ -75,7 +75,12 @@ def test_the_pool_gives_what_one_process_gives(make_session, tmp_path: Path) -> 
         task.result.unlink()
     run(tmp_path)
     alone = [table_rows(read_results([t.result])[0]) for t in tasks]
-    assert repr(pooled) == repr(alone)
+    names = [[(r.part, r.item, r.name, r.word) for r in rows] for rows in alone]
+    assert [[(r.part, r.item, r.name, r.word) for r in x] for x in pooled] == names
+    # A worker has one thread, this process as many as it likes: sums round otherwise.
+    for one, other in zip(pooled, alone, strict=True):
+        values = [[row.value for row in rows] for rows in (one, other)]
+        assert np.allclose(*values, rtol=1e-9, equal_nan=True)
 
 
 def test_a_killed_run_goes_on_where_it_was(make_session, tmp_path: Path) -> None:
@@ -134,6 +139,51 @@ def test_results_are_no_sessions(make_session, tmp_path: Path) -> None:
     assert [p.name for p in session_files([str(tmp_path / "in" / "*.h5")])] == ["a.h5"]
     with pytest.raises(UsageError, match="quote the pattern"):
         session_files([str(tmp_path / "none" / "*.h5")])
+
+
+def test_a_folder_met_by_several_links_is_walked_once(
+    make_session, tmp_path: Path
+) -> None:
+    """Two loops and a link to the file: one session, under its own name."""
+    path = make_session("in/deep/a.h5")
+    (tmp_path / "in" / "loop").symlink_to(tmp_path / "in")
+    (tmp_path / "in" / "deep" / "up").symlink_to(tmp_path / "in")
+    (tmp_path / "in" / "also.h5").symlink_to(path)
+    assert session_files([str(tmp_path / "in")]) == (path,)
+    assert session_files([str(tmp_path / "in" / "**" / "*.h5")]) == (path,)
+
+
+def test_names_that_are_no_text_are_done_and_listed_all_the_same(
+    make_session, tmp_path: Path
+) -> None:
+    """A line end, an escape and a byte that is no UTF-8: no file stops the others."""
+    good = make_session("in/a.h5")
+    names = [b"new\nline.h5", b"\x1b[31mred.h5", b"byte\xff.h5", b"=cut\xff.h5"]
+    for name in names:
+        path = Path(os.fsdecode(os.fsencode(tmp_path / "in") + b"/" + name))
+        try:
+            path.write_bytes(good.read_bytes() + name)
+        except OSError:
+            pytest.skip("this system has no such names")
+    path.write_bytes(b"no session")
+    summary = run(tmp_path)
+    assert summary.counts == {State.DONE: 4, State.SKIPPED: 0, State.FAILED: 1}
+    listed = (tmp_path / "plain.ledger.quarantine.csv").read_text(encoding="utf-8")
+    assert "=cut\\udcff.h5" in listed
+    assert "\x1b" not in listed
+    assert run(tmp_path).counts[State.SKIPPED] == 4
+
+
+def test_a_hostile_ledger_is_survived(tmp_path: Path) -> None:
+    """Nesting without end, other types and a line that is no object are passed over."""
+    path = tmp_path / "l.jsonl"
+    with open_ledger(path, {}):
+        pass
+    with path.open("a", encoding="utf-8") as file:
+        file.write("[" * 100_000 + "\n" + "3\n" + '{"kind": "file", "file": [1]}\n')
+        file.write('{"kind":"file","file":{},"state":"failed","lasting":1,"key":[]}\n')
+    with open_ledger(path, {}) as ledger:
+        assert list(ledger.refused.values()) == [("[]", "")]
 
 
 def test_a_ledger_outlives_a_line_that_was_cut(tmp_path: Path) -> None:
