@@ -3,21 +3,39 @@
 
 import csv
 import io
+import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, fields
 from datetime import datetime
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from rich.console import Console
+
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.netcdf import new_file, write_texts, write_variable
+from jointbench.acquisition.text_files import named, visible
 from jointbench.station.archive_files import result_files
+from jointbench.station.export_tables import Column, Table, write_mat
 from jointbench.station.ledger import escaped
 from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_outputs, write_text
-from jointbench.station.results_read import StoredResult, read_result
-from jointbench.station.trends import Trend, trend_rows, trends_json, trends_of
+from jointbench.station.results_read import (
+    StoredResult,
+    read_result,
+    without_copies,
+)
+from jointbench.station.trends import (
+    OVER,
+    Trend,
+    check_trend,
+    trend_rows,
+    trends_json,
+    trends_of,
+)
 
 TABLE_SCHEMA = "jointbench-archive/1"
 PARQUET = "pip install 'jointbench[archive]'"
@@ -40,6 +58,7 @@ class Row:
     torque: float
     preload: float
     recipe: str
+    recipe_sha256: str
     software: str
     part: str
     item: str
@@ -66,6 +85,7 @@ def table_rows(results: Sequence[StoredResult]) -> list[Row]:
             if not math.isnan(one.preload) or result.preload is None
             else result.preload,
             recipe=result.facts["recipe_name"],
+            recipe_sha256=_recipe_digest(result),
             software=result.facts["software"],
             part=one.part,
             item=one.item,
@@ -78,6 +98,13 @@ def table_rows(results: Sequence[StoredResult]) -> list[Row]:
         for result in results
         for one in result.quantities
     ]
+
+
+def _recipe_digest(result: StoredResult) -> str:
+    if not result.recipe:
+        return ""
+    text = json.dumps(result.recipe, sort_keys=True)
+    return sha256(text.encode()).hexdigest()
 
 
 def _day(text: str) -> float:
@@ -101,21 +128,61 @@ def read_results(
     return found, refused
 
 
+def left_out_words(path: Path, reason: str) -> str:
+    """Say of a results file why it is left out; the reason may begin with its name."""
+    return f"left out: {reason if named(path) in reason else f'{path}: {reason}'}"
+
+
+def ways_of(rows: Sequence[Row]) -> dict[tuple[str, str, str], str]:
+    """Return a name for each way in which results were made, if there are several.
+
+    Args:
+        rows: of the table.
+
+    Returns:
+        By recipe, its digest and the software: the recipe's name, with the digest's
+        first characters or the version where recipes of one name differ; empty names
+        where all results were made in one way.
+    """
+    ways = sorted({(row.recipe, row.recipe_sha256, row.software) for row in rows})
+    if len(ways) == 1:
+        return {ways[0]: ""}
+    digests, versions = (len({way[i] for way in ways}) > 1 for i in (1, 2))
+    names = [way[0] for way in ways]
+    found = {}
+    for way in ways:
+        words = [way[0] or "no recipe"]
+        if names.count(way[0]) > 1:
+            words += [way[1][:8]] * digests + [way[2]] * versions
+        found[way] = f"{' '.join(words)}: "
+    return found
+
+
 def write_table(path: Path, rows: Sequence[Row]) -> None:
-    """Write the table as its name says: .csv, .nc or .parquet.
+    """Write the table as its name says: .csv, .mat, .nc or .parquet.
 
     Raises:
         UsageError: another ending, or Parquet without its library.
+    """
+    writer_of(path)(path, rows)
+
+
+def writer_of(path: Path) -> Callable[[Path, Sequence[Row]], None]:
+    """Return what writes a table of this name.
+
+    Raises:
+        UsageError: no table ends like that.
     """
     writers: dict[str, Callable[[Path, Sequence[Row]], None]] = {
         ".csv": _write_csv,
         ".nc": _write_netcdf,
         ".parquet": _write_parquet,
+        ".mat": _write_mat,
     }
     writer = writers.get(path.suffix.lower())
     if writer is None:
-        raise UsageError(f"--out is '{path}'; name it *.csv, *.nc or *.parquet")
-    writer(path, rows)
+        raise UsageError(f"--out is '{path}'; name it *.csv, *.mat, *.nc or *.parquet")
+    return writer
 
 
 def _columns(rows: Sequence[Row]) -> dict[str, list[Any]]:
@@ -150,6 +217,14 @@ def _write_netcdf(path: Path, rows: Sequence[Row]) -> None:
                 write_variable(file, name, values, ("row",), long_name=name)
 
 
+def _write_mat(path: Path, rows: Sequence[Row]) -> None:
+    columns = {
+        name: Column("", np.array(values), ("row",))
+        for name, values in _columns(rows).items()
+    }
+    write_mat(path, [Table("archive", columns)])
+
+
 def _write_parquet(path: Path, rows: Sequence[Row]) -> None:
     try:
         import pyarrow
@@ -159,8 +234,11 @@ def _write_parquet(path: Path, rows: Sequence[Row]) -> None:
             f"Parquet needs pyarrow; type {PARQUET}, or name the table *.nc or *.csv"
         ) from error
     part = path.with_name(f"{path.name}.part")
-    parquet.write_table(pyarrow.table(_columns(rows)), part)
-    part.replace(path)
+    try:
+        parquet.write_table(pyarrow.table(_columns(rows)), part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def run_archive(
@@ -177,30 +255,30 @@ def run_archive(
     Returns:
         Number of results files that could not be read.
     """
+    check_trend(trend)
     paths = result_files(patterns)
-    check_outputs(paths, [json_target])
+    check_outputs(paths, [out, json_target])
+    if out is not None:
+        writer_of(out)
     with working(f"reading {len(paths)} results"):
-        results, refused = read_results(paths)
+        found, refused = read_results(paths)
+    results, copies = without_copies(found)
     rows = table_rows(results)
     if not rows:
-        raise BadData(f"none of {len(paths)} results files holds a number")
-    screen = console(json_target)
+        raise BadData(
+            f"none of {len(paths)} results files holds a number"
+            + (f"; {refused[0][1]}" if refused else "")
+        )
     if out is not None:
         write_table(out, rows)
-        words = f"{out}: {len(rows)} rows of {len(results)} results"
+    trends = _trends(rows, trend)
+    _show(results, rows, trends, trend, out, console(json_target))
+    screen = console(json_target)
+    for copy in copies:
+        words = f"left out: {visible(str(copy.path))} says the same of the same content"
         screen.print(words, soft_wrap=True)
-    trends = trends_of(
-        [
-            Trend.point(row, trend)
-            for row in rows
-            if not math.isnan(row.value) and row.part != "hits"
-        ]
-    )
-    title = f"Trends over {trend} ({len(results)} results)"
-    columns = ("quantity", "results", "mean ± scatter", f"over {trend}", "verdict")
-    screen.print(table(title, columns, trend_rows(trends, trend)))
     for path, reason in refused:
-        screen.print(f"left out: {path}: {reason}", soft_wrap=True)
+        screen.print(left_out_words(path, reason), soft_wrap=True)
     write_json(
         json_target,
         {
@@ -208,8 +286,43 @@ def run_archive(
             "rows": len(rows),
             "table": None if out is None else str(out),
             "left_out": [{"file": str(p), "reason": r} for p, r in refused],
+            "copies": [str(copy.path) for copy in copies],
             "trend": trend,
             "trends": trends_json(trends),
         },
     )
     return len(refused)
+
+
+def _trends(rows: Sequence[Row], over: str) -> tuple[Trend, ...]:
+    """Return the trends of each way of making results by itself."""
+    ways = ways_of(rows)
+    points = [
+        Trend.point(row, over, ways[row.recipe, row.recipe_sha256, row.software])
+        for row in rows
+        if not math.isnan(row.value) and row.part != "hits"
+    ]
+    return trends_of(points)
+
+
+def _show(
+    results: Sequence[StoredResult],
+    rows: Sequence[Row],
+    trends: Sequence[Trend],
+    over: str,
+    out: Path | None,
+    screen: Console,
+) -> None:
+    if out is not None:
+        words = f"{out}: {len(rows)} rows of {len(results)} results"
+        screen.print(words, soft_wrap=True)
+    if not trends:
+        screen.print(
+            f"no trend over {over}: no quantity is known at two or more results that "
+            f"say their {over}; --trend goes over {', '.join(OVER)}",
+            soft_wrap=True,
+        )
+        return
+    title = f"Trends over {over} ({len(results)} results)"
+    columns = ("quantity", "results", "mean ± scatter", f"over {over}", "verdict")
+    screen.print(table(title, columns, trend_rows(trends, over)))

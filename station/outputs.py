@@ -9,6 +9,8 @@ from jointbench.acquisition.errors import UsageError
 
 HEAD_BYTES = 512
 HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
+TABLE_HEADS = {".csv": b"file,input_sha256,", ".parquet": b"PAR1", ".mat": b"MATLAB"}
+"""How tables of an archive begin."""
 
 
 def check_outputs(inputs: Sequence[Path], outputs: Sequence[Path | str | None]) -> None:
@@ -83,19 +85,23 @@ def _of_its_kind(path: Path) -> bool:
         head = file.read(HEAD_BYTES)
     suffix = path.suffix.lower()
     if suffix in {".h5", ".hdf5"}:
-        return head.startswith(HDF5_MAGIC) and not _is_session(path)
+        return head.startswith(HDF5_MAGIC) and _has_schema(path, "jointbench-results/")
+    if suffix == ".nc":
+        return head.startswith(HDF5_MAGIC) and _has_schema(path, "jointbench-archive/")
+    if suffix in TABLE_HEADS:
+        return not head or head.startswith(TABLE_HEADS[suffix])
     if suffix in {".html", ".htm"}:
         return head.lower().startswith(b"<!doctype html>")
     return not head or head.lstrip().startswith(b"{")
 
 
-def _is_session(path: Path) -> bool:
+def _has_schema(path: Path, family: str) -> bool:
     import h5py
 
     try:
         with h5py.File(path, "r") as file:
             schema = file.attrs.get("schema", b"")
     except OSError:
-        return True
+        return False
     text = schema if isinstance(schema, bytes) else str(schema).encode()
-    return not text.startswith(b"jointbench-results/")
+    return text.startswith(family.encode())

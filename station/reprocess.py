@@ -14,7 +14,7 @@ from pathlib import Path
 from types import FrameType
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.text_files import visible
+from jointbench.acquisition.text_files import named, visible
 from jointbench.station.archive_files import common_folder, session_files
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
@@ -279,8 +279,7 @@ def _show(
     screen.print(table("Reprocessed", ("files", "number"), rows))
     failed = summary.failed
     for outcome in failed[:MOST_SHOWN]:
-        named = visible(str(outcome.path))
-        screen.print(f"quarantined: {named}: {outcome.reason}", soft_wrap=True)
+        screen.print(f"quarantined: {_reason(outcome)}", soft_wrap=True)
     if len(failed) > MOST_SHOWN:
         screen.print(f"and {len(failed) - MOST_SHOWN} more, see the quarantine list")
     screen.print(f"\nledger: {places.ledger}", soft_wrap=True)
@@ -288,6 +287,13 @@ def _show(
         screen.print(f"quarantine: {places.quarantine}", soft_wrap=True)
     if summary.interrupted:
         screen.print("interrupted; the same command goes on where it stopped")
+
+
+def _reason(outcome: Outcome) -> str:
+    """Return why a file failed; most reasons begin with its name."""
+    if named(outcome.path) in outcome.reason:
+        return outcome.reason
+    return f"{visible(str(outcome.path))}: {outcome.reason}"
 
 
 def _json(

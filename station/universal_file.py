@@ -8,12 +8,12 @@ Source:
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
-from jointbench.acquisition.arrays import ComplexArray
+from jointbench.acquisition.arrays import ComplexArray, FloatArray
 from jointbench.signal.frf import Frf, FrfKind
-from jointbench.signal.modal_model import ModalModel
 from jointbench.station.outputs import write_text
 
 _EDGE = "    -1"
@@ -33,6 +33,22 @@ _RESPONSE = {
 }
 
 
+class Modes(Protocol):
+    """What data set 55 takes of modes."""
+
+    @property
+    def natural_frequency(self) -> FloatArray:
+        """[Hz], shape (n_modes,)."""
+
+    @property
+    def poles(self) -> ComplexArray:
+        """[rad/s], shape (n_modes,)."""
+
+    @property
+    def shapes(self) -> ComplexArray:
+        """Shape (n_modes, n_outputs)."""
+
+
 def write_universal_frf(path: Path, frf: Frf) -> None:
     """Write every FRF as a data set of its own; nodes are numbered from 1.
 
@@ -49,7 +65,7 @@ def write_universal_frf(path: Path, frf: Frf) -> None:
     write_text(path, "\n".join(lines) + "\n")
 
 
-def write_universal(path: Path, frf: Frf, model: ModalModel) -> None:
+def write_universal(path: Path, frf: Frf, model: Modes) -> None:
     """Write FRFs (58) and mode shapes (55) into one universal file.
 
     Args:
@@ -68,7 +84,7 @@ def write_universal(path: Path, frf: Frf, model: ModalModel) -> None:
     write_text(path, "\n".join(lines) + "\n")
 
 
-def _shape_set(model: ModalModel, number: int) -> Iterator[str]:
+def _shape_set(model: Modes, number: int) -> Iterator[str]:
     """Yield a complex mode: pole and Modal A as data set 55 defines them."""
     pole = model.poles[number]
     yield from (_EDGE, "    55")

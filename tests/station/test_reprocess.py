@@ -7,21 +7,30 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.io
 
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.station.archive_files import session_files
-from jointbench.station.archive_table import read_results, table_rows, write_table
+from jointbench.station.archive_files import result_files, session_files
+from jointbench.station.archive_table import (
+    read_results,
+    table_rows,
+    ways_of,
+    write_table,
+)
 from jointbench.station.cluster import ClusterSettings, require_safe
 from jointbench.station.compare_results import compare_results, match_modes
 from jointbench.station.ledger import escaped, open_ledger, read_ledger
 from jointbench.station.process_file import Outcome, State, Task, process_task
+from jointbench.station.quantities import Quantity
 from jointbench.station.recipe import Recipe, WindowsPart, read_recipe
 from jointbench.station.reprocess import Places, make_tasks, pool_backend, reprocess
 from jointbench.station.reprocess_progress import progress_line, time_words
+from jointbench.station.results_read import is_results, without_copies
 from jointbench.station.trends import Trend, TrendPoint, fit_with_scatter, trends_of
 from jointbench.station.worker_pool import PoolSettings
 
@@ -270,11 +279,63 @@ def test_a_comparison_says_what_differs_and_pairs_by_content(
     before, after = two_recipes(make_session, tmp_path)
     found = compare_results(before, after)
     assert found.pairs == 2
-    assert "windows.lead: chosen by the data -> 0.0" in found.causes
+    assert found.causes["windows.lead: chosen by the data -> 0.0"] == 2
+    assert {d.since for d in found.differences if d.moved} == {"frf"}
     assert set(found.stages) == {"frf", "modes", "fill"}
     assert compare_results(before, before).moved == ()
     with pytest.raises(BadData, match="no session is in both"):
         compare_results(before[:1], after[1:])
+
+
+def test_a_session_under_two_names_counts_once(make_session, tmp_path: Path) -> None:
+    """Its copy is left out of trends, and no obstacle to a comparison."""
+    path = make_session("in/a.h5")
+    (tmp_path / "in" / "copy.h5").write_bytes(path.read_bytes())
+    run(tmp_path)
+    results, _ = read_results(sorted(tmp_path.glob("out/*.results.h5")))
+    kept, copies = without_copies(results)
+    assert [r.path.name for r in kept] == ["a.plain.results.h5"]
+    assert [r.path.name for r in copies] == ["copy.plain.results.h5"]
+    assert compare_results(results, results[:1]).pairs == 1
+    other = [replace(results[0], key="another recipe's"), results[1]]
+    with pytest.raises(BadData, match="same file"):
+        compare_results(other, results)
+
+
+def test_trends_of_two_recipes_are_kept_apart(make_session, tmp_path: Path) -> None:
+    """One value under each recipe is no trend, and no second measurement."""
+    before, after = two_recipes(make_session, tmp_path)
+    rows = table_rows([*before, *after])
+    assert set(ways_of(rows).values()) == {"plain: ", "short: "}
+    assert set(ways_of(table_rows(before)).values()) == {""}
+    edited = [replace(row, recipe="plain") for row in rows]
+    assert all(len(way.split()) == 2 for way in ways_of(edited).values())
+
+
+def test_a_change_without_a_deviation_is_told_apart(
+    make_session, tmp_path: Path
+) -> None:
+    """What has no standard deviation cannot move beyond it, but is not passed over."""
+    one = two_recipes(make_session, tmp_path)[0][0]
+    bare = [Quantity("contact", "ke", "stiffness", "N/m", v) for v in (1.0, 2.0)]
+    first, second = (replace(one, quantities=(q,)) for q in bare)
+    found = compare_results([first], [second])
+    assert found.moved == ()
+    assert [d.after for d in found.unjudged] == [2.0]
+
+
+def test_a_result_of_any_name_is_taken_where_it_is_named(
+    make_session, tmp_path: Path
+) -> None:
+    """`process --out r.h5` makes one that a pattern would not find."""
+    path = make_session("in/a.h5")
+    result = tmp_path / "r.h5"
+    process_task(Task(path, result), PLAIN)
+    assert result_files([str(result)]) == (result,)
+    assert is_results(result)
+    assert not is_results(path)
+    with pytest.raises(UsageError, match="names no results"):
+        result_files([str(tmp_path / "*.h5")])
 
 
 def test_modes_are_paired_by_frequency_not_by_number() -> None:
@@ -284,13 +345,16 @@ def test_modes_are_paired_by_frequency_not_by_number() -> None:
 
 
 def test_one_table_opens_in_pandas_and_xarray(make_session, tmp_path: Path) -> None:
-    """CSV, netCDF and Parquet hold the same rows."""
+    """CSV, netCDF, Parquet and MAT hold the same rows."""
     pandas = pytest.importorskip("pandas", reason="pandas opens the table")
     xarray = pytest.importorskip("xarray", reason="xarray opens the table")
     pytest.importorskip("pyarrow", reason="Parquet is an extra")
     rows = table_rows(two_recipes(make_session, tmp_path)[0])
-    for name in ("t.csv", "t.nc", "t.parquet"):
+    for name in ("t.csv", "t.nc", "t.parquet", "t.mat"):
         write_table(tmp_path / name, rows)
+    plain = scipy.io.loadmat(tmp_path / "t.mat")
+    assert plain["value"].ravel() == pytest.approx([r.value for r in rows], nan_ok=True)
+    assert [name.strip() for name in plain["name"]] == [row.name for row in rows]
     frames = [
         pandas.read_csv(tmp_path / "t.csv"),
         xarray.open_dataset(tmp_path / "t.nc", engine="h5netcdf").to_dataframe(),
