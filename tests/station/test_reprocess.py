@@ -126,6 +126,33 @@ def test_a_killed_run_goes_on_where_it_was(make_session, tmp_path: Path) -> None
     assert not list(tmp_path.rglob("*.part"))
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is sent otherwise there")
+def test_ctrl_c_finishes_the_files_in_hand_and_tells_of_each(
+    make_session, tmp_path: Path
+) -> None:
+    """Every result that is there has its line in the ledger; exit code 130."""
+    for number in range(5):
+        make_session(f"in/{number}.h5", seed=number + 1)
+    command = [
+        *(sys.executable, "-c", "from jointbench.station.main import run; run()"),
+        *("reprocess", str(tmp_path / "in"), "--jobs", "1"),
+        *("--results", str(tmp_path / "out")),
+    ]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    process = subprocess.Popen(command, **quiet)  # type: ignore[call-overload]
+    for _ in range(3000):
+        if process.poll() is not None or list(tmp_path.glob("out/*.results.h5")):
+            break
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 130
+    there = len(list(tmp_path.glob("out/*.results.h5")))
+    lines = read_ledger(tmp_path / "out" / "default.ledger.jsonl")
+    assert 1 <= there < 5
+    assert sum(line["kind"] == "file" for line in lines) == there
+    assert lines[-1]["interrupted"] is True
+
+
 def test_a_full_disk_stops_the_run_and_blames_no_file(
     make_session, tmp_path: Path
 ) -> None:
