@@ -22,7 +22,7 @@ from jointbench.station.archive_files import result_files
 from jointbench.station.export_tables import Column, Table, write_mat
 from jointbench.station.ledger import escaped
 from jointbench.station.output import console, table, working, write_json
-from jointbench.station.outputs import check_outputs, write_text
+from jointbench.station.outputs import check_outputs, whole_file, write_text
 from jointbench.station.results_read import (
     StoredResult,
     read_result,
@@ -233,12 +233,8 @@ def _write_parquet(path: Path, rows: Sequence[Row]) -> None:
         raise UsageError(
             f"Parquet needs pyarrow; type {PARQUET}, or name the table *.nc or *.csv"
         ) from error
-    part = path.with_name(f"{path.name}.part")
-    try:
+    with whole_file(path) as part:
         parquet.write_table(pyarrow.table(_columns(rows)), part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def run_archive(

@@ -27,7 +27,7 @@ from jointbench.station.export_tables import (
     write_mat,
 )
 from jointbench.station.output import console, write_json
-from jointbench.station.outputs import check_outputs, write_text
+from jointbench.station.outputs import check_outputs, make_folder, write_text
 from jointbench.station.results_read import is_results
 from jointbench.station.universal_file import write_universal
 from jointbench.station.universal_samples import write_universal_samples
@@ -58,7 +58,7 @@ def run_export(
     check_outputs([file], [json_target])
     target = (folder or file.parent) / file.name.removesuffix(file.suffix)
     results = is_results(file)
-    target.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(target.parent)
     if kind == "uff":
         write = _universal_results if results else _universal_session
         written = tuple(write(file, target))

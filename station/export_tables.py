@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from jointbench.station.ledger import escaped
+from jointbench.station.outputs import whole_file
 
 _LONGEST_NAME = 63  # of a variable in MATLAB
 _ALONG = ("frequency", "mode")
@@ -106,16 +107,11 @@ def _flat(
 
 
 def _write_rows(path: Path, columns: Mapping[str, Array]) -> None:
-    part = path.with_name(f"{path.name}.part")
-    try:
-        with part.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow([escaped(head) for head in columns])
-            for row in zip(*(v.tolist() for v in columns.values()), strict=True):
-                writer.writerow([_cell(value) for value in row])
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+    with whole_file(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow([escaped(head) for head in columns])
+        for row in zip(*(v.tolist() for v in columns.values()), strict=True):
+            writer.writerow([_cell(value) for value in row])
 
 
 def _cell(value: object) -> str:
@@ -143,14 +139,10 @@ def write_mat(path: Path, tables: Sequence[Table]) -> None:
             if column.unit:
                 own = _variable(f"{variable[: _LONGEST_NAME - 5]}_unit", content)
                 content[own] = np.array([column.unit])
-    part = path.with_name(f"{path.name}.part")
-    try:
+    with whole_file(path) as part:
         scipy.io.savemat(
             str(part), content, appendmat=False, do_compression=True, oned_as="row"
         )
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _rows_of_text(values: Array) -> Array:

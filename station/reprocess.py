@@ -8,7 +8,7 @@ loss cost at most the files in hand; call again and it goes on.
 import signal
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
@@ -19,7 +19,7 @@ from jointbench.station.archive_files import common_folder, session_files
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
 from jointbench.station.output import console, table, write_json
-from jointbench.station.outputs import check_outputs
+from jointbench.station.outputs import check_outputs, make_folder
 from jointbench.station.process import STAGES_FOLDER, outcome_json, recipe_or_default
 from jointbench.station.process_file import Outcome, State, Task
 from jointbench.station.processed_file import processed_path
@@ -148,13 +148,13 @@ def reprocess(
         try:
             with closing(_generator(backend(known, recipe))) as outcomes:
                 for outcome in outcomes:
+                    if outcome.unwritable:  # no fault of the file
+                        summary.unwritable = outcome.reason
+                        break
                     ledger.outcome(outcome)
                     summary.outcomes.append(outcome)
                     tell(summary.counts)
                     _prune(places, len(summary.outcomes))
-                    if outcome.unwritable:
-                        summary.unwritable = outcome.reason
-                        break
         except KeyboardInterrupt:
             summary.interrupted = True
         summary.seconds = time.monotonic() - begun
@@ -178,9 +178,10 @@ def _remembering(task: Task, ledger: Ledger) -> Task:
 def _make_room(tasks: Sequence[Task]) -> None:
     """Make the folders of the results, and drop what a killed run left half written."""
     for folder in {task.result.parent for task in tasks}:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
     for task in tasks:
-        task.result.with_name(f"{task.result.name}.part").unlink(missing_ok=True)
+        with suppress(OSError):
+            task.result.with_name(f"{task.result.name}.part").unlink(missing_ok=True)
 
 
 def _prune(places: Places, met: int) -> None:
@@ -256,7 +257,7 @@ def default_places(
 
     def places(root: Path, recipe: Recipe) -> Places:
         home = results or root
-        home.mkdir(parents=True, exist_ok=True)
+        make_folder(home)
         kept = stages or home / STAGES_FOLDER
         return Places(
             results,

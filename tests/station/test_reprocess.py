@@ -24,7 +24,8 @@ from jointbench.station.archive_table import (
 )
 from jointbench.station.cluster import ClusterSettings, require_safe
 from jointbench.station.compare_results import compare_results, match_modes
-from jointbench.station.ledger import escaped, open_ledger, read_ledger
+from jointbench.station.ledger import Ledger, escaped, open_ledger, read_ledger
+from jointbench.station.outputs import make_folder, whole_file
 from jointbench.station.process_file import Outcome, State, Task, process_task
 from jointbench.station.quantities import Quantity
 from jointbench.station.recipe import Recipe, WindowsPart, read_recipe
@@ -165,7 +166,39 @@ def test_a_full_disk_stops_the_run_and_blames_no_file(
                 task.path, task.result, State.FAILED, reason="no space", unwritable=True
             )
 
-    assert run(tmp_path, unwritable).unwritable == "no space"
+    summary = run(tmp_path, unwritable)
+    assert summary.unwritable == "no space"
+    assert summary.failed == []
+    listed = (tmp_path / "plain.ledger.quarantine.csv").read_text(encoding="utf-8")
+    assert listed.count("\n") == 1
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no full device here")
+def test_a_ledger_on_a_full_disk_is_one_line(tmp_path: Path) -> None:
+    """Said as what it is, and not again when the file is closed."""
+    path = tmp_path / "l.jsonl"
+    path.symlink_to("/dev/full")
+    with path.open("ab", buffering=0) as file, pytest.raises(UsageError) as caught:
+        Ledger(path, file=file).write({"kind": "run"})  # type: ignore[arg-type]
+    assert "make room" in str(caught.value)
+
+
+def test_what_cannot_be_written_is_a_usage_error_and_leaves_nothing(
+    tmp_path: Path,
+) -> None:
+    """A file in the place of a folder takes no results, no table and no ledger."""
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    below = tmp_path / "file" / "below"
+    with pytest.raises(UsageError, match="cannot be made"):
+        make_folder(below)
+    with (
+        pytest.raises(UsageError, match="cannot be written"),
+        whole_file(below) as part,
+    ):
+        part.write_text("", encoding="utf-8")
+    with pytest.raises(UsageError, match="takes no files"), open_ledger(below, {}):
+        pass
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
 def test_results_are_no_sessions(make_session, tmp_path: Path) -> None:
