@@ -41,7 +41,7 @@ def run_compare(
         screen.print(line, soft_wrap=True)
     for path, reason in left_out:
         screen.print(left_out_words(path, reason), soft_wrap=True)
-    title = f"Moved by more than {MOVED:g} standard deviations"
+    title = f"Moved by more than {MOVED:g} standard deviations, came or went"
     _list(screen, title, found.moved, MOST_SHOWN)
     if found.unjudged:
         title = "Changed, no standard deviation known"

@@ -30,6 +30,7 @@ BEHIND = {
     "gap": ("hits", "gap"),
 }
 """Stages behind each part of a result, in the order in which they are run."""
+_CHOSEN, _ABSENT = "chosen by the data", "-"
 SAME_MODE = 0.1
 """Relative distance of two frequencies that may be one mode [-]."""
 
@@ -180,7 +181,11 @@ Pairs = list[tuple[Quantity | None, Quantity | None]]
 
 def _same_names(one: Sequence[Quantity], other: Sequence[Quantity]) -> Pairs:
     def named(rows: Sequence[Quantity]) -> dict[object, Quantity]:
-        return {(q.part, q.item, q.name): q for q in rows if q.part != "modes"}
+        return {
+            (q.part, q.item, q.name, f"{q.preload:g}"): q
+            for q in rows
+            if q.part != "modes"
+        }
 
     first, second = named(one), named(other)
     return [(first.get(k), second.get(k)) for k in dict.fromkeys([*first, *second])]
@@ -264,16 +269,16 @@ def _causes(one: StoredResult, other: StoredResult) -> list[str]:
         if one.facts[name] != other.facts[name]
     ]
     first, second = _flat(one.recipe), _flat(other.recipe)
-    causes += [
-        f"{key}: {_word(first.get(key))} -> {_word(second.get(key))}"
-        for key in dict.fromkeys([*first, *second])
-        if first.get(key) != second.get(key)
-    ]
+    for key in dict.fromkeys([*first, *second]):
+        words = _word(first, key), _word(second, key)
+        if len({*words, _ABSENT, _CHOSEN}) > 2 and words[0] != words[1]:
+            causes.append(f"{key}: {words[0]} -> {words[1]}")
     return causes
 
 
-def _word(value: object) -> str:
-    return "chosen by the data" if value is None else str(value)
+def _word(tree: Mapping[str, object], key: str) -> str:
+    value = tree.get(key, _ABSENT)
+    return _CHOSEN if value is None else str(value)
 
 
 def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, object]:

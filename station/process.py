@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """``jointbench process``: one recorded session under a recipe, and what changed."""
 
+import math
 from pathlib import Path
 
 from jointbench.acquisition.errors import BadData, UsageError
@@ -91,7 +92,8 @@ def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> No
 
 def quantity_cells(one: Quantity) -> tuple[str, str, str, str]:
     """Return a quantity as the cells of a table."""
-    of = f"{one.part} {one.item}".strip()
+    at = "" if math.isnan(one.preload) else f" at {one.preload:g} N"
+    of = f"{one.part} {one.item}".strip() + at
     value = one.word or with_sd(one.value, one.sd)
     return of, one.name.replace("_", " "), value, "" if one.unit == "1" else one.unit
 

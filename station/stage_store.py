@@ -27,8 +27,8 @@ _KEY = 64
 """Characters of a key."""
 _LEFT_BEHIND = 3600.0
 """Age at which a half written stage is nobody's [s]."""
-STAGE_LAYOUT = 1
-"""Counts up when a stage computes something else from the same settings."""
+STAGE_LAYOUT = 2
+"""Counts up when a stage, or a result, holds something else for the same settings."""
 
 
 def stage_key(name: str, settings: object, *inputs: str) -> str:

@@ -1,6 +1,7 @@
 """A recorded session under a recipe: results, kept stages, verdicts that changed."""
 
 import io
+import json
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -14,14 +15,30 @@ from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.text_files import file_digest
 from jointbench.signal.frf import Frf, FrfKind
 from jointbench.station.chain import run_chain
+from jointbench.station.compare_results import compare_results
+from jointbench.station.export_results import result_texts
 from jointbench.station.process import run_process
 from jointbench.station.process_file import State, Task, process_task
 from jointbench.station.processed_file import processed_path
-from jointbench.station.recipe import HitsPart, Recipe, WindowsPart
+from jointbench.station.recipe import HitsPart, Recipe, WindowsPart, read_recipe
+from jointbench.station.record import record_visit
 from jointbench.station.record_codec import decode_record, encode_record
-from jointbench.station.results_read import read_result
+from jointbench.station.results_read import StoredResult, read_result
+from jointbench.station.sources import open_visit
 from jointbench.station.stage_store import StageStore, prune_stages, stage_key
 
+BENCH = """\
+[bodies.base]
+mass = "9 kg"
+channel = "a0"
+[bodies.top]
+mass = "4.6 kg"
+channel = "a1"
+[links.support]
+between = ["ground", "base"]
+[links.joint]
+between = ["base", "top"]
+"""
 PLAIN = Recipe(name="plain")
 WIDE = Recipe(name="wide", windows=WindowsPart(force_width="30 ms"))
 
@@ -243,3 +260,47 @@ def test_stages_that_were_not_used_for_longest_are_dropped_first(
     size = next(tmp_path.rglob("*.stage")).stat().st_size
     assert prune_stages(tmp_path, 2 * size) == 1
     assert not list(tmp_path.rglob(f"{keys[1]}.stage"))
+
+
+def test_links_are_identified_at_every_preload(tmp_path: Path) -> None:
+    """Two preloads in one session: a row each, and a page that holds both."""
+    recordings = []
+    for number, preload in enumerate((20_000, 30_000)):
+        url = f"sim:two-body?seed={number + 1}&hits=3&interval=0.7&preload={preload}"
+        visit = record_visit(open_visit(url))
+        recordings.append(replace(visit.recordings[0], name=f"run-{number}"))
+    path = tmp_path / "s.h5"
+    write_session(replace(visit, recordings=tuple(recordings), joint=None), path)
+    (tmp_path / "bench.toml").write_text(BENCH, encoding="utf-8")
+    recipe_file = tmp_path / "r.toml"
+    recipe_file.write_text(
+        '[identification]\nmodel = "bench.toml"\n'
+        '[contact]\nmodulus = "29 GPa"\nhardness = "1 GPa"\n',
+        encoding="utf-8",
+    )
+    outcome = done(path, read_recipe(recipe_file))
+    assert outcome.state is State.DONE, outcome.reason
+    stored = read_result(outcome.result)
+    found = {
+        (q.preload, q.item): q.value
+        for q in stored.quantities
+        if q.part == "joint" and q.name == "stiffness"
+    }
+    assert set(found) == {
+        (p, link) for p in (20_000.0, 30_000.0) for link in ("support", "joint")
+    }
+    # The simulated joint stiffens with its preload, the support does not.
+    assert found[30_000.0, "joint"] > 1.1 * found[20_000.0, "joint"]
+    assert found[30_000.0, "support"] == pytest.approx(
+        found[20_000.0, "support"], rel=0.02
+    )
+    assert any("No contact prediction: no surface" in one for one in stored.remarks)
+    pages = json.loads(result_texts(outcome.result)["joint"])["preloads"]
+    assert [page["preload_n"] for page in pages] == [20_000.0, 30_000.0]
+    assert same_again(outcome.result, stored)
+
+
+def same_again(path: Path, stored: StoredResult) -> bool:
+    """Tell whether a comparison of a result with itself finds nothing."""
+    found = compare_results([stored], [read_result(path)])
+    return not (found.moved or found.unjudged or found.causes)
