@@ -155,7 +155,7 @@ def archive_command(
 
     Example: jointbench archive 'archive/**/*.narrow.results.h5' --out all.nc
     """
-    from jointbench.station.archive_table import run_archive
+    from jointbench.station.archive import run_archive
 
     left_out = run_archive(results, out=out, trend=trend, json_target=json)
     return EXIT_QUALITY if left_out else 0

@@ -126,7 +126,12 @@ def main() -> None:
     print(f"  {1e3 * (calm - pool) / total:+.0f} ms a file beside the pool")
     print(idle)
     print(f"- results equal to the pool's: {same} of {len(first)};")
-    print(f"  only one of the two has: {len(set(first) ^ set(second))}")
+    print(f"  only one of the two has: {len(set(first) ^ set(second))}\n")
+    print("A start is Python, the imports of the command and of every fresh worker")
+    print("(scipy, numba, h5py), and the way to the scheduler: once a run or once a")
+    print(
+        "worker, not once a file. The killed run has the start of three workers in it."
+    )
 
 
 if __name__ == "__main__":
