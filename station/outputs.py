@@ -68,6 +68,12 @@ def check_folder(folder: Path, own: Sequence[str]) -> None:
         )
 
 
+def require_folder(path: Path | None, option: str) -> None:
+    """Raise `UsageError` where something else than a folder has its name."""
+    if path is not None and path.exists() and not path.is_dir():
+        raise UsageError(f"{option} is '{path}', a file; name a folder")
+
+
 def make_folder(path: Path) -> None:
     """Make a folder and those above it, where they are not there.
 

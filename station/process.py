@@ -7,7 +7,7 @@ from pathlib import Path
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.text_files import visible
 from jointbench.station.output import console, table, with_sd, working, write_json
-from jointbench.station.outputs import check_outputs
+from jointbench.station.outputs import check_outputs, require_folder
 from jointbench.station.process_file import Outcome, State, Task, process_task
 from jointbench.station.processed_file import processed_path
 from jointbench.station.quantities import Quantity
@@ -51,6 +51,7 @@ def run_process(
         BadData: the session or the recipe cannot be used.
         UsageError: the result cannot be written.
     """
+    require_folder(stages, "--stages")
     made = recipe_or_default(recipe)
     target = out or processed_path(file, made)
     check_outputs([file, *([recipe] if recipe else [])], [target, json_target])

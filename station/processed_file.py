@@ -64,7 +64,7 @@ class Origin:
     path: Path
     sha256: str
     key: str
-    seconds: float
+    seconds: float = 0.0
 
 
 def processed_path(session: Path, recipe: Recipe) -> Path:

@@ -19,7 +19,7 @@ from jointbench.station.archive_files import common_folder, session_files
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
 from jointbench.station.output import console, table, write_json
-from jointbench.station.outputs import check_outputs, make_folder
+from jointbench.station.outputs import check_outputs, make_folder, require_folder
 from jointbench.station.process import STAGES_FOLDER, outcome_json, recipe_or_default
 from jointbench.station.process_file import Outcome, State, Task
 from jointbench.station.processed_file import processed_path
@@ -254,6 +254,7 @@ def default_places(
     stages_bytes: int,
 ) -> Callable[[Path, Recipe], Places]:
     """Return what makes the places of a run; what is None lies beside the results."""
+    require_folder(stages, "--stages")
 
     def places(root: Path, recipe: Recipe) -> Places:
         home = results or root

@@ -14,6 +14,7 @@ from jointbench.acquisition.records import Channel, Hit, Recording, Verdict
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.text_files import file_digest
 from jointbench.signal.frf import Frf, FrfKind
+from jointbench.station import process_file
 from jointbench.station.chain import run_chain
 from jointbench.station.compare_results import compare_results
 from jointbench.station.export_results import result_texts
@@ -86,6 +87,25 @@ def test_a_changed_input_is_done_again(make_session) -> None:
     path.unlink()
     make_session("s.h5", seed=2)
     assert done(path).state is State.DONE
+
+
+def test_a_file_that_changes_while_it_is_read_is_tried_again(
+    make_session, monkeypatch
+) -> None:
+    """Its digest would be that of another content: no result, and no lasting fault."""
+    path = make_session("s.h5")
+    reading = process_file.read_session
+
+    def rewritten(file: Path):
+        session = reading(file)
+        os.utime(file, (1e9, 1e9))
+        return session
+
+    monkeypatch.setattr(process_file, "read_session", rewritten)
+    outcome = done(path)
+    assert (outcome.state, outcome.lasting) == (State.FAILED, False)
+    assert "changed while it was read" in outcome.reason
+    assert not outcome.result.exists()
 
 
 def test_a_changed_window_runs_what_depends_on_it_and_nothing_else(

@@ -301,6 +301,22 @@ def test_a_scheduler_beyond_this_machine_needs_tls(address: str) -> None:
         require_safe(ClusterSettings(address))
 
 
+def test_a_certificate_that_is_not_there_is_no_silent_scheduler(tmp_path: Path) -> None:
+    """Said as what it is, before any connection."""
+    there = tmp_path / "ca.pem"
+    there.write_text("", encoding="utf-8")
+    gone = tmp_path / "gone.pem"
+    with pytest.raises(UsageError, match=r"--tls-cert is .*gone\.pem"):
+        require_safe(
+            ClusterSettings(
+                "tls://127.0.0.1:1",
+                authority=there,
+                certificate=gone,
+                private_key=there,
+            )
+        )
+
+
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "tcp://localhost:1"])
 def test_a_scheduler_on_this_machine_is_fine(address: str) -> None:
     """Loopback needs no certificate."""
