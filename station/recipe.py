@@ -13,55 +13,26 @@ from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
     Field,
     model_validator,
 )
 
-from jointbench.acquisition.errors import BadData, JointbenchError, UnitError
+from jointbench.acquisition.errors import BadData, JointbenchError
 from jointbench.acquisition.text_files import named, shown
-from jointbench.acquisition.units import parse_value
 from jointbench.analysis.contact.models import contact_model
 from jointbench.analysis.gap.catalogue import CATALOGUE, check_names
 from jointbench.station.bench_model import BenchModel, Force, Pressure
-from jointbench.station.toml_file import read_toml
+from jointbench.station.toml_file import AUTO, NONE, StrictTable, read_toml, with_unit
 
-AUTO, NONE = "auto", "none"
 _NAME = re.compile(r"\w([\w .-]{0,58}\w)?")
 """A recipe's name becomes part of file names: of the results, of the ledger."""
 
 
-def _quantity(kind: str, *words: str) -> BeforeValidator:
-    """Read text with a unit; of the words, "auto" stands for None and "none" for 0."""
-
-    def parse(value: object) -> object:
-        if isinstance(value, str) and value in words:
-            return None if value == AUTO else 0.0
-        if not isinstance(value, str):
-            # pydantic turns a ValueError, not a TypeError, into a named problem.
-            raise ValueError(  # noqa: TRY004
-                f"write the number with its unit, as text: '{value} ...'"
-            )
-        try:
-            return parse_value(value, kind)
-        except UnitError as error:
-            also = f"; or {' or '.join(map(repr, words))}" if words else ""
-            raise ValueError(f"{error}{also}") from error
-
-    return BeforeValidator(parse)
-
-
-Seconds = Annotated[float, _quantity("time"), Field(gt=0)]
-Hertz = Annotated[float, _quantity("frequency"), Field(gt=0)]
-Share = Annotated[float, _quantity("ratio"), Field(ge=0, le=1)]
-WindowTime = Annotated[float | None, _quantity("time", AUTO, NONE), Field(ge=0)]
-WindowRate = Annotated[float | None, _quantity("frequency", AUTO, NONE), Field(ge=0)]
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
+Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
+Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
+WindowTime = Annotated[float | None, with_unit("time", AUTO, NONE), Field(ge=0)]
+WindowRate = Annotated[float | None, with_unit("frequency", AUTO, NONE), Field(ge=0)]
 
 
 def _beside(text: str) -> str:
@@ -75,7 +46,7 @@ def _beside(text: str) -> str:
 FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
 
 
-class HitsPart(_Strict):
+class HitsPart(StrictTable):
     """How hits are found and judged again; see `HitCriteria` and `HitLimits`."""
 
     trigger_level: Force | None = None
@@ -94,7 +65,7 @@ class HitsPart(_Strict):
     keep_operator: bool = True
 
 
-class WindowsPart(_Strict):
+class WindowsPart(StrictTable):
     """Windows: a time or a rate, "auto" (chosen by the hits) or "none"."""
 
     force_width: WindowTime = None
@@ -102,13 +73,13 @@ class WindowsPart(_Strict):
     lead: WindowTime = None
 
 
-class FrfPart(_Strict):
+class FrfPart(StrictTable):
     """The estimator of the FRF."""
 
     estimator: Literal["H1", "H2", "Hv"] = "H1"
 
 
-class KalmanPart(_Strict):
+class KalmanPart(StrictTable):
     """The Kalman stage; see `KalmanSettings`."""
 
     use: bool = True
@@ -125,7 +96,7 @@ class KalmanPart(_Strict):
         return self
 
 
-class ModesPart(_Strict):
+class ModesPart(StrictTable):
     """Band, order and choices by hand; see `ModalSettings`."""
 
     band: tuple[Hertz, Hertz] | None = None
@@ -141,14 +112,14 @@ class ModesPart(_Strict):
         return self
 
 
-class SurfacePart(_Strict):
+class SurfacePart(StrictTable):
     """Whether surfaces are fitted, and with which frequency ratio gamma."""
 
     use: bool = True
     gamma: Annotated[float, Field(gt=1)] | None = None
 
 
-class ContactPart(_Strict):
+class ContactPart(StrictTable):
     """What the contact law needs to predict the joint from the session's faces."""
 
     modulus: Pressure
@@ -158,20 +129,20 @@ class ContactPart(_Strict):
     model: str = "ke_3d_modified"
 
 
-class IdentificationPart(_Strict):
+class IdentificationPart(StrictTable):
     """The bench model whose links are identified, beside the recipe."""
 
     model: FileBeside
 
 
-class GapPart(_Strict):
+class GapPart(StrictTable):
     """The bench model whose gap is examined, and effects left out."""
 
     model: FileBeside
     without: tuple[str, ...] = ()
 
 
-class Recipe(_Strict):
+class Recipe(StrictTable):
     """A recipe as written; `models` holds what its model files say, by their names."""
 
     name: str = ""

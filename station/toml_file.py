@@ -8,13 +8,46 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.errors import BadData, UnitError
 from jointbench.acquisition.text_files import file_size, named, visible
+from jointbench.acquisition.units import parse_value
 
 Model = TypeVar("Model", bound=BaseModel)
 MOST_BYTES = 1_000_000
+AUTO, NONE = "auto", "none"
+
+
+class StrictTable(BaseModel):
+    """A table of a TOML file: no other keys than its own, and nothing changes later."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+def with_unit(kind: str, *words: str) -> BeforeValidator:
+    """Return what reads a number with its unit, written as text, into SI.
+
+    Args:
+        kind: quantity that the unit must be of, see `parse_value`.
+        words: that may stand in its place: "auto" for None, "none" for 0.
+    """
+
+    def parse(value: object) -> float | None:
+        if isinstance(value, str) and value in words:
+            return None if value == AUTO else 0.0
+        if not isinstance(value, str):
+            # pydantic turns a ValueError, not a TypeError, into a named problem.
+            raise ValueError(  # noqa: TRY004
+                f"write the number with its unit, as text: '{value} ...'"
+            )
+        try:
+            return parse_value(value, kind)
+        except UnitError as error:
+            also = f"; or {' or '.join(map(repr, words))}" if words else ""
+            raise ValueError(f"{error}{also}") from error
+
+    return BeforeValidator(parse)
 
 
 def read_toml(path: Path, model: type[Model]) -> Model:
