@@ -192,8 +192,13 @@ def _same_names(one: Sequence[Quantity], other: Sequence[Quantity]) -> Pairs:
 
 
 def _same_modes(one: Sequence[Quantity], other: Sequence[Quantity]) -> Pairs:
-    """Pair modes by frequency, at each preload: their numbers shift with each other."""
+    """Pair modes by frequency, at each preload: their numbers shift with each other.
+
+    Where each has modes at one preload only, it is the same, whoever wrote it down.
+    """
     first, second = _modes(one), _modes(other)
+    if len(first) == len(second) == 1:
+        second = dict(zip(first, second.values(), strict=True))
     pairs: Pairs = []
     for preload in dict.fromkeys([*first, *second]):
         left, right = first.get(preload, []), second.get(preload, [])
@@ -269,6 +274,8 @@ def _causes(one: StoredResult, other: StoredResult) -> list[str]:
         if one.facts[name] != other.facts[name]
     ]
     first, second = _flat(one.recipe), _flat(other.recipe)
+    if not (first and second):  # `jointbench modal` works without one
+        return causes
     for key in dict.fromkeys([*first, *second]):
         words = _word(first, key), _word(second, key)
         if len({*words, _ABSENT, _CHOSEN}) > 2 and words[0] != words[1]:

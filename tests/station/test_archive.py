@@ -111,6 +111,18 @@ def test_a_result_of_any_name_is_taken_where_it_is_named(
         result_files([str(tmp_path / "*.h5")])
 
 
+def test_modes_of_one_preload_are_those_of_a_result_that_names_none(
+    make_session, tmp_path: Path
+) -> None:
+    """A result of `modal`, which knows neither preload nor recipe, beside another."""
+    one = two_recipes(make_session, tmp_path)[0][0]
+    known = tuple(replace(q, preload=2000.0) for q in one.quantities)
+    bare = replace(one, recipe={}, facts={**one.facts, "recipe_name": ""})
+    found = compare_results([bare], [replace(one, quantities=known)])
+    assert found.moved == ()
+    assert list(found.causes) == ["recipe name: - -> plain"]
+
+
 def test_modes_are_paired_by_frequency_not_by_number() -> None:
     """A mode that came in below shifts the numbers, not the pairs."""
     assert match_modes([100.0, 300.0], [50.0, 101.0, 299.0]) == {0: 1, 1: 2}
