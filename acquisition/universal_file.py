@@ -58,12 +58,12 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
         SamplingError: the histories have different rates.
         UnitError: see `recording_of`.
     """
-    _require_sane_headers(path)
-    sets = [one for one in _read(path) if one.get("func_type") == _TIME_RESPONSE]
+    whole = read_universal_sets(path, kinds=(58,))
+    sets = [one for one in whole if one.get("func_type") == _TIME_RESPONSE]
     if not sets:
         raise FormatError(
             f"{named(path)} holds no time history (data set 58, function type 1); "
-            "export the samples, not FRFs"
+            "export the samples, not FRFs; `jointbench export` shows what it has"
         )
     intervals = {float(one["abscissa_inc"]) for one in sets}
     uneven = any(int(one["abscissa_spacing"]) != 1 for one in sets)
@@ -153,16 +153,26 @@ def _require_sane_set(path: Path, lines: Sequence[bytes]) -> None:
         )
 
 
-def _read(path: Path) -> list[dict[str, Any]]:
+def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, Any]]:
+    """Read the data sets of some kinds, as pyuff calls what is in them.
+
+    Args:
+        path: of the file.
+        kinds: numbers of data sets.
+
+    Raises:
+        FormatError: it is no universal file, or is damaged.
+        HostileFile: a header claims more than the file holds.
+    """
     import pyuff
 
+    _require_sane_headers(path)
     try:
         file = pyuff.UFF(str(path))
-        kinds = [int(kind) for kind in file.get_set_types()]
         return [
             dict(file.read_sets(number))
-            for number, kind in enumerate(kinds)
-            if kind == 58
+            for number, kind in enumerate(map(int, file.get_set_types()))
+            if kind in kinds
         ]
     except Exception as error:  # it raises whatever the content makes it raise
         raise FormatError(

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
 """``jointbench export``: sessions and results as CSV, MAT or universal files.
 
+Universal files of others go out as tables, too: FRFs and shapes have no place in a
+session.
+
 Sessions give their samples and surfaces, results their FRFs, modes, shapes, structure
 functions and quantities, and the pages of contact, joint and gap as JSON. Units are in
 the heads of the columns, in variables called ``*_unit``, or in fields of the format.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +22,7 @@ from jointbench.acquisition.session_file import read_session
 from jointbench.acquisition.surfaces import Surface
 from jointbench.acquisition.text_files import visible
 from jointbench.acquisition.units import example_unit
+from jointbench.acquisition.universal_file import SUFFIXES
 from jointbench.station.export_results import result_modes, result_tables, result_texts
 from jointbench.station.export_tables import (
     Column,
@@ -26,6 +31,7 @@ from jointbench.station.export_tables import (
     write_csv,
     write_mat,
 )
+from jointbench.station.export_universal import universal_tables
 from jointbench.station.output import console, write_json
 from jointbench.station.outputs import check_outputs, make_folder, write_text
 from jointbench.station.results_read import is_results
@@ -41,7 +47,7 @@ def run_export(
     """Write what is in a session or results file in another format.
 
     Args:
-        file: session or results.
+        file: session or results, or a universal file of others.
         kind: ``csv``, ``mat`` or ``uff``.
         folder: where to; beside the file by default.
         json_target: where the JSON goes.
@@ -57,30 +63,42 @@ def run_export(
         raise UsageError(f"--to is {kind!r}; write {', '.join(KINDS)}")
     check_outputs([file], [json_target])
     target = (folder or file.parent) / file.name.removesuffix(file.suffix)
-    results = is_results(file)
+    write = _way_out(file, kind)
     make_folder(target.parent)
-    if kind == "uff":
-        write = _universal_results if results else _universal_session
-        written = tuple(write(file, target))
-    else:
-        written = tuple(_write_tables(file, target, kind, results=results))
+    written = tuple(write(file, target))
     for path in written:
         console(json_target).print(visible(str(path)), soft_wrap=True)
     write_json(json_target, {"files": [str(path) for path in written]})
     return written
 
 
-def _write_tables(
-    file: Path, target: Path, kind: str, *, results: bool
-) -> Iterator[Path]:
-    tables = result_tables(file) if results else list(_tables(read_session(file)))
+def _way_out(file: Path, kind: str) -> Callable[[Path, Path], Iterator[Path]]:
+    """Return what writes a file of its sort in the format."""
+    if file.suffix.lower() in SUFFIXES:
+        if kind == "uff":
+            raise UsageError(f"'{file}' is a universal file; write --to csv or mat")
+        return lambda path, target: _write_tables(universal_tables(path), target, kind)
+    if is_results(file):
+        return _universal_results if kind == "uff" else partial(_write_results, kind)
+    if kind == "uff":
+        return _universal_session
+    return lambda path, target: _write_tables(
+        list(_tables(read_session(path))), target, kind
+    )
+
+
+def _write_tables(tables: Sequence[Table], target: Path, kind: str) -> Iterator[Path]:
     if kind == "csv":
         yield from write_csv(target, tables)
     else:
         path = target.with_name(f"{target.name}.mat")
         write_mat(path, tables)
         yield path
-    for name, text in (result_texts(file) if results else {}).items():
+
+
+def _write_results(kind: str, file: Path, target: Path) -> Iterator[Path]:
+    yield from _write_tables(result_tables(file), target, kind)
+    for name, text in result_texts(file).items():
         path = target.with_name(f"{target.name}.{plain_name(name)}.json")
         write_text(path, f"{text}\n")
         yield path

@@ -178,7 +178,9 @@ def compare_command(
 
 
 def export_command(
-    file: Annotated[Path, typer.Argument(help="Session or results file.")],
+    file: Annotated[
+        Path, typer.Argument(help="Session, results, or universal file of others.")
+    ],
     to: Annotated[str, typer.Option(metavar="csv|mat|uff", help="Format.")] = "csv",
     out: Annotated[
         Path | None, typer.Option(help="Folder to write to; beside the file.")

@@ -107,6 +107,34 @@ def test_frfs_and_shapes_of_a_result_go_into_a_universal_file(result: Path) -> N
         read_universal(path, columns=None, point="1")
 
 
+def test_a_universal_file_of_others_becomes_tables(result: Path) -> None:
+    """FRFs on one axis, modes with their nodes: what was written is what is read."""
+    path = exported(result, "uff")["uff"]
+    _, frf, modes = result_modes(result)[0]
+    files = exported(path, "csv")
+    lines = rows(files["frf.csv"])
+    axis = [float(line["frequency [Hz]"]) for line in lines]
+    assert axis == pytest.approx(frf.frequency, rel=1e-5)
+    real = [float(line["1/1 re [m/s^2]"]) for line in lines]
+    assert real == pytest.approx(frf.response[0, 0].real, rel=1e-10, abs=1e-30)
+    found = rows(files["modes.csv"])
+    assert [float(row["natural_frequency [Hz]"]) for row in found] == pytest.approx(
+        modes.natural_frequency, rel=1e-5
+    )
+    assert [float(row["shape z/1 re"]) for row in found] == [1.0] * len(found)
+    with pytest.raises(UsageError, match="csv or mat"):
+        run_export(path, kind="uff", folder=None, json_target=None)
+
+
+def test_the_header_of_a_universal_file_becomes_a_table(make_session) -> None:
+    """Data set 151, and both channels of the samples."""
+    files = exported(exported(make_session("s.h5"), "uff")["uff"], "csv")
+    assert {row["name"] for row in rows(files["header.csv"])} > {"model_name"}
+    first = rows(files["time_response.csv"])[0]
+    assert next(iter(first)) == "time [s]"
+    assert len(first) == 3
+
+
 def test_shapes_follow_from_residues_of_rank_one() -> None:
     """The outer product of a shape and a participation gives the shape back."""
     shape, participation = np.array([0.5j, 1.0, -0.25]), np.array([2.0, -3.0j])
