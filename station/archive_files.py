@@ -5,6 +5,7 @@ import glob
 import logging
 import os
 from collections.abc import Iterator, Sequence
+from itertools import takewhile
 from pathlib import Path
 
 from jointbench.acquisition.errors import UsageError
@@ -107,6 +108,29 @@ def _tell(error: OSError) -> None:
     logger.warning("jointbench: folder %s is passed over: %s", name, reason)
 
 
+def archive_folder(patterns: Sequence[str]) -> Path:
+    """Return the folder that patterns begin in, whatever they match today.
+
+    An archive grows: what its files have in common may be another folder tomorrow.
+    """
+    return _common([_beginning(pattern) for pattern in patterns])
+
+
+def _beginning(pattern: str) -> Path:
+    """Return a folder, the folder of a file, or a pattern up to its first wildcard."""
+    path = Path(pattern)
+    if path.is_dir():
+        return path
+    if path.exists():
+        return path.parent
+    fixed = takewhile(lambda part: not glob.has_magic(part), path.parent.parts)
+    return Path(*fixed)
+
+
 def common_folder(files: Sequence[Path]) -> Path:
     """Return the deepest folder that holds all files."""
-    return Path(os.path.commonpath([path.absolute().parent for path in files]))
+    return _common([path.parent for path in files])
+
+
+def _common(folders: Sequence[Path]) -> Path:
+    return Path(os.path.commonpath([os.path.abspath(one) for one in folders]))  # noqa: PTH100

@@ -5,6 +5,7 @@ What is done is known by the results that are there, so that Ctrl-C, a kill or a
 loss cost at most the files in hand; call again and it goes on.
 """
 
+import os
 import signal
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -15,7 +16,11 @@ from types import FrameType
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.text_files import named, visible
-from jointbench.station.archive_files import common_folder, session_files
+from jointbench.station.archive_files import (
+    archive_folder,
+    common_folder,
+    session_files,
+)
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
 from jointbench.station.output import console, table, write_json
@@ -97,19 +102,31 @@ def cluster_backend(settings: ClusterSettings) -> Backend:
 
 
 def make_tasks(
-    files: Sequence[Path], recipe: Recipe, places: Places, *, again: bool = False
+    files: Sequence[Path],
+    recipe: Recipe,
+    places: Places,
+    *,
+    root: Path | None = None,
+    again: bool = False,
 ) -> list[Task]:
     """Return one task a file, each with the place of its result.
+
+    Args:
+        files: sessions.
+        recipe: how they are read.
+        places: where to write.
+        root: folder whose tree the results have again; what all have in common if None.
+        again: process what has a result, too.
 
     Raises:
         UsageError: two files would have the same result.
     """
-    root = common_folder(files)
+    root = root or common_folder(files)
     tasks = []
     for path in files:
         result = processed_path(path, recipe)
         if places.results is not None:
-            result = places.results / result.absolute().relative_to(root)
+            result = places.results / os.path.relpath(result, root)
         tasks.append(Task(path, result, places.stages, again=again))
     taken: dict[Path, Path] = {}
     for task in tasks:
@@ -233,8 +250,9 @@ def run_reprocess(
     check_outputs([recipe] if recipe else [], [json_target])
     made = recipe_or_default(recipe)
     files = session_files(patterns)
-    here = places(common_folder(files), made)
-    tasks = make_tasks(files, made, here, again=again)
+    root = archive_folder(patterns)
+    here = places(root, made)
+    tasks = make_tasks(files, made, here, root=root, again=again)
     summary = reprocess(tasks, made, here, backend)
     _show(summary, len(tasks), here, json_target)
     write_json(json_target, _json(summary, len(tasks), made, here))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.station.archive_files import session_files
+from jointbench.station.archive_files import archive_folder, session_files
 from jointbench.station.archive_table import (
     read_results,
     table_rows,
@@ -211,6 +211,19 @@ def test_a_folder_met_by_several_links_is_walked_once(
     (tmp_path / "in" / "also.h5").symlink_to(path)
     assert session_files([str(tmp_path / "in")]) == (path,)
     assert session_files([str(tmp_path / "in" / "**" / "*.h5")]) == (path,)
+
+
+def test_an_archive_that_grows_keeps_the_places_of_its_results(
+    make_session, tmp_path: Path
+) -> None:
+    """A second specimen makes the common folder another, and the result's place not."""
+    first = make_session("in/plate-1/a.h5")
+    for pattern in (str(tmp_path / "in"), str(tmp_path / "in" / "**" / "*.h5")):
+        root = archive_folder([pattern])
+        assert root == tmp_path / "in"
+        task = make_tasks([first], PLAIN, places(tmp_path), root=root)[0]
+        assert task.result == tmp_path / "out" / "plate-1" / "a.plain.results.h5"
+    assert archive_folder([str(first)]) == first.parent
 
 
 def test_names_that_are_no_text_are_done_and_listed_all_the_same(
