@@ -298,10 +298,12 @@ def test_a_cell_is_no_formula(cell: str) -> None:
 
 
 def test_the_line_of_progress_tells_rate_and_time_left() -> None:
-    """50 of 200 files in 100 s: 2 s a file, 5 minutes left."""
-    counts = {State.DONE: 40, State.SKIPPED: 9, State.FAILED: 1}
-    line = progress_line(counts, 200, 100.0)
-    assert line == ("50/200 files: 40 done, 9 skipped, 1 failed; 2 s/file, 5 min left")
+    """50 files worked on in 100 s: 2 s a file; those that were skipped took none."""
+    counts = {State.DONE: 49, State.SKIPPED: 100, State.FAILED: 1}
+    line = progress_line(counts, 300, 100.0)
+    assert line == "150/300 files: 49 done, 100 skipped, 1 failed; 2 s/file, 5 min left"
+    resumed = {State.DONE: 0, State.SKIPPED: 100, State.FAILED: 0}
+    assert "100 files/s" in progress_line(resumed, 300, 1.0)
     assert time_words(3725) == "1 h 2 min"
 
 
