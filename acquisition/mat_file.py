@@ -86,13 +86,18 @@ def _require_mat(path: Path) -> None:
 
 
 def _require_sane_unpacked(path: Path) -> None:
-    """Raise `HostileFile` if a few packed bytes unfold into more than is read."""
+    """Walk over the variables: none may be cut short, or unfold into gigabytes."""
     with path.open("rb") as file:
         order = {b"IM": "<", b"MI": ">"}.get(file.read(_HEADER)[126:128])
         total = 0
         while order is not None and len(tag := file.read(8)) == 8:
             kind, size = struct.unpack(f"{order}II", tag)
             packed = file.read(min(size, _MOST_BYTES))
+            if len(packed) < min(size, _MOST_BYTES):
+                raise FormatError(
+                    f"{named(path)}: a variable claims {size} bytes, {len(packed)} are "
+                    "left; it is cut short: use another copy"
+                )
             if kind == _COMPRESSED:
                 total += _unpacked_size(packed, _MOST_BYTES - total)
             if total >= _MOST_BYTES:

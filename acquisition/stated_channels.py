@@ -23,10 +23,11 @@ from jointbench.acquisition.errors import (
 )
 from jointbench.acquisition.records import Channel, Quantity, Recording, step
 from jointbench.acquisition.text_files import file_digest, named, shown
-from jointbench.acquisition.units import example_unit, is_unit
+from jointbench.acquisition.units import example_unit, is_unit, to_si
 
 MOST_VALUES = 100_000_000
 MOST_CHANNELS = 4096
+_VOLTAGE = "voltage"
 QUANTITIES = tuple(quantity.value for quantity in Quantity)
 
 
@@ -159,11 +160,13 @@ def _what_to_type(
         role = "force" if number == 0 else "acceleration"
         unit = one.unit if is_unit(one.unit, role) else example_unit(role)
         items.append(f"{role}.{one.name}:{unit}")
-    unit = f"the unit {shown(channel.unit)}" if channel.unit else "no unit"
+    unit = "states no unit"
+    if channel.unit:
+        kinds = channel.quantity.value if channel.quantity else ", ".join(QUANTITIES)
+        unit = f"states the unit {shown(channel.unit)}, which is none of {kinds}"
     return (
-        f"{named(path)}: channel {shown(channel.name)} states {unit}, which is none of "
-        f"{', '.join(QUANTITIES)}; say what the channels are, for example --columns "
-        f"'{','.join(items)}'"
+        f"{named(path)}: channel {shown(channel.name)} {unit}; say what the channels "
+        f"are, for example --columns '{','.join(items)}'"
     )
 
 
@@ -199,15 +202,26 @@ def _named(
 
 def _agreeing(channel: StatedChannel, column: Column) -> tuple[StatedChannel, Column]:
     """Raise `UnitError` where the file states another unit than the user."""
-    if channel.unit and is_unit(channel.unit, column.role):
-        own = Column(column.role, channel.unit).factor
-        if column.sensitivity is not None or not np.isclose(own, column.factor):
-            raise UnitError(
-                f"channel {channel.name!r} is in {channel.unit!r} by its file, "
-                f"--columns says {column.unit!r}; write {channel.unit!r}, or correct "
-                "the file"
-            )
+    kinds = [kind for kind in (*QUANTITIES, _VOLTAGE) if is_unit(channel.unit, kind)]
+    stated = _VOLTAGE if column.sensitivity is not None else column.role
+    if kinds and stated not in kinds:
+        way = f"write {channel.unit!r}, or correct the file"
+        if kinds == [_VOLTAGE]:
+            way = f"write '{channel.unit}@' and the sensitivity of the sensor"
+        raise _contradiction(channel, column, way)
+    if kinds and not np.isclose(
+        to_si(channel.unit, stated), to_si(column.unit, stated)
+    ):
+        way = f"write {channel.unit!r}, or correct the file"
+        raise _contradiction(channel, column, way)
     return channel, column
+
+
+def _contradiction(channel: StatedChannel, column: Column, way: str) -> UnitError:
+    return UnitError(
+        f"channel {channel.name!r} is in {channel.unit!r} by its file, --columns says "
+        f"{column.unit!r}; {way}"
+    )
 
 
 def _samples(path: Path, channel: StatedChannel, column: Column) -> FloatArray:

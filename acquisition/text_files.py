@@ -36,6 +36,15 @@ def named(path: Path | str) -> str:
     return repr(plain if len(plain) <= _SHOWN_PATH else "..." + plain[-_SHOWN_PATH:])
 
 
+def visible(text: str) -> str:
+    """Return `text` as it stands where all of it shows, else with escapes.
+
+    File names may hold line ends, what moves a terminal's cursor, or bytes that are no
+    text at all.
+    """
+    return text if text.isprintable() else repr(text)[1:-1]
+
+
 def file_size(path: Path | str) -> int:
     """Return the size of an ordinary file [bytes].
 

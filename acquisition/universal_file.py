@@ -10,6 +10,7 @@ Source:
 """
 
 import math
+import re
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -25,7 +26,10 @@ from jointbench.acquisition.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.text_files import named, read_bytes, shown
 
 SUFFIXES = (".uff", ".unv")
-_EDGE = b"    -1"
+# As pyuff finds them: binary values need not end with a line.
+_EDGE = re.compile(rb"    -1(?=[\r\n]|$| {74})")
+_HEADER = 9
+"""Lines of a data set up to the one that says how many values there are."""
 _MOST_SETS = 10_000
 _DIGITS = 5e-6
 """Half a unit of the last printed digit of a step, relative, at the most."""
@@ -54,12 +58,12 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
         SamplingError: the histories have different rates.
         UnitError: see `recording_of`.
     """
-    _require_sane_headers(path)
-    sets = [one for one in _read(path) if one.get("func_type") == _TIME_RESPONSE]
+    whole = read_universal_sets(path, kinds=(58,))
+    sets = [one for one in whole if one.get("func_type") == _TIME_RESPONSE]
     if not sets:
         raise FormatError(
             f"{named(path)} holds no time history (data set 58, function type 1); "
-            "export the samples, not FRFs"
+            "export the samples, not FRFs; `jointbench export` shows what it has"
         )
     intervals = {float(one["abscissa_inc"]) for one in sets}
     uneven = any(int(one["abscissa_spacing"]) != 1 for one in sets)
@@ -117,39 +121,58 @@ def _names(sets: Sequence[dict[str, Any]]) -> list[str]:
 
 def _require_sane_headers(path: Path) -> None:
     data = read_bytes(path)
-    lines = data.split(b"\n")
-    edges = [i for i, line in enumerate(lines) if line.rstrip() == _EDGE]
-    if len(edges) < 2:
+    edges = [found.start() for found in _EDGE.finditer(data)]
+    if not edges:
         raise FormatError(f"{named(path)} is no universal file: it has no data set")
+    if len(edges) % 2:
+        raise FormatError(
+            f"{named(path)}: data set {len(edges) // 2 + 1} has no end; it is cut "
+            "short: use another copy"
+        )
     if len(edges) > 2 * _MOST_SETS:
         raise HostileFile(f"{named(path)} has {len(edges) // 2} data sets")
-    for begin, end in zip(edges[::2], edges[1::2], strict=False):
-        block = lines[begin + 1 : end]
-        if len(block) > 8 and block[0].split()[:1] in ([b"58"], [b"58b"]):
-            size = sum(len(line) + 1 for line in block)
-            try:
-                claimed = int(block[7][_COUNT])
-            except ValueError as error:
-                raise FormatError(
-                    f"{named(path)}: a data set 58 has no number of values"
-                ) from error
-            if not 0 <= claimed <= size:
-                raise HostileFile(
-                    f"{named(path)}: a header claims {claimed} values, its data set "
-                    f"has {size} bytes; use another copy"
-                )
+    for begin, end in zip(edges[::2], edges[1::2], strict=True):
+        _require_sane_set(path, data[begin:end].split(b"\n", _HEADER))
 
 
-def _read(path: Path) -> list[dict[str, Any]]:
+def _require_sane_set(path: Path, lines: Sequence[bytes]) -> None:
+    """Raise `HostileFile` where a data set 58 claims more than it holds."""
+    if len(lines) <= _HEADER or lines[1].split()[:1] not in ([b"58"], [b"58b"]):
+        return
+    size = sum(len(line) + 1 for line in lines)
+    try:
+        claimed = int(lines[8][_COUNT])
+    except ValueError as error:
+        raise FormatError(
+            f"{named(path)}: a data set 58 has no number of values"
+        ) from error
+    if not 0 <= claimed <= size:
+        raise HostileFile(
+            f"{named(path)}: a header claims {claimed} values, its data set has {size} "
+            "bytes; use another copy"
+        )
+
+
+def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, Any]]:
+    """Read the data sets of some kinds, as pyuff calls what is in them.
+
+    Args:
+        path: of the file.
+        kinds: numbers of data sets.
+
+    Raises:
+        FormatError: it is no universal file, or is damaged.
+        HostileFile: a header claims more than the file holds.
+    """
     import pyuff
 
+    _require_sane_headers(path)
     try:
         file = pyuff.UFF(str(path))
-        kinds = [int(kind) for kind in file.get_set_types()]
         return [
             dict(file.read_sets(number))
-            for number, kind in enumerate(kinds)
-            if kind == 58
+            for number, kind in enumerate(map(int, file.get_set_types()))
+            if kind in kinds
         ]
     except Exception as error:  # it raises whatever the content makes it raise
         raise FormatError(

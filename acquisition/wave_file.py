@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Samples from WAV files: their numbers have no unit, the user says what they are."""
 
+import math
 import struct
 import warnings
 from functools import partial
@@ -10,7 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.acquisition.errors import FormatError, HostileFile, UnitError
+from jointbench.acquisition.errors import (
+    FormatError,
+    HostileFile,
+    UnitError,
+    UsageError,
+)
 from jointbench.acquisition.records import Recording
 from jointbench.acquisition.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.text_files import file_size, named, shown
@@ -71,7 +77,13 @@ def _scale(path: Path, values: NDArray[Any], full_scale: float | None) -> float:
 
     Raises:
         UnitError: the numbers are whole and nobody said what the largest is.
+        UsageError: it is said to be none.
     """
+    if full_scale is not None and not 0.0 < full_scale < math.inf:
+        raise UsageError(
+            f"--full-scale is {full_scale:g}; write what the largest number of the "
+            "file stands for, above zero"
+        )
     if values.dtype.kind == "f":
         return 1.0 if full_scale is None else full_scale
     if full_scale is None:

@@ -89,17 +89,28 @@ class BaseFit:
 def base_view(design: CampaignDesign) -> BaseView:
     """Weigh the base responses of a design and differentiate them."""
     responses = sketch_responses(design)
-    step = np.where(np.array(BASE_NAMES) == "kj", _LOG_STEP, 0.0)
-    stiff, soft = (
-        sketch_responses(design, physical=_values(design.physical, sign * step))
-        for sign in (1, -1)
-    )
+    stiff, soft = _stiffer_and_softer(design)
     slope = (stiff - soft) / (2 * _LOG_STEP)
     curve = (stiff - 2 * responses + soft) / _LOG_STEP**2
     weights = sample_weights(design, responses, slope, curve)
     nothing = np.zeros((0, _BASE))
     bare = BaseView(design, responses, weights, nothing, nothing)
     return _with_slopes(bare)
+
+
+def stiffness_slope(design: CampaignDesign) -> FloatArray:
+    """Return the derivative of the responses to ln kj [m/s^2], (n_records, 2, n)."""
+    stiff, soft = _stiffer_and_softer(design)
+    return np.asarray((stiff - soft) / (2 * _LOG_STEP))
+
+
+def _stiffer_and_softer(design: CampaignDesign) -> list[FloatArray]:
+    """Return the responses of a joint a little stiffer, and a little softer."""
+    step = np.where(np.array(BASE_NAMES) == "kj", _LOG_STEP, 0.0)
+    return [
+        sketch_responses(design, physical=_values(design.physical, sign * step))
+        for sign in (1, -1)
+    ]
 
 
 def project(view: BaseView, change: FloatArray) -> FloatArray:

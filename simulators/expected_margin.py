@@ -25,6 +25,7 @@ from jointbench.simulators.effect_draws import FAMILIES, Scales, specimen_scales
 from jointbench.simulators.hidden_effects import HiddenEffect
 from jointbench.simulators.rival_effects import rival_effects
 from jointbench.simulators.rival_refit import best_shape, refit_rival, sized_twin
+from jointbench.simulators.settled_margin import settled_shares
 
 _REFITTED = 4  # rivals, the most alike by the grid
 _ALIKE = 0.7  # correlation below which a rival is not worth a refit
@@ -116,7 +117,8 @@ def expected_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
         distance = refit_rival(scale.view, responses, alone, start)
         if distance < remaining:
             rival, remaining = site, distance
-    return _margin(effect, norm, rival, 1 - (remaining / norm) ** 2)
+    found = _margin(effect, norm, rival, 1 - (remaining / norm) ** 2)
+    return _over_scatter(scale, effect, found)
 
 
 def first_order_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
@@ -137,7 +139,18 @@ def first_order_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
     alone = refit_base(scale.view, responses)
     alike = _correlations(scale, effect, alone.left)
     rival = max(alike, key=lambda site: alike[site])
-    return _margin(effect, float(np.sqrt(alone.cost)), rival, alike[rival] ** 2)
+    found = _margin(effect, float(np.sqrt(alone.cost)), rival, alike[rival] ** 2)
+    return _over_scatter(scale, effect, found)
+
+
+def _over_scatter(scale: MarginScale, effect: HiddenEffect, found: Margin) -> Margin:
+    """Return a margin, or what the joint's own scatter leaves of it."""
+    settled = settled_shares(scale.view, effect)
+    if settled is None:
+        return found
+    norm, alike, rival = settled
+    own = _margin(effect, norm, rival, alike**2)
+    return own if own.margin < found.margin else found
 
 
 def _rival(view: BaseView, shapes: list[HiddenEffect]) -> Rival:

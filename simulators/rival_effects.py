@@ -36,6 +36,8 @@ _FREE: Mapping[str, tuple[str, ...]] = {
     "gain_error": ("frac",),
     "sensor_lowpass": ("fc",),
 }
+# n, b, g; the last is a Jenkins slider with a corner.
+_BOUC_WEN = ((1.0, 0.6, -0.2), (1.0, 0.6, 0.2), (5.0, 0.5, 0.5))
 _SIGNED = frozenset(
     (
         *("cubic_stiffness", "quadratic_stiffness", "gap", "loosening", "delay"),
@@ -134,10 +136,9 @@ def _frictional(s: Scales) -> list[HiddenEffect]:
         ),
         *(
             HiddenEffect(
-                "bouc_wen",
-                {"k": kt, "n": 1.0, "b": 0.6, "g": g, "zy": zy * s.elongation},
+                "bouc_wen", {"k": kt, "n": n, "b": b, "g": g, "zy": zy * s.elongation}
             )
-            for zy, g in product((0.15, 0.6), (-0.2, 0.2))
+            for zy, (n, b, g) in product((0.15, 0.6), _BOUC_WEN)
         ),
         HiddenEffect("coulomb", {"Fc": 0.02 * kt * s.elongation}),
     ]

@@ -1,23 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench archive``: all results in one table, and trends over torque and date."""
+"""All results of an archive as one table: a row a number, in four formats."""
 
 import csv
 import io
+import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import astuple, dataclass, fields
 from datetime import datetime
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.netcdf import new_file, write_texts, write_variable
-from jointbench.station.archive_files import result_files
+from jointbench.acquisition.text_files import named
+from jointbench.station.export_tables import Column, Table, write_mat
 from jointbench.station.ledger import escaped
-from jointbench.station.output import console, table, working, write_json
-from jointbench.station.outputs import check_outputs, write_text
-from jointbench.station.results_read import StoredResult, read_result
-from jointbench.station.trends import Trend, trend_rows, trends_json, trends_of
+from jointbench.station.outputs import whole_file, write_text
+from jointbench.station.results_read import (
+    StoredResult,
+    read_result,
+)
 
 TABLE_SCHEMA = "jointbench-archive/1"
 PARQUET = "pip install 'jointbench[archive]'"
@@ -40,6 +46,7 @@ class Row:
     torque: float
     preload: float
     recipe: str
+    recipe_sha256: str
     software: str
     part: str
     item: str
@@ -66,6 +73,7 @@ def table_rows(results: Sequence[StoredResult]) -> list[Row]:
             if not math.isnan(one.preload) or result.preload is None
             else result.preload,
             recipe=result.facts["recipe_name"],
+            recipe_sha256=_recipe_digest(result),
             software=result.facts["software"],
             part=one.part,
             item=one.item,
@@ -78,6 +86,13 @@ def table_rows(results: Sequence[StoredResult]) -> list[Row]:
         for result in results
         for one in result.quantities
     ]
+
+
+def _recipe_digest(result: StoredResult) -> str:
+    if not result.recipe:
+        return ""
+    text = json.dumps(result.recipe, sort_keys=True)
+    return sha256(text.encode()).hexdigest()
 
 
 def _day(text: str) -> float:
@@ -101,21 +116,36 @@ def read_results(
     return found, refused
 
 
+def left_out_words(path: Path, reason: str) -> str:
+    """Say of a results file why it is left out; the reason may begin with its name."""
+    return f"left out: {reason if named(path) in reason else f'{path}: {reason}'}"
+
+
 def write_table(path: Path, rows: Sequence[Row]) -> None:
-    """Write the table as its name says: .csv, .nc or .parquet.
+    """Write the table as its name says: .csv, .mat, .nc or .parquet.
 
     Raises:
         UsageError: another ending, or Parquet without its library.
+    """
+    writer_of(path)(path, rows)
+
+
+def writer_of(path: Path) -> Callable[[Path, Sequence[Row]], None]:
+    """Return what writes a table of this name.
+
+    Raises:
+        UsageError: no table ends like that.
     """
     writers: dict[str, Callable[[Path, Sequence[Row]], None]] = {
         ".csv": _write_csv,
         ".nc": _write_netcdf,
         ".parquet": _write_parquet,
+        ".mat": _write_mat,
     }
     writer = writers.get(path.suffix.lower())
     if writer is None:
-        raise UsageError(f"--out is '{path}'; name it *.csv, *.nc or *.parquet")
-    writer(path, rows)
+        raise UsageError(f"--out is '{path}'; name it *.csv, *.mat, *.nc or *.parquet")
+    return writer
 
 
 def _columns(rows: Sequence[Row]) -> dict[str, list[Any]]:
@@ -150,6 +180,14 @@ def _write_netcdf(path: Path, rows: Sequence[Row]) -> None:
                 write_variable(file, name, values, ("row",), long_name=name)
 
 
+def _write_mat(path: Path, rows: Sequence[Row]) -> None:
+    columns = {
+        name: Column("", np.array(values), ("row",))
+        for name, values in _columns(rows).items()
+    }
+    write_mat(path, [Table("archive", columns)])
+
+
 def _write_parquet(path: Path, rows: Sequence[Row]) -> None:
     try:
         import pyarrow
@@ -158,58 +196,5 @@ def _write_parquet(path: Path, rows: Sequence[Row]) -> None:
         raise UsageError(
             f"Parquet needs pyarrow; type {PARQUET}, or name the table *.nc or *.csv"
         ) from error
-    part = path.with_name(f"{path.name}.part")
-    parquet.write_table(pyarrow.table(_columns(rows)), part)
-    part.replace(path)
-
-
-def run_archive(
-    patterns: Sequence[str], *, out: Path | None, trend: str, json_target: str | None
-) -> int:
-    """Collect results into one table, and show how each quantity goes with `trend`.
-
-    Args:
-        patterns: results files, folders or patterns.
-        out: table to write, or None.
-        trend: ``torque``, ``preload``, ``day`` or ``specimen``.
-        json_target: where the JSON goes.
-
-    Returns:
-        Number of results files that could not be read.
-    """
-    paths = result_files(patterns)
-    check_outputs(paths, [json_target])
-    with working(f"reading {len(paths)} results"):
-        results, refused = read_results(paths)
-    rows = table_rows(results)
-    if not rows:
-        raise BadData(f"none of {len(paths)} results files holds a number")
-    screen = console(json_target)
-    if out is not None:
-        write_table(out, rows)
-        words = f"{out}: {len(rows)} rows of {len(results)} results"
-        screen.print(words, soft_wrap=True)
-    trends = trends_of(
-        [
-            Trend.point(row, trend)
-            for row in rows
-            if not math.isnan(row.value) and row.part != "hits"
-        ]
-    )
-    title = f"Trends over {trend} ({len(results)} results)"
-    columns = ("quantity", "results", "mean ± scatter", f"over {trend}", "verdict")
-    screen.print(table(title, columns, trend_rows(trends, trend)))
-    for path, reason in refused:
-        screen.print(f"left out: {path}: {reason}", soft_wrap=True)
-    write_json(
-        json_target,
-        {
-            "results": len(results),
-            "rows": len(rows),
-            "table": None if out is None else str(out),
-            "left_out": [{"file": str(p), "reason": r} for p, r in refused],
-            "trend": trend,
-            "trends": trends_json(trends),
-        },
-    )
-    return len(refused)
+    with whole_file(path) as part:
+        parquet.write_table(pyarrow.table(_columns(rows)), part)

@@ -8,43 +8,23 @@ force (a voltage, say), its units stand in for newton and metre: see `record_mod
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from jointbench.acquisition.errors import UnitError
-from jointbench.acquisition.units import parse_value
 from jointbench.station.record_model import RecordTable, with_mechanical_units
+from jointbench.station.toml_file import StrictTable, with_unit
 
 GROUND = "ground"
 
 
-def _quantity(kind: str) -> BeforeValidator:
-    def parse(value: object) -> float:
-        if not isinstance(value, str):
-            # pydantic turns a ValueError, not a TypeError, into a named problem.
-            raise ValueError(  # noqa: TRY004
-                f"write the number with its unit, as text: '{value} ...'"
-            )
-        try:
-            return parse_value(value, kind)
-        except UnitError as error:
-            raise ValueError(str(error)) from error
-
-    return BeforeValidator(parse)
+Mass = Annotated[float, with_unit("mass"), Field(gt=0)]
+Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
+Damping = Annotated[float, with_unit("damping"), Field(ge=0)]
+Force = Annotated[float, with_unit("force"), Field(gt=0)]
+Pressure = Annotated[float, with_unit("pressure"), Field(gt=0)]
+Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
 
 
-Mass = Annotated[float, _quantity("mass"), Field(gt=0)]
-Stiffness = Annotated[float, _quantity("stiffness"), Field(ge=0)]
-Damping = Annotated[float, _quantity("damping"), Field(ge=0)]
-Force = Annotated[float, _quantity("force"), Field(gt=0)]
-Pressure = Annotated[float, _quantity("pressure"), Field(gt=0)]
-Share = Annotated[float, _quantity("ratio"), Field(gt=0, lt=1)]
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class BodyTable(_Strict):
+class BodyTable(StrictTable):
     """A rigid body: weighed mass [kg], its standard deviation, its channel.
 
     The points are those at which the hammer strikes this body; left out, they are
@@ -57,7 +37,7 @@ class BodyTable(_Strict):
     points: tuple[str, ...] = ()
 
 
-class LinkTable(_Strict):
+class LinkTable(StrictTable):
     """A spring and dashpot between two bodies, or a body and ``ground``.
 
     Stiffness [N/m] and damping [N s/m] are nominal values; the standard deviations,
@@ -72,7 +52,7 @@ class LinkTable(_Strict):
     joint: bool = False
 
 
-class ContactTable(_Strict):
+class ContactTable(StrictTable):
     """What the contact law needs to predict one link from its two faces."""
 
     link: str
@@ -83,7 +63,7 @@ class ContactTable(_Strict):
     model: str = "ke_3d_modified"
 
 
-class GapTable(_Strict):
+class GapTable(StrictTable):
     """What `gap` needs beside bodies and links.
 
     What all channels measure; the preload [N] that the nominal values belong to; the
@@ -97,7 +77,7 @@ class GapTable(_Strict):
     sessions: tuple[str, ...] = ()
 
 
-class BenchModel(_Strict):
+class BenchModel(StrictTable):
     """A lumped bench: bodies and links by name, the contact of one link, a record."""
 
     bodies: dict[str, BodyTable] = Field(min_length=1)

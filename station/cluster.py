@@ -62,12 +62,20 @@ def require_safe(settings: ClusterSettings) -> None:
             "encrypted; anyone on the way could run programs on the workers: write "
             "tls:// with --tls-ca, --tls-cert and --tls-key"
         )
-    if parts.scheme == "tls" and None in (
-        settings.authority,
-        settings.certificate,
-        settings.private_key,
+    if parts.scheme == "tls":
+        _require_certificates(settings)
+
+
+def _require_certificates(settings: ClusterSettings) -> None:
+    for option, path in (
+        ("--tls-ca", settings.authority),
+        ("--tls-cert", settings.certificate),
+        ("--tls-key", settings.private_key),
     ):
-        raise UsageError("tls:// needs --tls-ca, --tls-cert and --tls-key")
+        if path is None:
+            raise UsageError("tls:// needs --tls-ca, --tls-cert and --tls-key")
+        if not path.is_file():
+            raise UsageError(f"{option} is '{path}'; there is no such file")
 
 
 def _is_loopback(host: str) -> bool:

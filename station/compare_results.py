@@ -7,8 +7,9 @@ deviations, whoever is right. Of different samples both variances count.
 """
 
 import math
+from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,20 @@ from scipy.optimize import linear_sum_assignment
 
 from jointbench.acquisition.errors import BadData
 from jointbench.station.quantities import Quantity
-from jointbench.station.results_read import StoredResult
+from jointbench.station.results_read import StoredResult, without_copies
 from jointbench.station.stage_store import differing
 
 MOVED = 2.0
 """Standard deviations beyond which a quantity has moved."""
+BEHIND = {
+    "modes": ("hits", "frf", "modes", "fill"),
+    "surface": ("structure", "surface"),
+    "contact": ("structure", "surface", "contact"),
+    "joint": ("hits", "frf", "modes", "fill", "joint"),
+    "gap": ("hits", "gap"),
+}
+"""Stages behind each part of a result, in the order in which they are run."""
+_CHOSEN, _ABSENT = "chosen by the data", "-"
 SAME_MODE = 0.1
 """Relative distance of two frequencies that may be one mode [-]."""
 
@@ -39,7 +49,9 @@ class Difference:
         after_sd: its standard deviation.
         words: verdicts before and after, where it is one.
         moved: by how many standard deviations; infinite for a verdict that changed or
-            a quantity that only one has; NaN where no deviation is known.
+            a quantity that only one has; NaN where it changed and
+            no deviation is known.
+        since: first stage behind it that is not the same in both; empty for none.
     """
 
     file: str
@@ -51,6 +63,7 @@ class Difference:
     after_sd: float
     words: tuple[str, str]
     moved: float
+    since: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +75,7 @@ class Comparison:
         only_before: sessions that are in the first alone.
         only_after: sessions that are in the second alone.
         differences: every quantity of every pair.
-        causes: settings and versions that are not the same, a line each.
+        causes: settings and versions that are not the same, by how many sessions.
         stages: stages whose keys differ, by how many sessions.
     """
 
@@ -70,7 +83,7 @@ class Comparison:
     only_before: tuple[str, ...]
     only_after: tuple[str, ...]
     differences: tuple[Difference, ...]
-    causes: tuple[str, ...]
+    causes: Mapping[str, int]
     stages: Mapping[str, int]
 
     @property
@@ -78,6 +91,11 @@ class Comparison:
         """Those beyond their uncertainty, furthest first; then what came and went."""
         far = [one for one in self.differences if one.moved > MOVED]
         return tuple(sorted(far, key=lambda one: (math.isinf(one.moved), -one.moved)))
+
+    @property
+    def unjudged(self) -> tuple[Difference, ...]:
+        """Those that changed and have no standard deviation to hold that against."""
+        return tuple(one for one in self.differences if math.isnan(one.moved))
 
 
 def compare_results(
@@ -92,28 +110,42 @@ def compare_results(
     Raises:
         BadData: no session is in both, or one is twice in one of them.
     """
-    first, second = _by_input(before), _by_input(after)
+    first, second = (_by_input(without_copies(group)[0]) for group in (before, after))
     both = [digest for digest in first if digest in second]
     if not both:
         raise BadData(
             "no session is in both: results are paired by the digest of their input; "
             "compare results of the same files"
         )
-    stages: dict[str, int] = {}
+    stages: Counter[str] = Counter()
+    causes: Counter[str] = Counter()
     differences: list[Difference] = []
     for digest in both:
         one, other = first[digest], second[digest]
-        differences += _differences(one, other)
-        for name in differing(one.stages, other.stages):
-            stages[name] = stages.get(name, 0) + 1
+        apart = differing(one.stages, other.stages)
+        differences += [
+            replace(found, since=_since(found, apart) if found.moved != 0 else "")
+            for found in _differences(one, other)
+        ]
+        stages.update(apart)
+        causes.update(_causes(one, other))
     return Comparison(
         len(both),
         tuple(first[d].facts["input_file"] for d in first if d not in second),
         tuple(second[d].facts["input_file"] for d in second if d not in first),
         tuple(differences),
-        _causes(first[both[0]], second[both[0]]),
+        causes,
         stages,
     )
+
+
+def _since(found: Difference, apart: Sequence[str]) -> str:
+    """Return the first stage behind a quantity that is among those that differ."""
+    part = found.quantity.split(maxsplit=1)[0]
+    for stage in BEHIND.get(part, ()):
+        if any(name == stage or name.startswith(f"{stage} ") for name in apart):
+            return stage
+    return ""
 
 
 def _by_input(results: Sequence[StoredResult]) -> dict[str, StoredResult]:
@@ -149,15 +181,24 @@ Pairs = list[tuple[Quantity | None, Quantity | None]]
 
 def _same_names(one: Sequence[Quantity], other: Sequence[Quantity]) -> Pairs:
     def named(rows: Sequence[Quantity]) -> dict[object, Quantity]:
-        return {(q.part, q.item, q.name): q for q in rows if q.part != "modes"}
+        return {
+            (q.part, q.item, q.name, f"{q.preload:g}"): q
+            for q in rows
+            if q.part != "modes"
+        }
 
     first, second = named(one), named(other)
     return [(first.get(k), second.get(k)) for k in dict.fromkeys([*first, *second])]
 
 
 def _same_modes(one: Sequence[Quantity], other: Sequence[Quantity]) -> Pairs:
-    """Pair modes by frequency, at each preload: their numbers shift with each other."""
+    """Pair modes by frequency, at each preload: their numbers shift with each other.
+
+    Where each has modes at one preload only, it is the same, whoever wrote it down.
+    """
     first, second = _modes(one), _modes(other)
+    if len(first) == len(second) == 1:
+        second = dict(zip(first, second.values(), strict=True))
     pairs: Pairs = []
     for preload in dict.fromkeys([*first, *second]):
         left, right = first.get(preload, []), second.get(preload, [])
@@ -224,7 +265,7 @@ def _difference(file: str, a: Quantity | None, b: Quantity | None) -> Difference
     )
 
 
-def _causes(one: StoredResult, other: StoredResult) -> tuple[str, ...]:
+def _causes(one: StoredResult, other: StoredResult) -> list[str]:
     """Say in which settings and versions two results differ."""
     causes = [
         f"{name.replace('_', ' ')}: {one.facts[name] or '-'} -> "
@@ -233,16 +274,18 @@ def _causes(one: StoredResult, other: StoredResult) -> tuple[str, ...]:
         if one.facts[name] != other.facts[name]
     ]
     first, second = _flat(one.recipe), _flat(other.recipe)
-    causes += [
-        f"{key}: {_word(first.get(key))} -> {_word(second.get(key))}"
-        for key in dict.fromkeys([*first, *second])
-        if first.get(key) != second.get(key)
-    ]
-    return tuple(causes)
+    if not (first and second):  # `jointbench modal` works without one
+        return causes
+    for key in dict.fromkeys([*first, *second]):
+        words = _word(first, key), _word(second, key)
+        if len({*words, _ABSENT, _CHOSEN}) > 2 and words[0] != words[1]:
+            causes.append(f"{key}: {words[0]} -> {words[1]}")
+    return causes
 
 
-def _word(value: object) -> str:
-    return "chosen by the data" if value is None else str(value)
+def _word(tree: Mapping[str, object], key: str) -> str:
+    value = tree.get(key, _ABSENT)
+    return _CHOSEN if value is None else str(value)
 
 
 def _flat(tree: Mapping[str, Any], prefix: str = "") -> dict[str, object]:

@@ -9,6 +9,7 @@ import typer
 from typer.exceptions import TyperException
 
 from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
+from jointbench.acquisition.text_files import visible
 
 EXIT_INTERNAL = 1
 EXIT_USAGE = 2
@@ -39,7 +40,7 @@ def _quiet_exit_code(command: Callable[..., object]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return _fail("interrupted; finished files are whole", EXIT_INTERRUPTED)
     except OSError as error:
-        return _fail(f"{error.strerror or error}: {error.filename}", EXIT_BAD_DATA)
+        return _fail(_system_words(error), EXIT_BAD_DATA)
     except Exception as error:  # noqa: BLE001 - a traceback helps no operator
         kind = type(error).__name__
         return _fail(
@@ -47,6 +48,12 @@ def _quiet_exit_code(command: Callable[..., object]) -> int:
             EXIT_INTERNAL,
         )
     return result if isinstance(result, int) else 0
+
+
+def _system_words(error: OSError) -> str:
+    """Return what the system refused, and of which file where it says so."""
+    reason = error.strerror or str(error)
+    return reason if error.filename is None else f"{reason}: {error.filename}"
 
 
 def code_of(error: JointbenchError) -> int:
@@ -57,6 +64,6 @@ def code_of(error: JointbenchError) -> int:
 
 
 def _fail(message: str, code: int) -> int:
-    line = " ".join(message.split())
+    line = visible(" ".join(message.split()))
     sys.stderr.write(f"jointbench: error: {line}\n")
     return code

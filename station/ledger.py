@@ -7,6 +7,7 @@ line that a crash cut short is passed over.
 """
 
 import csv
+import errno
 import io
 import json
 import os
@@ -14,18 +15,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from io import RawIOBase
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_lock import drop_lock, hold_lock
-from jointbench.acquisition.text_files import named
+from jointbench.acquisition.text_files import file_size, named, read_bytes, visible
 from jointbench.station.outputs import write_text
 from jointbench.station.process import outcome_json
 from jointbench.station.process_file import Outcome, State
 
 LEDGER_SCHEMA = "jointbench-ledger/1"
+MOST_BYTES = 2**30
+"""Two million files' lines; a longer ledger is none [bytes]."""
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -40,13 +44,22 @@ class Ledger:
 
     path: Path
     refused: dict[str, tuple[str, str]] = field(default_factory=dict)
-    file: IO[str] | None = None
+    file: RawIOBase | None = None
 
     def write(self, line: Mapping[str, object]) -> None:
-        """Append a line."""
+        """Append a line.
+
+        Raises:
+            UsageError: it cannot be written.
+        """
         assert self.file is not None
-        self.file.write(json.dumps(line) + "\n")
-        self.file.flush()
+        data = (json.dumps(line) + "\n").encode()
+        try:
+            whole = self.file.write(data) == len(data)
+        except OSError as error:
+            raise _unwritable(self.path, error.strerror) from error
+        if not whole:
+            raise _unwritable(self.path, os.strerror(errno.ENOSPC))
 
     def outcome(self, outcome: Outcome) -> None:
         """Append what became of a file."""
@@ -75,23 +88,32 @@ def open_ledger(path: Path, run: Mapping[str, object]) -> Iterator[Ledger]:
     try:
         lock = hold_lock(path)
     except UsageError as error:
+        if not (path.parent.is_dir() and os.access(path.parent, os.W_OK)):
+            raise _unwritable(path, "its folder takes no files") from error
         raise UsageError(
-            f"{named(path)} is in use by another run, or its folder cannot be written; "
-            "wait until that has finished, or give --ledger another name"
+            f"{named(path)} is in use by another run; wait until that has finished, or "
+            "give --ledger another name"
         ) from error
     try:
         ledger = Ledger(path, _refused(read_ledger(path)))
-        with path.open("a", encoding="utf-8") as file:
+        # Unbuffered: what a full disk refused is not tried again on closing.
+        with path.open("ab", buffering=0) as file:
             ledger.file = file
             if _cut_short(path):
-                file.write("\n")
+                file.write(b"\n")
             begin = {"kind": "run", "schema": LEDGER_SCHEMA, "time": now()}
             ledger.write(begin | {"software": software_version()} | dict(run))
             yield ledger
-            file.flush()
             os.fsync(file.fileno())
     finally:
         drop_lock(path, lock)
+
+
+def _unwritable(path: Path, reason: str | None) -> UsageError:
+    return UsageError(
+        f"{named(path)} cannot be written: {reason}; make room, or give --ledger "
+        "another place"
+    )
 
 
 def read_ledger(path: Path) -> list[dict[str, Any]]:
@@ -103,14 +125,15 @@ def read_ledger(path: Path) -> list[dict[str, Any]]:
     if not path.exists():
         return []
     lines = []
-    for text in path.read_text(encoding="utf-8", errors="replace").splitlines():
+    data = read_bytes(path, limit=MOST_BYTES) if file_size(path) else b""
+    for text in data.decode("utf-8", errors="replace").split("\n"):
         try:
             line = json.loads(text)
-        except ValueError:
+        except (ValueError, RecursionError):
             continue
         if isinstance(line, dict):
             lines.append(line)
-    if path.stat().st_size and not (
+    if data and not (
         lines and str(lines[0].get("schema", "")).startswith("jointbench-ledger/")
     ):
         raise UsageError(f"{named(path)} is no ledger; give --ledger another name")
@@ -150,7 +173,9 @@ def write_quarantine(path: Path, failed: Sequence[Outcome]) -> None:
     writer.writerow(("file", "reason", "comes again"))
     for outcome in sorted(failed, key=lambda o: o.path):
         again = "yes" if outcome.lasting else "perhaps not: run again"
-        writer.writerow([escaped(str(outcome.path)), escaped(outcome.reason), again])
+        writer.writerow(
+            [escaped(visible(str(outcome.path))), escaped(outcome.reason), again]
+        )
     write_text(path, buffer.getvalue())
 
 

@@ -25,43 +25,25 @@ import re
 from datetime import date
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from jointbench.acquisition.errors import UnitError
 from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.records import Quantity
 from jointbench.acquisition.units import parse_sensitivity, parse_value
+from jointbench.station.toml_file import StrictTable, with_unit
 
 SECONDS_IN_A_MINUTE = 60.0
 
 
-def _quantity(kind: str) -> BeforeValidator:
-    def parse(value: object) -> float:
-        if not isinstance(value, str):
-            # pydantic turns a ValueError, not a TypeError, into a named problem.
-            raise ValueError(  # noqa: TRY004
-                f"write the number with its unit, as text: '{value} ...'"
-            )
-        try:
-            return parse_value(value, kind)
-        except UnitError as error:
-            raise ValueError(str(error)) from error
-
-    return BeforeValidator(parse)
+Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
+Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
+Newtons = Annotated[float, with_unit("force"), Field(gt=0)]
+Torque = Annotated[float, with_unit("torque"), Field(gt=0)]
+Metres = Annotated[float, with_unit("length"), Field(gt=0)]
 
 
-Seconds = Annotated[float, _quantity("time"), Field(gt=0)]
-Hertz = Annotated[float, _quantity("frequency"), Field(gt=0)]
-Newtons = Annotated[float, _quantity("force"), Field(gt=0)]
-Torque = Annotated[float, _quantity("torque"), Field(gt=0)]
-Metres = Annotated[float, _quantity("length"), Field(gt=0)]
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class AxisTable(_Strict):
+class AxisTable(StrictTable):
     """One axis of a sensor: its input, its direction, its sensitivity as text."""
 
     physical: str = Field(min_length=1)
@@ -69,7 +51,7 @@ class AxisTable(_Strict):
     sensitivity: str
 
 
-class SensorTable(_Strict):
+class SensorTable(StrictTable):
     """A sensor, of one axis (given right here) or of several (`axes`)."""
 
     name: str = Field(min_length=1, max_length=40)
@@ -141,7 +123,7 @@ def _amperes(text: str) -> float:
     return float(match[1]) * (1e-3 if match[2] == "mA" else 1.0)
 
 
-class AcquisitionTable(_Strict):
+class AcquisitionTable(StrictTable):
     """How to stream: rate, length of a block, what the driver keeps unread, trigger."""
 
     sample_rate: Hertz = 25_600.0
@@ -151,7 +133,7 @@ class AcquisitionTable(_Strict):
     trigger: Literal["software", "hardware"] = "software"
 
 
-class HitsTable(_Strict):
+class HitsTable(StrictTable):
     """What to hit, how often, and when a hit is good; None is left to trial hits."""
 
     points: tuple[str, ...] = Field(min_length=1, max_length=200)
@@ -178,7 +160,7 @@ class HitsTable(_Strict):
         return self
 
 
-class JointTable(_Strict):
+class JointTable(StrictTable):
     """What a torque makes of the preload: P = n T / (K d)."""
 
     bolts: int = Field(ge=1, le=1000)
@@ -194,7 +176,7 @@ class JointTable(_Strict):
         return self.bolts * torque / (self.nut_factor * self.diameter)
 
 
-class TorqueTable(_Strict):
+class TorqueTable(StrictTable):
     """The torque tester that every bolt is tightened with, on a serial line.
 
     A bolt's torque is the largest reading between two rests. A reading beside the
@@ -209,7 +191,7 @@ class TorqueTable(_Strict):
     poll: Seconds = 0.02
 
 
-class MeasureTable(_Strict):
+class MeasureTable(StrictTable):
     """The whole plan."""
 
     operator: str = ""

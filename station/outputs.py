@@ -2,13 +2,17 @@
 """Where results may go: never over an input, never over a file of another kind."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.text_files import named
 
 HEAD_BYTES = 512
 HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
+TABLE_HEADS = {".csv": b"file,input_sha256,", ".parquet": b"PAR1", ".mat": b"MATLAB"}
+"""How tables of an archive begin."""
 
 
 def check_outputs(inputs: Sequence[Path], outputs: Sequence[Path | str | None]) -> None:
@@ -64,17 +68,67 @@ def check_folder(folder: Path, own: Sequence[str]) -> None:
         )
 
 
+def require_folder(path: Path | None, option: str) -> None:
+    """Raise `UsageError` where something else than a folder has its name."""
+    if path is not None and path.exists() and not path.is_dir():
+        raise UsageError(f"{option} is '{path}', a file; name a folder")
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder and those above it, where they are not there.
+
+    Raises:
+        UsageError: there can be none.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(
+            f"folder {named(path)} cannot be made: {error.strerror}; choose another "
+            "place"
+        ) from error
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Let a file be written so that it is there whole or not at all.
+
+    Args:
+        path: of the file to be.
+
+    Yields:
+        Where to write: a file beside it that takes its name when all went well.
+
+    Raises:
+        UsageError: it cannot be written there.
+    """
+    part = path.with_name(path.name + ".part")
+    try:
+        yield part
+        os.replace(part, path)  # noqa: PTH105 - replaces on Windows, Path.rename not
+    except OSError as error:
+        raise UsageError(
+            f"{named(path)} cannot be written: {error.strerror or error}; choose "
+            "another place"
+        ) from error
+    finally:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a text so that it is there whole or not at all.
 
     A device or a pipe (``/dev/null``) is written to: replacing it would destroy it.
+
+    Raises:
+        UsageError: it cannot be written there.
     """
     if path.exists() and not path.is_file():
         path.write_text(text, encoding="utf-8")
         return
-    part = path.with_name(path.name + ".part")
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, path)  # noqa: PTH105 - replaces on Windows too, Path.rename not
+    with whole_file(path) as part:
+        part.write_text(text, encoding="utf-8")
 
 
 def _of_its_kind(path: Path) -> bool:
@@ -83,19 +137,23 @@ def _of_its_kind(path: Path) -> bool:
         head = file.read(HEAD_BYTES)
     suffix = path.suffix.lower()
     if suffix in {".h5", ".hdf5"}:
-        return head.startswith(HDF5_MAGIC) and not _is_session(path)
+        return head.startswith(HDF5_MAGIC) and _has_schema(path, "jointbench-results/")
+    if suffix == ".nc":
+        return head.startswith(HDF5_MAGIC) and _has_schema(path, "jointbench-archive/")
+    if suffix in TABLE_HEADS:
+        return not head or head.startswith(TABLE_HEADS[suffix])
     if suffix in {".html", ".htm"}:
         return head.lower().startswith(b"<!doctype html>")
     return not head or head.lstrip().startswith(b"{")
 
 
-def _is_session(path: Path) -> bool:
+def _has_schema(path: Path, family: str) -> bool:
     import h5py
 
     try:
         with h5py.File(path, "r") as file:
             schema = file.attrs.get("schema", b"")
     except OSError:
-        return True
+        return False
     text = schema if isinstance(schema, bytes) else str(schema).encode()
-    return not text.startswith(b"jointbench-results/")
+    return text.startswith(family.encode())

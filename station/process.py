@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """``jointbench process``: one recorded session under a recipe, and what changed."""
 
+import math
 from pathlib import Path
 
 from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.acquisition.text_files import visible
 from jointbench.station.output import console, table, with_sd, working, write_json
-from jointbench.station.outputs import check_outputs
+from jointbench.station.outputs import check_outputs, require_folder
 from jointbench.station.process_file import Outcome, State, Task, process_task
 from jointbench.station.processed_file import processed_path
 from jointbench.station.quantities import Quantity
@@ -49,6 +51,7 @@ def run_process(
         BadData: the session or the recipe cannot be used.
         UsageError: the result cannot be written.
     """
+    require_folder(stages, "--stages")
     made = recipe_or_default(recipe)
     target = out or processed_path(file, made)
     check_outputs([file, *([recipe] if recipe else [])], [target, json_target])
@@ -67,7 +70,7 @@ def run_process(
 
 def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> None:
     screen = console(json_target)
-    title = f"{result.path.name}: recipe {result.facts['recipe_name']!r}"
+    title = f"{visible(result.path.name)}: recipe {result.facts['recipe_name']!r}"
     columns = ("of", "quantity", "value ± sd", "unit")
     rows = [quantity_cells(one) for one in result.quantities]
     screen.print(table(title, columns, rows))
@@ -85,12 +88,13 @@ def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> No
     for remark in result.remarks:
         screen.print(remark, soft_wrap=True)
     screen.print(f"\nstages: {stage_words(outcome)}", soft_wrap=True)
-    screen.print(f"result: {result.path}", soft_wrap=True)
+    screen.print(f"result: {visible(str(result.path))}", soft_wrap=True)
 
 
 def quantity_cells(one: Quantity) -> tuple[str, str, str, str]:
     """Return a quantity as the cells of a table."""
-    of = f"{one.part} {one.item}".strip()
+    at = "" if math.isnan(one.preload) else f" at {one.preload:g} N"
+    of = f"{one.part} {one.item}".strip() + at
     value = one.word or with_sd(one.value, one.sd)
     return of, one.name.replace("_", " "), value, "" if one.unit == "1" else one.unit
 

@@ -140,7 +140,7 @@ def archive_command(
         list[str], typer.Argument(help="Results files, folders or quoted patterns.")
     ],
     out: Annotated[
-        Path | None, typer.Option(help="Table to write: .csv, .nc or .parquet.")
+        Path | None, typer.Option(help="Table to write: .csv, .mat, .nc or .parquet.")
     ] = None,
     trend: Annotated[
         str,
@@ -155,7 +155,7 @@ def archive_command(
 
     Example: jointbench archive 'archive/**/*.narrow.results.h5' --out all.nc
     """
-    from jointbench.station.archive_table import run_archive
+    from jointbench.station.archive import run_archive
 
     left_out = run_archive(results, out=out, trend=trend, json_target=json)
     return EXIT_QUALITY if left_out else 0
@@ -166,18 +166,21 @@ def compare_command(
     after: Annotated[str, typer.Argument(help="Likewise, of the same sessions.")],
     json: Json = None,
     debug: Debug = False,
-) -> None:
+) -> int:
     """Lay two recipes or versions side by side: what moved beyond its uncertainty.
 
     Example: jointbench compare 'a/**/*.old.results.h5' 'a/**/*.new.results.h5'
     """
     from jointbench.station.compare import run_compare
 
-    run_compare(before, after, json_target=json)
+    _, left_out = run_compare(before, after, json_target=json)
+    return EXIT_QUALITY if left_out else 0
 
 
 def export_command(
-    file: Annotated[Path, typer.Argument(help="Session or results file.")],
+    file: Annotated[
+        Path, typer.Argument(help="Session, results, or universal file of others.")
+    ],
     to: Annotated[str, typer.Option(metavar="csv|mat|uff", help="Format.")] = "csv",
     out: Annotated[
         Path | None, typer.Option(help="Folder to write to; beside the file.")

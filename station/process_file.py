@@ -6,17 +6,23 @@ the version. A result with that key is left as it is. That is all there is to re
 whoever calls: one process, a pool, a cluster.
 """
 
+import errno
 import time
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from hashlib import sha256
 from pathlib import Path
 
 import h5py
 
-from jointbench.acquisition.errors import BadData, HostileFile, JointbenchError
-from jointbench.acquisition.session import software_version
+from jointbench.acquisition.errors import (
+    BadData,
+    HostileFile,
+    JointbenchError,
+    UsageError,
+)
+from jointbench.acquisition.session import Session, software_version
 from jointbench.acquisition.session_file import read_session
 from jointbench.acquisition.text_files import file_digest, file_size, named
 from jointbench.station.process_session import process_session
@@ -118,13 +124,15 @@ def process_task(task: Task, recipe: Recipe) -> Outcome:
     begun = time.perf_counter()
     key = ""
     try:
+        before = _mark(task.path)
         digest = _digest(task.path)
         key = result_key(digest, recipe)
         if not task.again and has_key(task.result, key):
             return Outcome(task.path, task.result, State.SKIPPED, key)
         if not task.again and task.refused == key:
             return _failed(task, key, task.reason, begun, lasting=True)
-        return _done(task, recipe, digest, key, begun)
+        session = _unchanged_session(task.path, before)
+        return _done(task, session, recipe, Origin(task.path, digest, key), begun)
     except JointbenchError as error:
         return _failed(task, key, str(error), begun, lasting=True)
     except OSError as error:
@@ -146,24 +154,42 @@ def _digest(path: Path) -> str:
     return file_digest(path)
 
 
-def _done(task: Task, recipe: Recipe, digest: str, key: str, begun: float) -> Outcome:
-    stages = StageStore(None if task.again else task.stages)
-    session = read_session(task.path)
+def _mark(path: Path) -> tuple[int, ...]:
+    """Return what tells whether a file was touched; empty where there is none."""
     try:
-        result = process_session(session, digest, recipe, stages)
+        info = path.stat()
+    except (OSError, ValueError):
+        return ()
+    return info.st_ino, info.st_size, info.st_mtime_ns
+
+
+def _unchanged_session(path: Path, before: tuple[int, ...]) -> Session:
+    """Read a session whose digest was taken when it had the mark `before`."""
+    session = read_session(path)
+    if _mark(path) != before:
+        raise OSError(errno.EBUSY, "it changed while it was read")
+    return session
+
+
+def _done(
+    task: Task, session: Session, recipe: Recipe, origin: Origin, begun: float
+) -> Outcome:
+    stages = StageStore(None if task.again else task.stages)
+    try:
+        result = process_session(session, origin.sha256, recipe, stages)
     except BadData as error:
         raise type(error)(f"{named(task.path)}: {error}") from error
-    seconds = time.perf_counter() - begun
+    origin = replace(origin, seconds=time.perf_counter() - begun)
     try:
-        origin = Origin(task.path, digest, key, seconds)
         write_processed(task.result, result, recipe, origin)
-    except JointbenchError as error:
-        return _failed(task, key, str(error), begun, lasting=False, unwritable=True)
+    except UsageError as error:
+        reason, key = str(error), origin.key
+        return _failed(task, key, reason, begun, lasting=False, unwritable=True)
     return Outcome(
         task.path,
         task.result,
         State.DONE,
-        key,
+        origin.key,
         seconds=time.perf_counter() - begun,
         changes=len(result.changes),
         computed=tuple(stages.computed),

@@ -2,7 +2,7 @@
 """The later stages of a recipe: surfaces, contact, links, gap."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 from jointbench.acquisition.errors import JointbenchError
@@ -29,6 +29,28 @@ from jointbench.station.stage_store import StageStore, stage_key
 from jointbench.station.surface import SurfaceChain
 
 Page = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreloadModes:
+    """Modes at one preload of the joint.
+
+    Attributes:
+        preload: [N], None where nobody said.
+        recordings: names of those behind them.
+        chain: hits, FRF and modes.
+        key: of the stage that the modes came from.
+    """
+
+    preload: float | None
+    recordings: tuple[str, ...]
+    chain: ModalChain
+    key: str
+
+
+def at_words(preload: float | None) -> str:
+    """Say at which preload, with a blank before it; nothing where nobody knows."""
+    return "" if preload is None else f" at {preload:g} N"
 
 
 def surface_stage(
@@ -68,7 +90,10 @@ def contact_stage(
 ) -> Page | None:
     """Predict the joint from the session's faces, if the recipe has a contact."""
     part = recipe.contact
-    if part is None or not surfaces:
+    if part is None:
+        return None
+    if not surfaces:
+        remarks.append("No contact prediction: no surface in the session is fitted")
         return None
     stored = None if session.joint is None else session.joint.preload
     preload = part.preload or stored
@@ -89,22 +114,19 @@ def contact_stage(
 
 
 def joint_stage(
-    chain: ModalChain,
-    modes_key: str,
-    recipe: Recipe,
-    stages: StageStore,
-    remarks: list[str],
+    modes: PreloadModes, recipe: Recipe, stages: StageStore, remarks: list[str]
 ) -> Page | None:
-    """Identify the links of the recipe's model from the modes."""
+    """Identify the links of the recipe's model from the modes at a preload."""
     if recipe.identification is None:
         return None
     bench = recipe.models[recipe.identification.model]
-    key = stage_key("joint", bench.model_dump(mode="json"), modes_key)
+    key = stage_key("joint", bench.model_dump(mode="json"), modes.key)
+    at, model = at_words(modes.preload), modes.chain.result.model
     return _page(
-        "joint",
-        "joint identification",
+        f"joint{at}",
+        f"joint identification{at}",
         key,
-        lambda: identification_json(identify_joint(bench, chain.result.model)),
+        lambda: identification_json(identify_joint(bench, model)),
         stages,
         remarks,
     )

@@ -9,6 +9,8 @@
     modes   <- frf, [modes]                 fill    <- modes, samples (lost ones)
     joint   <- modes or fill, the model     gap     <- hits, samples, the model
 
+Modes, and links from them, at each preload; the gap over all of them.
+
 Each stage is kept by content (`stage_store`): change the window, and hits, Kalman
 stage, surfaces and contact are taken as they are.
 """
@@ -37,6 +39,8 @@ from jointbench.station.judge_again import (
 )
 from jointbench.station.preloads import by_preload
 from jointbench.station.process_joint import (
+    PreloadModes,
+    at_words,
     contact_stage,
     gap_stage,
     joint_stage,
@@ -57,23 +61,6 @@ class Refit:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PreloadModes:
-    """Modes at one preload of the joint.
-
-    Attributes:
-        preload: [N], None where nobody said.
-        recordings: names of those behind them.
-        chain: hits, FRF and modes.
-        key: of the stage that the modes came from.
-    """
-
-    preload: float | None
-    recordings: tuple[str, ...]
-    chain: ModalChain
-    key: str
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class ProcessedSession:
     """What a recipe makes of a session.
 
@@ -84,7 +71,7 @@ class ProcessedSession:
         modal: modes at each preload.
         surfaces: structure function and fractal fit of each surface.
         contact: predicted joint, plain data, or None.
-        joint: identified links, plain data, or None.
+        joints: identified links at each preload that has them, plain data.
         gap: verdict on the model, plain data, or None.
         remarks: what could not be done, and why, a line each.
         stages: what was run and what was taken as kept.
@@ -96,7 +83,7 @@ class ProcessedSession:
     modal: tuple[PreloadModes, ...]
     surfaces: tuple[SurfaceChain, ...]
     contact: dict[str, Any] | None
-    joint: dict[str, Any] | None
+    joints: tuple[tuple[float | None, dict[str, Any]], ...]
     gap: dict[str, Any] | None
     remarks: tuple[str, ...]
     stages: StageStore
@@ -134,9 +121,11 @@ def process_session(
         modal=modal,
         surfaces=surfaces,
         contact=contact_stage(session, surfaces, recipe, stages, remarks),
-        joint=None
-        if not modal
-        else joint_stage(modal[0].chain, modal[0].key, recipe, stages, remarks),
+        joints=tuple(
+            (modes.preload, page)
+            for modes in modal
+            if (page := joint_stage(modes, recipe, stages, remarks)) is not None
+        ),
         gap=gap_stage(session, judged, recipe, stages, remarks),
         remarks=tuple(remarks),
         stages=stages,
@@ -190,8 +179,7 @@ def _modal(
             found.append(_modes_at(preload, group, digest, recipe, stages))
         except (BadData, UsageError) as error:
             problems.append(error)
-            at = "" if preload is None else f" at {preload:g} N"
-            remarks.append(f"No modes{at}: {error}")
+            remarks.append(f"No modes{at_words(preload)}: {error}")
     if problems and not found:
         raise problems[0]
     return tuple(found)
@@ -205,7 +193,7 @@ def _modes_at(
     stages: StageStore,
 ) -> PreloadModes:
     settings = chain_settings(recipe)
-    at = "" if preload is None else f" at {preload:g} N"
+    at = at_words(preload)
     keys = [_kalman_key(r, digest, settings) for r in group]
     frf_key = stage_key(
         "frf",

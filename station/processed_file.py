@@ -17,10 +17,11 @@ version alone: two runs write the same.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 import h5py
 
@@ -34,8 +35,10 @@ from jointbench.acquisition.netcdf import (
 from jointbench.acquisition.records import Recording, Verdict
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_streams import free_name
+from jointbench.acquisition.text_files import visible
 from jointbench.station.judge_again import NOT_THERE, VerdictChange
-from jointbench.station.process_session import PreloadModes, ProcessedSession
+from jointbench.station.process_joint import PreloadModes
+from jointbench.station.process_session import ProcessedSession
 from jointbench.station.quantities import Quantity, quantities_of
 from jointbench.station.recipe import Recipe, recipe_content
 from jointbench.station.results_file import write_modal
@@ -61,7 +64,7 @@ class Origin:
     path: Path
     sha256: str
     key: str
-    seconds: float
+    seconds: float = 0.0
 
 
 def processed_path(session: Path, recipe: Recipe) -> Path:
@@ -100,7 +103,7 @@ def _write_origin(
         file,
         {
             "key": origin.key,
-            "input_file": origin.path.name,
+            "input_file": visible(origin.path.name),
             "input_sha256": origin.sha256,
             "recipe_name": recipe.name,
             "software": software_version(),
@@ -196,8 +199,7 @@ def _write_surface(group: h5py.Group, chain: SurfaceChain) -> None:
 
 
 def _write_pages(file: h5py.File, result: ProcessedSession) -> None:
-    for name in ("contact", "joint", "gap"):
-        page = getattr(result, name)
+    for name, page in _pages(result):
         if page is not None:
             text = json.dumps(page, sort_keys=True)
             group = file.require_group("pages").create_group(name)
@@ -206,6 +208,17 @@ def _write_pages(file: h5py.File, result: ProcessedSession) -> None:
         group = file.create_group("remarks")
         words = "what could not be done, and why"
         write_texts(group, "text", result.remarks, "remark", long_name=words)
+
+
+def _pages(
+    result: ProcessedSession,
+) -> Iterator[tuple[str, dict[str, Any] | None]]:
+    """Yield the pages; links at several preloads are one page with a list."""
+    yield "contact", result.contact
+    joints = [{"preload_n": preload} | page for preload, page in result.joints]
+    if joints:
+        yield "joint", joints[0] if len(joints) == 1 else {"preloads": joints}
+    yield "gap", result.gap
 
 
 def _write_stages(file: h5py.File, result: ProcessedSession) -> None:

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.records import Verdict
-from jointbench.station.process_session import PreloadModes, ProcessedSession
+from jointbench.station.process_joint import PreloadModes
+from jointbench.station.process_session import ProcessedSession
 from jointbench.station.surface import SurfaceChain
 
 NAN = float("nan")
@@ -49,18 +50,27 @@ def quantities_of(result: ProcessedSession) -> tuple[Quantity, ...]:
     """Return all numbers of a result, in the order of the chain."""
     return (
         *_hits(result),
-        *(q for modes in result.modal for q in _modes(modes, _preload(result, modes))),
+        *(
+            q
+            for modes in result.modal
+            for q in _modes(modes, _preload(result, modes.preload))
+        ),
         *(q for chain in result.surfaces for q in _surface(chain)),
         *_contact(result.contact or {}),
-        *_joint(result.joint or {}),
+        *(
+            q
+            for preload, page in result.joints
+            for q in _joint(page, _preload(result, preload))
+        ),
         *_gap(result.gap or {}),
     )
 
 
-def _preload(result: ProcessedSession, modes: PreloadModes) -> float:
+def _preload(result: ProcessedSession, own: float | None) -> float:
+    """Return the preload of a part, else of the session [N]; NaN where nobody said."""
     joint = result.session.joint
     stored = None if joint is None else joint.preload
-    preload = modes.preload if modes.preload is not None else stored
+    preload = own if own is not None else stored
     return NAN if preload is None else preload
 
 
@@ -114,15 +124,14 @@ def _contact(page: Mapping[str, Any]) -> Iterator[Quantity]:
         yield Quantity(*where, "tangential_stiffness", "N/m", value, preload=preload)
 
 
-def _joint(page: Mapping[str, Any]) -> Iterator[Quantity]:
-    if not page:
-        return
-    yield Quantity("joint", "", "verdict", "", word=str(page["verdict"]))
+def _joint(page: Mapping[str, Any], preload: float) -> Iterator[Quantity]:
+    verdict = str(page["verdict"])
+    yield Quantity("joint", "", "verdict", "", word=verdict, preload=preload)
     for name, one in page["parameters"].items():
         link, _, quantity = name.rpartition(".")
         sd = NAN if one["sd"] is None else float(one["sd"])
-        value = float(one["value"])
-        yield Quantity("joint", link, quantity, one["unit"], value, sd)
+        numbers = float(one["value"]), sd
+        yield Quantity("joint", link, quantity, one["unit"], *numbers, preload=preload)
 
 
 def _gap(page: Mapping[str, Any]) -> Iterator[Quantity]:

@@ -6,52 +6,47 @@ is chosen by the data, as `jointbench modal` chooses it.
 """
 
 import json
+import re
 from hashlib import sha256
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    Field,
+    model_validator,
+)
 
-from jointbench.acquisition.errors import UnitError
-from jointbench.acquisition.units import parse_value
+from jointbench.acquisition.errors import BadData, JointbenchError
+from jointbench.acquisition.text_files import named, shown
+from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.gap.catalogue import CATALOGUE, check_names
 from jointbench.station.bench_model import BenchModel, Force, Pressure
-from jointbench.station.toml_file import read_toml
+from jointbench.station.toml_file import AUTO, NONE, StrictTable, read_toml, with_unit
 
-AUTO, NONE = "auto", "none"
-
-
-def _quantity(kind: str, *words: str) -> BeforeValidator:
-    """Read text with a unit; of the words, "auto" stands for None and "none" for 0."""
-
-    def parse(value: object) -> object:
-        if isinstance(value, str) and value in words:
-            return None if value == AUTO else 0.0
-        if not isinstance(value, str):
-            # pydantic turns a ValueError, not a TypeError, into a named problem.
-            raise ValueError(  # noqa: TRY004
-                f"write the number with its unit, as text: '{value} ...'"
-            )
-        try:
-            return parse_value(value, kind)
-        except UnitError as error:
-            also = f"; or {' or '.join(map(repr, words))}" if words else ""
-            raise ValueError(f"{error}{also}") from error
-
-    return BeforeValidator(parse)
+_NAME = re.compile(r"\w([\w .-]{0,58}\w)?")
+"""A recipe's name becomes part of file names: of the results, of the ledger."""
 
 
-Seconds = Annotated[float, _quantity("time"), Field(gt=0)]
-Hertz = Annotated[float, _quantity("frequency"), Field(gt=0)]
-Share = Annotated[float, _quantity("ratio"), Field(ge=0, le=1)]
-WindowTime = Annotated[float | None, _quantity("time", AUTO, NONE), Field(ge=0)]
-WindowRate = Annotated[float | None, _quantity("frequency", AUTO, NONE), Field(ge=0)]
+Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
+Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
+Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
+WindowTime = Annotated[float | None, with_unit("time", AUTO, NONE), Field(ge=0)]
+WindowRate = Annotated[float | None, with_unit("frequency", AUTO, NONE), Field(ge=0)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+def _beside(text: str) -> str:
+    """Refuse a file that is not below the recipe's folder."""
+    for path in (Path(text), PureWindowsPath(text)):
+        if path.anchor or ".." in path.parts or not text.isprintable():
+            raise ValueError("name a file beside the recipe, or in a folder below it")
+    return text
 
 
-class HitsPart(_Strict):
+FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
+
+
+class HitsPart(StrictTable):
     """How hits are found and judged again; see `HitCriteria` and `HitLimits`."""
 
     trigger_level: Force | None = None
@@ -70,7 +65,7 @@ class HitsPart(_Strict):
     keep_operator: bool = True
 
 
-class WindowsPart(_Strict):
+class WindowsPart(StrictTable):
     """Windows: a time or a rate, "auto" (chosen by the hits) or "none"."""
 
     force_width: WindowTime = None
@@ -78,13 +73,13 @@ class WindowsPart(_Strict):
     lead: WindowTime = None
 
 
-class FrfPart(_Strict):
+class FrfPart(StrictTable):
     """The estimator of the FRF."""
 
     estimator: Literal["H1", "H2", "Hv"] = "H1"
 
 
-class KalmanPart(_Strict):
+class KalmanPart(StrictTable):
     """The Kalman stage; see `KalmanSettings`."""
 
     use: bool = True
@@ -101,7 +96,7 @@ class KalmanPart(_Strict):
         return self
 
 
-class ModesPart(_Strict):
+class ModesPart(StrictTable):
     """Band, order and choices by hand; see `ModalSettings`."""
 
     band: tuple[Hertz, Hertz] | None = None
@@ -117,14 +112,14 @@ class ModesPart(_Strict):
         return self
 
 
-class SurfacePart(_Strict):
+class SurfacePart(StrictTable):
     """Whether surfaces are fitted, and with which frequency ratio gamma."""
 
     use: bool = True
     gamma: Annotated[float, Field(gt=1)] | None = None
 
 
-class ContactPart(_Strict):
+class ContactPart(StrictTable):
     """What the contact law needs to predict the joint from the session's faces."""
 
     modulus: Pressure
@@ -134,20 +129,20 @@ class ContactPart(_Strict):
     model: str = "ke_3d_modified"
 
 
-class IdentificationPart(_Strict):
+class IdentificationPart(StrictTable):
     """The bench model whose links are identified, beside the recipe."""
 
-    model: str
+    model: FileBeside
 
 
-class GapPart(_Strict):
+class GapPart(StrictTable):
     """The bench model whose gap is examined, and effects left out."""
 
-    model: str
+    model: FileBeside
     without: tuple[str, ...] = ()
 
 
-class Recipe(_Strict):
+class Recipe(StrictTable):
     """A recipe as written; `models` holds what its model files say, by their names."""
 
     name: str = ""
@@ -184,12 +179,33 @@ def read_recipe(path: Path) -> Recipe:
             and rule.
     """
     recipe = read_toml(path, Recipe)
-    named = {
+    name = recipe.name or path.stem
+    if _NAME.fullmatch(name) is None:
+        raise BadData(
+            f"{named(path)}: the recipe's name is {shown(name)}, and becomes part of "
+            "file names: write letters, digits, spaces, dots, - and _, 60 at "
+            "the most, as name = '...' or as the file's own name"
+        )
+    _check_names(recipe, path)
+    wanted = {
         part.model for part in (recipe.identification, recipe.gap) if part is not None
     }
-    models = {name: read_toml(path.parent / name, BenchModel) for name in named}
-    name = recipe.name or path.stem
+    models = {model: read_toml(path.parent / model, BenchModel) for model in wanted}
     return recipe.model_copy(update={"models": models, "name": name})
+
+
+def _check_names(recipe: Recipe, path: Path) -> None:
+    """Refuse names of contact models and effects that nobody has, before any work."""
+    key = ""
+    try:
+        if recipe.contact is not None:
+            key = "contact.model"
+            contact_model(recipe.contact.model)
+        if recipe.gap is not None:
+            key = "gap.without"
+            check_names(recipe.gap.without, CATALOGUE)
+    except JointbenchError as error:
+        raise BadData(f"{named(path)}: key {key!r}: {error}") from error
 
 
 def recipe_content(recipe: Recipe) -> dict[str, object]:

@@ -2,11 +2,12 @@
 """Records as plain arrays and one JSON text, and back; nothing is ever pickled.
 
 Only records that the asked-for type can hold are made on reading, whatever the file
-says, and their own checks run again.
+says; each field must be of its type, and the records' own checks run again.
 """
 
 import io
 import json
+import types
 import typing
 import zipfile
 from collections.abc import Mapping
@@ -23,7 +24,7 @@ _TEXT = "record"
 _KIND, _ARRAY, _COMPLEX, _MAP, _LIST = "@kind", "@array", "@complex", "@map", "@list"
 _DAMAGE = (
     *(ValueError, TypeError, KeyError, IndexError, AttributeError, EOFError),
-    *(OSError, zipfile.BadZipFile, NotImplementedError, RecursionError),
+    *(OSError, zipfile.BadZipFile, NotImplementedError, RecursionError, MemoryError),
 )
 
 
@@ -55,13 +56,23 @@ def decode_record(data: bytes, kind: type[Record]) -> Record:
         FormatError: the bytes are damaged, or hold something else than `kind`.
     """
     try:
+        _require_stored(data)
         with np.load(io.BytesIO(data), allow_pickle=False) as content:
             arrays = {name: content[name] for name in content.files}
         tree = json.loads(arrays.pop(_TEXT).tobytes())
         value = _made(tree, arrays, _known(kind))
+        if not _is_a(value, kind):
+            raise TypeError(f"no {kind}")
     except _DAMAGE as error:
         raise FormatError(f"a kept stage is damaged ({error})") from error
     return typing.cast(Record, value)
+
+
+def _require_stored(data: bytes) -> None:
+    """Refuse a zip that unpacks to more than it is; `encode_record` packs nothing."""
+    with zipfile.ZipFile(io.BytesIO(data)) as packed:
+        if any(one.compress_type != zipfile.ZIP_STORED for one in packed.infolist()):
+            raise ValueError("it is packed")
 
 
 def _plain(value: Any, arrays: dict[str, np.ndarray[Any, Any]]) -> Any:
@@ -110,6 +121,30 @@ def _made(
         return kind(tree["value"])
     parts = tree["fields"]
     return kind(**{name: _made(part, arrays, known) for name, part in parts.items()})
+
+
+def _is_a(value: Any, kind: Any) -> bool:
+    """Tell whether a value is of a type, with all that it holds."""
+    origin, parts = typing.get_origin(kind) or kind, typing.get_args(kind)
+    if origin in {typing.Any, object}:
+        return True
+    if origin in {typing.Union, types.UnionType}:
+        return any(_is_a(value, part) for part in parts)
+    if origin is typing.Literal:
+        return value in parts
+    if origin is float:
+        return isinstance(value, float | int) and not isinstance(value, bool)
+    if not isinstance(value, origin):
+        return False
+    if isinstance(value, tuple):
+        kinds = parts[:1] * len(value) if parts[1:] == (...,) else parts
+        return not parts or (len(kinds) == len(value) and all(map(_is_a, value, kinds)))
+    if isinstance(value, Mapping) and parts:
+        return all(_is_a(k, parts[0]) and _is_a(v, parts[1]) for k, v in value.items())
+    if is_dataclass(value):
+        hints = typing.get_type_hints(type(value))
+        return all(_is_a(getattr(value, f.name), hints[f.name]) for f in fields(value))
+    return True
 
 
 def _known(kind: Any) -> dict[str, type]:

@@ -27,10 +27,10 @@ stiffness in ``"V/V"``, a damping in ``"V s/V"``.
 import re
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from jointbench.acquisition.errors import UnitError
-from jointbench.acquisition.units import is_unit, parse_value
+from jointbench.acquisition.units import is_unit
+from jointbench.station.toml_file import StrictTable, with_unit
 
 MOST_SAMPLES = 4_000_000
 """Samples of all realisations of a stretch: the engine holds a few dozen copies."""
@@ -40,25 +40,10 @@ _STAND_INS = {"mass": (2, "kg"), "stiffness": (0, "N/m"), "damping": (1, "N s/m"
 _ORDER = {"displacement": 0, "velocity": 1, "acceleration": 2}
 
 
-def _hertz(value: object) -> float:
-    if not isinstance(value, str):
-        # pydantic turns a ValueError, not a TypeError, into a named problem.
-        message = f"write the number with its unit, as text: '{value} Hz'"
-        raise ValueError(message)  # noqa: TRY004
-    try:
-        return parse_value(value, "frequency")
-    except UnitError as error:
-        raise ValueError(str(error)) from error
-
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
 Sample = Annotated[int, Field(ge=0, le=1_000_000_000)]
 
 
-class StretchTable(_Strict):
+class StretchTable(StrictTable):
     """Realisations of one length: first samples, samples of each, lead before each."""
 
     starts: tuple[Sample, ...] = Field(min_length=1, max_length=1000)
@@ -83,7 +68,7 @@ class ScoredTable(StretchTable):
     name: str = Field(min_length=1)
 
 
-class RecordTable(_Strict):
+class RecordTable(StrictTable):
     """Where input and output are, in which units, and which parts train and score.
 
     The input drives the body `driven`; left out, it is the one with the channel.
@@ -94,7 +79,7 @@ class RecordTable(_Strict):
     input_unit: str = Field(min_length=1)
     output: str
     output_unit: str = Field(min_length=1)
-    sample_rate: Annotated[float, BeforeValidator(_hertz), Field(gt=0)]
+    sample_rate: Annotated[float, with_unit("frequency"), Field(gt=0)]
     driven: str | None = None
     remove_mean: bool = False
     lead: Sample = 1024

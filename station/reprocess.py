@@ -5,20 +5,26 @@ What is done is known by the results that are there, so that Ctrl-C, a kill or a
 loss cost at most the files in hand; call again and it goes on.
 """
 
+import os
 import signal
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.station.archive_files import common_folder, session_files
+from jointbench.acquisition.text_files import named, visible
+from jointbench.station.archive_files import (
+    archive_folder,
+    common_folder,
+    session_files,
+)
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
 from jointbench.station.output import console, table, write_json
-from jointbench.station.outputs import check_outputs
+from jointbench.station.outputs import check_outputs, make_folder, require_folder
 from jointbench.station.process import STAGES_FOLDER, outcome_json, recipe_or_default
 from jointbench.station.process_file import Outcome, State, Task
 from jointbench.station.processed_file import processed_path
@@ -96,19 +102,31 @@ def cluster_backend(settings: ClusterSettings) -> Backend:
 
 
 def make_tasks(
-    files: Sequence[Path], recipe: Recipe, places: Places, *, again: bool = False
+    files: Sequence[Path],
+    recipe: Recipe,
+    places: Places,
+    *,
+    root: Path | None = None,
+    again: bool = False,
 ) -> list[Task]:
     """Return one task a file, each with the place of its result.
+
+    Args:
+        files: sessions.
+        recipe: how they are read.
+        places: where to write.
+        root: folder whose tree the results have again; what all have in common if None.
+        again: process what has a result, too.
 
     Raises:
         UsageError: two files would have the same result.
     """
-    root = common_folder(files)
+    root = root or common_folder(files)
     tasks = []
     for path in files:
         result = processed_path(path, recipe)
         if places.results is not None:
-            result = places.results / result.absolute().relative_to(root)
+            result = places.results / os.path.relpath(result, root)
         tasks.append(Task(path, result, places.stages, again=again))
     taken: dict[Path, Path] = {}
     for task in tasks:
@@ -147,13 +165,13 @@ def reprocess(
         try:
             with closing(_generator(backend(known, recipe))) as outcomes:
                 for outcome in outcomes:
+                    if outcome.unwritable:  # no fault of the file
+                        summary.unwritable = outcome.reason
+                        break
                     ledger.outcome(outcome)
                     summary.outcomes.append(outcome)
                     tell(summary.counts)
                     _prune(places, len(summary.outcomes))
-                    if outcome.unwritable:
-                        summary.unwritable = outcome.reason
-                        break
         except KeyboardInterrupt:
             summary.interrupted = True
         summary.seconds = time.monotonic() - begun
@@ -177,9 +195,10 @@ def _remembering(task: Task, ledger: Ledger) -> Task:
 def _make_room(tasks: Sequence[Task]) -> None:
     """Make the folders of the results, and drop what a killed run left half written."""
     for folder in {task.result.parent for task in tasks}:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
     for task in tasks:
-        task.result.with_name(f"{task.result.name}.part").unlink(missing_ok=True)
+        with suppress(OSError):
+            task.result.with_name(f"{task.result.name}.part").unlink(missing_ok=True)
 
 
 def _prune(places: Places, met: int) -> None:
@@ -231,8 +250,9 @@ def run_reprocess(
     check_outputs([recipe] if recipe else [], [json_target])
     made = recipe_or_default(recipe)
     files = session_files(patterns)
-    here = places(common_folder(files), made)
-    tasks = make_tasks(files, made, here, again=again)
+    root = archive_folder(patterns)
+    here = places(root, made)
+    tasks = make_tasks(files, made, here, root=root, again=again)
     summary = reprocess(tasks, made, here, backend)
     _show(summary, len(tasks), here, json_target)
     write_json(json_target, _json(summary, len(tasks), made, here))
@@ -252,10 +272,11 @@ def default_places(
     stages_bytes: int,
 ) -> Callable[[Path, Recipe], Places]:
     """Return what makes the places of a run; what is None lies beside the results."""
+    require_folder(stages, "--stages")
 
     def places(root: Path, recipe: Recipe) -> Places:
         home = results or root
-        home.mkdir(parents=True, exist_ok=True)
+        make_folder(home)
         kept = stages or home / STAGES_FOLDER
         return Places(
             results,
@@ -278,7 +299,7 @@ def _show(
     screen.print(table("Reprocessed", ("files", "number"), rows))
     failed = summary.failed
     for outcome in failed[:MOST_SHOWN]:
-        screen.print(f"quarantined: {outcome.path}: {outcome.reason}", soft_wrap=True)
+        screen.print(f"quarantined: {_reason(outcome)}", soft_wrap=True)
     if len(failed) > MOST_SHOWN:
         screen.print(f"and {len(failed) - MOST_SHOWN} more, see the quarantine list")
     screen.print(f"\nledger: {places.ledger}", soft_wrap=True)
@@ -286,6 +307,13 @@ def _show(
         screen.print(f"quarantine: {places.quarantine}", soft_wrap=True)
     if summary.interrupted:
         screen.print("interrupted; the same command goes on where it stopped")
+
+
+def _reason(outcome: Outcome) -> str:
+    """Return why a file failed; most reasons begin with its name."""
+    if named(outcome.path) in outcome.reason:
+        return outcome.reason
+    return f"{visible(str(outcome.path))}: {outcome.reason}"
 
 
 def _json(

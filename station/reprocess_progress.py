@@ -11,7 +11,6 @@ from rich.progress import (
     MofNCompleteColumn,
     Progress,
     TextColumn,
-    TimeRemainingColumn,
 )
 
 from jointbench.station.output import WIDTH_WITHOUT_TERMINAL
@@ -40,7 +39,6 @@ def run_progress(total: int) -> Iterator[Tell]:
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[words]}"),
-        TimeRemainingColumn(),
     )
     begun = time.monotonic()
     with Progress(*columns, console=screen) as bars:
@@ -49,7 +47,8 @@ def run_progress(total: int) -> Iterator[Tell]:
         def tell(counts: Counts) -> None:
             done = sum(counts.values())
             seconds = time.monotonic() - begun
-            words = f"{counts[State.FAILED]} failed, {rate_words(counts, seconds)}"
+            failed = f"{counts[State.FAILED]} failed"
+            words = f"{failed}, {rest_words(counts, total, seconds)}"
             bars.update(bar, completed=done, words=words)
 
         yield tell
@@ -79,20 +78,28 @@ def progress_line(counts: Counts, total: int, seconds: float) -> str:
     """
     met = sum(counts.values())
     words = ", ".join(f"{counts[state]} {state.value}" for state in State)
-    left = (total - met) * seconds / met if met else 0.0
-    return (
-        f"{met}/{total} files: {words}; {rate_words(counts, seconds)}, "
-        f"{time_words(left)} left"
-    )
+    return f"{met}/{total} files: {words}; {rest_words(counts, total, seconds)}"
+
+
+def rest_words(counts: Counts, total: int, seconds: float) -> str:
+    """Return how fast it goes, and how long what is left takes at that rate."""
+    worked, left = _worked(counts), total - sum(counts.values())
+    time_left = left * seconds / worked if worked else 0.0
+    return f"{rate_words(counts, seconds)}, {time_words(time_left)} left"
 
 
 def rate_words(counts: Counts, seconds: float) -> str:
     """Return files a second, or seconds a file where that is slower."""
-    met = sum(counts.values())
-    if not met or seconds <= 0:
+    worked = _worked(counts)
+    if not worked or seconds <= 0:
         return "- files/s"
-    rate = met / seconds
+    rate = worked / seconds
     return f"{rate:.3g} files/s" if rate >= 1 else f"{1 / rate:.3g} s/file"
+
+
+def _worked(counts: Counts) -> int:
+    """Return the files that took time: skipping thousands tells nothing of the rest."""
+    return sum(counts.values()) - counts[State.SKIPPED] or sum(counts.values())
 
 
 def time_words(seconds: float) -> str:

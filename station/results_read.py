@@ -5,7 +5,7 @@ Layout 1 (`jointbench modal`): one FRF and its modes. Layout 2 (`process`): ever
 """
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from jointbench.station.processed_file import PROCESSED_SCHEMA
 from jointbench.station.quantities import Quantity
 from jointbench.station.results_file import SCHEMA as MODAL_SCHEMA
 
+_FAMILY = MODAL_SCHEMA.partition("/")[0] + "/"
 FACTS = (
     "input_file",
     "input_sha256",
@@ -71,6 +72,36 @@ class StoredResult:
     remarks: tuple[str, ...] = ()
 
 
+def without_copies(
+    results: Sequence[StoredResult],
+) -> tuple[list[StoredResult], list[StoredResult]]:
+    """Part results from those that say the same of the same content.
+
+    A session kept under two names has two results; to count both would make one
+    measurement two.
+
+    Returns:
+        The results, each once, and the copies that were left out.
+    """
+    kept: dict[str, StoredResult] = {}
+    copies: list[StoredResult] = []
+    for result in results:
+        own = result.key or str(result.path)
+        if kept.setdefault(own, result) is not result:
+            copies.append(result)
+    return list(kept.values()), copies
+
+
+def is_results(path: Path) -> bool:
+    """Tell results of any layout, later ones too, from sessions, whatever their names.
+
+    Raises:
+        BadData: it is neither, or asks for more than a result would.
+    """
+    with open_guarded(path) as file, damage_named(path):
+        return str(read_attribute(file, "schema")).startswith(_FAMILY)
+
+
 def read_result(path: Path) -> StoredResult:
     """Read a results file of any layout.
 
@@ -84,8 +115,7 @@ def read_result(path: Path) -> StoredResult:
             return _processed(file, path)
         if schema == MODAL_SCHEMA:
             return _modal(file, path)
-        family = MODAL_SCHEMA.partition("/")[0]
-        later = isinstance(schema, str) and schema.startswith(f"{family}/")
+        later = isinstance(schema, str) and schema.startswith(_FAMILY)
         way = "a later jointbench reads it" if later else "`jointbench inspect` tells"
         raise FormatError(
             f"{named(path)} has the layout {shown(schema)}, results have "

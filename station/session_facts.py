@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 from jointbench.acquisition.session import Session
+from jointbench.acquisition.text_files import visible
 
 _SPECIMEN = re.compile(r"\bspecimen\s*[:=]\s*([^;,\n]+)", re.IGNORECASE)
 
@@ -36,7 +37,7 @@ def session_facts(session: Session, path: Path) -> dict[str, str | float | bool 
 def specimen_of(session: Session, path: Path) -> str:
     """Return what the notes call the specimen ("specimen: P7"), else its folder."""
     named = _SPECIMEN.search(session.notes)
-    return named[1].strip() if named else path.absolute().parent.name
+    return named[1].strip() if named else visible(path.absolute().parent.name)
 
 
 def _torque(session: Session) -> float | None:

@@ -2,11 +2,13 @@
 """Stages kept by content: a stage is run again only if what it depends on changed.
 
 The key of a stage is the SHA-256 of its name, its settings, the version of this program
-and the keys of the stages before it. A kept stage that is damaged is run again.
+and the keys of the stages before it. A file begins with its key and the SHA-256 of the
+rest: one that is damaged, or lies under another's name, is run again.
 """
 
 import json
 import os
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field, is_dataclass
@@ -20,9 +22,13 @@ from jointbench.acquisition.session import software_version
 from jointbench.station.record_codec import decode_record, encode_record
 
 Record = TypeVar("Record")
-SUFFIX = ".stage"
-STAGE_LAYOUT = 1
-"""Counts up when a stage computes something else from the same settings."""
+SUFFIX, PART = ".stage", ".part"
+_KEY = 64
+"""Characters of a key."""
+_LEFT_BEHIND = 3600.0
+"""Age at which a half written stage is nobody's [s]."""
+STAGE_LAYOUT = 2
+"""Counts up when a stage, or a result, holds something else for the same settings."""
 
 
 def stage_key(name: str, settings: object, *inputs: str) -> str:
@@ -87,7 +93,7 @@ class StageStore:
         record = make()
         self.computed.append(name)
         if self.folder is not None:
-            _write(self._path(key), encode_record(record))
+            _write(self._path(key), _sealed(key, encode_record(record)))
         return record
 
     def _path(self, key: str) -> Path:
@@ -99,19 +105,33 @@ class StageStore:
             return None
         path = self._path(key)
         try:
-            data = path.read_bytes()
+            record = decode_record(_unsealed(key, path), kind)
             os.utime(path)  # what was used last is dropped last
-            return decode_record(data, kind)
         except (OSError, FormatError):
             return None
+        return record
+
+
+def _sealed(key: str, data: bytes) -> bytes:
+    return f"{key} {sha256(data).hexdigest()}\n".encode() + data
+
+
+def _unsealed(key: str, path: Path) -> bytes:
+    if not path.is_file():
+        raise FormatError(f"there is no file '{path}'")
+    data = path.read_bytes()
+    head, _, content = data.partition(b"\n")
+    if head + b"\n" != _sealed(key, content)[: len(head) + 1]:
+        raise FormatError(f"'{path}' does not hold what its name says")
+    return content
 
 
 def _write(path: Path, data: bytes) -> None:
     """Write whole or not at all; a disk that is full keeps nothing, and that is fine.
 
-    No fsync: after a power loss the check sum inside tells, and the stage runs again.
+    No fsync: after a power loss the digest inside tells, and the stage runs again.
     """
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    part = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         part.write_bytes(data)
@@ -124,6 +144,8 @@ def _write(path: Path, data: bytes) -> None:
 def prune_stages(folder: Path, most_bytes: int) -> int:
     """Drop the stages that were not used for longest until the rest fits.
 
+    What a killed worker left half written goes as well.
+
     Args:
         folder: of the stages.
         most_bytes: that may stay [bytes].
@@ -132,10 +154,15 @@ def prune_stages(folder: Path, most_bytes: int) -> int:
         How many were dropped.
     """
     found = []
-    for path in folder.glob(f"*/*{SUFFIX}"):
+    now = time.time()
+    for path in folder.glob(f"??/{'?' * _KEY}{SUFFIX}*"):
         try:
             info = path.stat()
         except OSError:
+            continue
+        if path.suffix == PART:
+            if now - info.st_mtime > _LEFT_BEHIND:
+                path.unlink(missing_ok=True)
             continue
         found.append((info.st_mtime, info.st_size, path))
     total, dropped = sum(size for _, size, _ in found), 0

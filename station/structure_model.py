@@ -8,10 +8,8 @@ bench (`bench_model`). Units are written beside every number.
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
-from jointbench.acquisition.errors import UnitError
-from jointbench.acquisition.units import parse_value
 from jointbench.analysis.structures.assembly import Material
 from jointbench.analysis.structures.elements import ElementKind
 from jointbench.analysis.structures.mesh import Mesh, box_mesh
@@ -35,46 +33,27 @@ from jointbench.analysis.structures.structure import (
     build_structure,
 )
 from jointbench.station.structure_contact import TheoryTable, joint_of
+from jointbench.station.toml_file import StrictTable, with_unit
 
-
-def _quantity(kind: str) -> BeforeValidator:
-    def parse(value: object) -> float:
-        if not isinstance(value, str):
-            # pydantic turns a ValueError, not a TypeError, into a named problem.
-            raise ValueError(  # noqa: TRY004
-                f"write the number with its unit, as text: '{value} ...'"
-            )
-        try:
-            return parse_value(value, kind)
-        except UnitError as error:
-            raise ValueError(str(error)) from error
-
-    return BeforeValidator(parse)
-
-
-Length = Annotated[float, _quantity("length")]
+Length = Annotated[float, with_unit("length")]
 Point = tuple[Length, Length, Length]
 Span = tuple[Length, Length]
-Frequency = Annotated[float, _quantity("frequency"), Field(gt=0)]
-Stiffness = Annotated[float, _quantity("stiffness"), Field(ge=0)]
-Share = Annotated[float, _quantity("ratio"), Field(gt=0, lt=1)]
-Trust = Annotated[float, _quantity("ratio"), Field(ge=0, lt=1)]
+Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
+Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
+Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
+Trust = Annotated[float, with_unit("ratio"), Field(ge=0, lt=1)]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class MaterialTable(_Strict):
+class MaterialTable(StrictTable):
     """An isotropic solid: modulus [Pa], density [kg/m^3], loss factor [-]."""
 
-    youngs_modulus: Annotated[float, _quantity("pressure"), Field(gt=0)]
-    density: Annotated[float, _quantity("density"), Field(gt=0)]
+    youngs_modulus: Annotated[float, with_unit("pressure"), Field(gt=0)]
+    density: Annotated[float, with_unit("density"), Field(gt=0)]
     poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5)] = 0.3
     loss_factor: Annotated[float, Field(ge=0, lt=1)] = 0.0
 
 
-class SolidTable(_Strict):
+class SolidTable(StrictTable):
     """A box with cells, or a mesh file; K and M files replace the assembly."""
 
     material: str | None = None
@@ -100,7 +79,7 @@ class SolidTable(_Strict):
         return self
 
 
-class PatchTable(_Strict):
+class PatchTable(StrictTable):
     """A part of the joint's plane: a rectangle, or a bolt spot."""
 
     rectangle: tuple[Span, Span] | None = None
@@ -115,7 +94,7 @@ class PatchTable(_Strict):
         return self
 
 
-class JointTable(_Strict):
+class JointTable(StrictTable):
     """Where two bodies, or a body and ``ground``, touch."""
 
     between: tuple[str, str]
@@ -124,7 +103,7 @@ class JointTable(_Strict):
     glued: bool = False
 
 
-class SupportTable(_Strict):
+class SupportTable(StrictTable):
     """A face held by the ground; stiffness: normal and two tangential totals."""
 
     body: str
@@ -133,23 +112,23 @@ class SupportTable(_Strict):
     stiffness: tuple[Stiffness, Stiffness, Stiffness] = (0.0, 0.0, 0.0)
 
 
-class SensorTable(_Strict):
+class SensorTable(StrictTable):
     """A channel, or a hit point: where it sits, its direction, the mass on it."""
 
     body: str
     position: Point
     direction: tuple[float, float, float]
-    mass: Annotated[float, _quantity("mass"), Field(ge=0)] = 0.0
+    mass: Annotated[float, with_unit("mass"), Field(ge=0)] = 0.0
 
 
-class MeasuredTable(_Strict):
+class MeasuredTable(StrictTable):
     """Frequencies as a paper prints them, where there is no session."""
 
     frequencies: tuple[Frequency, ...] = Field(min_length=1)
     relative_sd: Share = 0.002
 
 
-class IdentifyTable(_Strict):
+class IdentifyTable(StrictTable):
     """What to identify from: frequencies, modes (with shapes) or the FRFs.
 
     The standard deviations, relative, are those of the model (mesh, material): they
@@ -166,15 +145,15 @@ class IdentifyTable(_Strict):
     damping_sd: Trust = 0.0
 
 
-class StructureModel(_Strict):
+class StructureModel(StrictTable):
     """A meshed structure and what is sought of its joints."""
 
-    materials: dict[str, MaterialTable] = {}
+    materials: dict[str, MaterialTable] = Field(default_factory=dict)
     bodies: dict[str, SolidTable] = Field(min_length=1)
     joints: dict[str, JointTable] = Field(min_length=1)
     supports: tuple[SupportTable, ...] = ()
-    sensors: dict[str, SensorTable] = {}
-    hits: dict[str, SensorTable] = {}
+    sensors: dict[str, SensorTable] = Field(default_factory=dict)
+    hits: dict[str, SensorTable] = Field(default_factory=dict)
     measured: MeasuredTable | None = None
     identify: IdentifyTable = IdentifyTable()
     contact: TheoryTable | None = None

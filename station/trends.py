@@ -82,17 +82,27 @@ class Trend:
     significance: float
 
     @staticmethod
-    def point(row: TableRow, over: str) -> TrendPoint:
+    def point(row: TableRow, over: str, way: str = "") -> TrendPoint:
         """Return a row of the table as a point of a trend.
+
+        Args:
+            row: of the table.
+            over: one of `OVER`.
+            way: how the result was made; results of two ways are two quantities.
 
         Raises:
             UsageError: `over` is nothing that a trend can go over.
         """
-        if over not in OVER:
-            raise UsageError(f"--trend is {over!r}; write {', '.join(OVER)}")
-        words = f"{row.part} {row.item} {row.name}".replace("  ", " ")
+        check_trend(over)
+        words = f"{way}{row.part} {row.item} {row.name}".replace("  ", " ")
         at = getattr(row, over)
         return TrendPoint(words, row.unit, at, row.value, row.sd)
+
+
+def check_trend(over: str) -> None:
+    """Raise `UsageError` where `over` is nothing that a trend can go over."""
+    if over not in OVER:
+        raise UsageError(f"--trend is {over!r}; write {', '.join(OVER)}")
 
 
 def trends_of(points: Sequence[TrendPoint]) -> tuple[Trend, ...]:
@@ -210,8 +220,8 @@ def _over(trend: Trend, over: str) -> str:
         return ", ".join(f"{name}: {with_sd(m, s)}" for name, m, s in trend.groups[:6])
     if math.isnan(trend.slope):
         return "-"
-    per = f"{_unit(trend.unit)}/({OVER[over]})".lstrip()
-    return f"{with_sd(trend.slope, trend.slope_sd)} {per}"
+    below = f"({OVER[over]})" if " " in OVER[over] else OVER[over]
+    return f"{with_sd(trend.slope, trend.slope_sd)} {trend.unit}/{below}"
 
 
 def _unit(unit: str) -> str:

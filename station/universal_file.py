@@ -8,19 +8,19 @@ Source:
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
-from jointbench.acquisition.arrays import ComplexArray
+from jointbench.acquisition.arrays import ComplexArray, FloatArray
 from jointbench.signal.frf import Frf, FrfKind
-from jointbench.signal.modal_model import ModalModel
 from jointbench.station.outputs import write_text
 
 _EDGE = "    -1"
 _WIDTH = 80
 _FRF = 4
 _COMPLEX_DOUBLE = 6
-_UNEVEN = 0
+_UNEVEN, _EVEN = 0, 1
 _FREQUENCY = 18
 _FORCE = 13
 # Data set 55: structural, complex mode, 3 translations, displacement, complex.
@@ -31,6 +31,22 @@ _RESPONSE = {
     FrfKind.MOBILITY: (11, "Velocity", "m/s"),
     FrfKind.ACCELERANCE: (12, "Acceleration", "m/s^2"),
 }
+
+
+class Modes(Protocol):
+    """What data set 55 takes of modes."""
+
+    @property
+    def natural_frequency(self) -> FloatArray:
+        """[Hz], shape (n_modes,)."""
+
+    @property
+    def poles(self) -> ComplexArray:
+        """[rad/s], shape (n_modes,)."""
+
+    @property
+    def shapes(self) -> ComplexArray:
+        """Shape (n_modes, n_outputs)."""
 
 
 def write_universal_frf(path: Path, frf: Frf) -> None:
@@ -49,7 +65,7 @@ def write_universal_frf(path: Path, frf: Frf) -> None:
     write_text(path, "\n".join(lines) + "\n")
 
 
-def write_universal(path: Path, frf: Frf, model: ModalModel) -> None:
+def write_universal(path: Path, frf: Frf, model: Modes) -> None:
     """Write FRFs (58) and mode shapes (55) into one universal file.
 
     Args:
@@ -68,7 +84,7 @@ def write_universal(path: Path, frf: Frf, model: ModalModel) -> None:
     write_text(path, "\n".join(lines) + "\n")
 
 
-def _shape_set(model: ModalModel, number: int) -> Iterator[str]:
+def _shape_set(model: Modes, number: int) -> Iterator[str]:
     """Yield a complex mode: pole and Modal A as data set 55 defines them."""
     pole = model.poles[number]
     yield from (_EDGE, "    55")
@@ -98,16 +114,33 @@ def _data_set(frf: Frf, row: int, column: int) -> Iterator[str]:
         f"{_FRF:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{row + 1:10d}{0:4d}"
         f" {'NONE':10s}{column + 1:10d}{0:4d}"
     )
-    count = frf.frequency.size
-    yield f"{_COMPLEX_DOUBLE:10d}{count:10d}{_UNEVEN:10d}" + f"{0.0:13.5e}" * 3
+    axis, step = frf.frequency, _step(frf.frequency)
+    spacing = _UNEVEN if step is None else _EVEN
+    begin = 0.0 if step is None else axis[0]
+    yield (
+        f"{_COMPLEX_DOUBLE:10d}{axis.size:10d}{spacing:10d}"
+        f"{begin:13.5e}{step or 0.0:13.5e}{0.0:13.5e}"
+    )
     yield axis_line(_FREQUENCY, "Frequency", "Hz")
     yield axis_line(code, word, unit)
     yield axis_line(_FORCE, "Force", "N")
     yield axis_line(0, "NONE", "NONE")
     response: ComplexArray = frf.response[row, column]
-    for frequency, value in zip(frf.frequency, response, strict=True):
-        yield f"{frequency:20.11e}{value.real:20.11e}{value.imag:20.11e}"
+    values = [f"{value.real:20.11e}{value.imag:20.11e}" for value in response]
+    if step is None:
+        yield from (f"{f:13.5e}{v}" for f, v in zip(axis, values, strict=True))
+    else:
+        yield from ("".join(values[i : i + 2]) for i in range(0, len(values), 2))
     yield _EDGE
+
+
+def _step(axis: FloatArray) -> float | None:
+    """Return the step of an even axis, None for an uneven one."""
+    if axis.size < 2:
+        return None
+    step = float(axis[-1] - axis[0]) / (axis.size - 1)
+    even = np.allclose(np.diff(axis), step, rtol=1e-6, atol=0.0)
+    return step if even else None
 
 
 def axis_line(code: int, name: str, unit: str) -> str:

@@ -6,6 +6,7 @@ died, and a worker that hangs is ended without the others. A worker retires afte
 files. All of them die with their parent: each watches a line that only it holds open.
 """
 
+import logging
 import multiprocessing
 import os
 import signal
@@ -22,6 +23,7 @@ from multiprocessing.process import BaseProcess
 from jointbench.station.process_file import Outcome, State, Task, process_task
 from jointbench.station.recipe import Recipe
 
+logger = logging.getLogger(__name__)
 ONE_THREAD = dict.fromkeys(
     (
         "OMP_NUM_THREADS",
@@ -166,34 +168,61 @@ def run_pool(
 ) -> Iterator[Outcome]:
     """Process files in a pool; yield what became of each, in the order of finishing.
 
-    Close the generator to stop: files in hand are finished and yielded no more.
+    Close the generator to stop: files in hand are finished and yielded no more. Where
+    Ctrl-C meets it, they are finished and yielded; a second Ctrl-C ends them, too.
 
     Args:
         tasks: one a file.
         recipe: how to read them.
         settings: of the pool.
+
+    Raises:
+        KeyboardInterrupt: it was stopped by Ctrl-C.
     """
     context = _context()
     lifeline, held = context.Pipe(duplex=False)
     pool = _Pool(settings, recipe, context, lifeline, deque(tasks), [], {})
     try:
-        pool.hand_out()
-        while pool.workers:
-            ready = wait([worker.pipe for worker in pool.workers], timeout=_LOOK)
-            told = [
-                pool.outcome_of(worker)
-                for worker in list(pool.workers)
-                if worker.pipe in ready
-            ]
-            told += pool.overdue()
-            pool.hand_out()
-            yield from (outcome for outcome in told if outcome is not None)
-            for worker in [w for w in pool.workers if w.task is None]:
-                pool.retire(worker)
+        yield from _work_off(pool)
+    except KeyboardInterrupt:
+        logger.warning("finishing the files in hand; Ctrl-C again ends them, too")
+        yield from _in_hand(pool)
+        raise
     finally:
         _finish(pool)
         held.close()
         lifeline.close()
+
+
+def _work_off(pool: _Pool) -> Iterator[Outcome]:
+    pool.hand_out()
+    while pool.workers:
+        ready = wait([worker.pipe for worker in pool.workers], timeout=_LOOK)
+        told = [
+            pool.outcome_of(worker)
+            for worker in list(pool.workers)
+            if worker.pipe in ready
+        ]
+        told += pool.overdue()
+        pool.hand_out()
+        yield from (outcome for outcome in told if outcome is not None)
+        for worker in [w for w in pool.workers if w.task is None]:
+            pool.retire(worker)
+
+
+def _in_hand(pool: _Pool) -> Iterator[Outcome]:
+    """Yield what becomes of the files in hand; interrupted, end their workers."""
+    pool.waiting.clear()
+    try:
+        for worker in [w for w in pool.workers if w.task is not None]:
+            if worker.pipe.poll(pool.settings.time_limit):
+                outcome = pool.outcome_of(worker)
+                if outcome is not None:
+                    yield outcome
+    except KeyboardInterrupt:
+        for worker in list(pool.workers):
+            pool.drop(worker)
+        raise
 
 
 def _finish(pool: _Pool) -> None:

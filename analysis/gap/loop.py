@@ -71,7 +71,7 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     fits = race(bench, base, screening, bench.candidates, progress)
     refined, fits, judged = judge(bench, fits, base, progress, screening)
     for count in range(1, MOST_EFFECTS):
-        if judged.passed or not fits or len(fits[0].candidates) < count:
+        if not judged.unexplained or not fits or len(fits[0].candidates) < count:
             break
         firsts = fits[: FIRSTS if count == 1 else 1]
         if count > 1 and not _apart(firsts[0]):

@@ -31,17 +31,26 @@ NOISE_SHARE = 0.2
 WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
 MODEL_ERROR = {
-    "friction": 1e-4,
-    "stiffness": 2e-5,
-    "contact": 2e-5,
+    "iwan": 5e-5,
+    "coulomb": 1e-5,
+    "friction": 1e-6,
+    "stiffness": 1e-7,
+    "contact": 1e-6,
     "damping": 1e-6,
     "converter": 2e-5,
 }
-"""Share of the base's excess chi2 that a right law may leave, by its family: sliders
-are never quite those of the joint, and kinks fall between steps, or samples."""
+"""Share of the base's excess chi2 that a right law may leave, by its name or family:
+an Iwan element has as many sliders as its maker gave it, a stop closes between steps,
+a smooth law is as exact as its march."""
 EXACT = 1e-9
 """The same for what is linear or acts on a channel: it is as exact as the base, and
 any more would hide a second effect behind a great first one."""
+ELSEWHERE = 2e-5
+"""The most that a law may leave of its error at other places than its own."""
+AT_THE_END = 1e-3
+"""Share of its range within which a parameter counts as standing at its end."""
+LOOSE = 0.3
+"""Sd over the range beyond which a parameter stands nowhere in particular."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +63,8 @@ class Gate:
         excess: chi2/dof - 1 [-].
         allowed: what noise and model error allow of it [-].
         remaining: largest directed drop that is left.
+        unexplained: records or sheet hold more than the fit explains, so that a
+            further effect may help.
     """
 
     passed: bool
@@ -61,6 +72,7 @@ class Gate:
     excess: float
     allowed: float
     remaining: float
+    unexplained: bool
 
 
 def gate(
@@ -96,31 +108,40 @@ def gate(
         reason = unlike
     elif np.abs(fit.pulls).max() > PULL_LIMIT:
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
-    elif fit.candidates and weakest(fit, (base, *others)) < AMPLITUDE_SD:
-        sure = weakest(fit, (base, *others))
-        reason = f"an effect is only {sure:.1f} sigma from off"
-    return Gate(not reason, reason, excess, allowed, remaining)
+    unexplained = bool(reason)
+    reason = reason or _doubt(fit, (base, *others))
+    return Gate(not reason, reason, excess, allowed, remaining, unexplained)
+
+
+def _doubt(fit: Fit, others: Sequence[Fit]) -> str:
+    """Say why a fit that explains everything is no name yet, if so."""
+    if fit.candidates and (sure := weakest(fit, others)) < AMPLITUDE_SD:
+        return f"an effect is only {sure:.1f} sigma from off"
+    return at_the_end(fit)
 
 
 def model_error(fit: Fit) -> float:
     """Return the share of the base's excess chi2 that a right fit may leave [-]."""
-    families = [c.effect.family for c in fit.candidates]
-    return max((MODEL_ERROR.get(f, EXACT) for f in families), default=EXACT)
+    effects = [c.effect for c in fit.candidates]
+    shares = [
+        MODEL_ERROR.get(e.name, MODEL_ERROR.get(e.family, EXACT)) for e in effects
+    ]
+    return max(shares, default=EXACT)
 
 
 def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]:
     """Return the directed drop that exceeds its limit most, and that limit.
 
-    What a law of friction leaves looks like other laws of the same link: its sliders
-    are not those of the joint. Anywhere else nothing of it should be seen.
+    What a law leaves looks like other laws of the same site: its sliders are not
+    those of the joint. Anywhere else less of it should be seen.
     """
-    rubbed = {c.site for c in fit.candidates if c.effect.family == "friction"}
-    elsewhere = min(model_error(fit), MODEL_ERROR["contact"])
+    own = {c.site for c in fit.candidates}
+    here = model_error(fit)
     worst, at = (0.0, WIDENED * left.threshold), -np.inf
     for d in left.directions:
         if d.suggested:
             continue
-        share = MODEL_ERROR["friction"] if d.candidate.site in rubbed else elsewhere
+        share = here if d.candidate.site in own else min(here, ELSEWHERE)
         limit = WIDENED * left.threshold + share * base_excess
         if d.drop - limit > at:
             worst, at = (d.drop, limit), d.drop - limit
@@ -135,6 +156,24 @@ def _unlike(bench: Bench, fit: Fit, allowed: float) -> str:
     if worst.chance > (UNLIKE_CHANCE if fit.candidates else UNLIKE_BASE_CHANCE):
         return ""
     return f"{worst.excess:.0f} units of chi2 are left by {worst.view}"
+
+
+def at_the_end(fit: Fit) -> str:
+    """Say which shape of a law is driven to the end of its range, if any is.
+
+    Such a law is stretched over another one: a Bouc-Wen element of a very sharp corner
+    is a Jenkins slider.
+    """
+    sd, at = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0)), fit.n_base
+    for term in fit.terms:
+        for k, p in enumerate(term.candidate.effect.parameters):
+            low, high = p.bounds
+            span, u = high - low, term.coordinates[k]
+            if k and sd[at + k] < LOOSE * span and np.isfinite(span):
+                if min(u - low, high - u) < AT_THE_END * span:
+                    return f"{p.name} of {term.candidate.label} is at its limit"
+        at += len(term.coordinates)
+    return ""
 
 
 def noise_sd(bench: Bench) -> float:

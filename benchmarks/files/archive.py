@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Make an archive of simulated sessions, some of them poisoned.
 
     python benchmarks/files/archive.py FOLDER --sessions 2000 --poisoned 40

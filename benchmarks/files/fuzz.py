@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Mutated files over all readers: read rightly or refused, and nothing else.
 
     python benchmarks/files/fuzz.py --files 5000 > docs/files-fuzz.md

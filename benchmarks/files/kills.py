@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 r"""Kill a run over an archive at random, call it again, compare with an unbroken one.
 
     python benchmarks/files/kills.py --sessions 2000 --poisoned 40 --kills 5 \

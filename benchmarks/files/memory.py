@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Does a worker grow? One process, many files, its memory on the way.
 
     python benchmarks/files/memory.py --files 2000 > docs/reprocessing-memory.md

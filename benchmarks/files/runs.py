@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the benchmarks of this folder share: runs of the command, and their results."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Two workers beside one on the same archive, in turn, more than once.
 
     python benchmarks/files/speedup.py --archive FOLDER --files 200 --rounds 3

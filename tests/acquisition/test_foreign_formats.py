@@ -1,6 +1,7 @@
 """Universal, TDMS, MAT, WAV and Rattlesnake files: read rightly, or refused."""
 
 import struct
+import wave
 from pathlib import Path
 
 import h5py
@@ -100,6 +101,46 @@ def test_a_text_without_data_sets_is_no_universal_file(tmp_path: Path) -> None:
         read_universal(path, columns=None, point="1")
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_binary_time_histories_are_read_bit_for_bit(tmp_path: Path, order: int) -> None:
+    """Data set 58b, little and big endian; no line ends behind the values."""
+    text = universal(tmp_path / "u.uff", unit="m/s^2").read_text(encoding="ascii")
+    blocks = text.split("    -1\n    -1\n")
+    parts = []
+    for block, row in zip(blocks, ROWS, strict=True):
+        lines = block.replace("    -1\n", "").splitlines()
+        lines[0] = f"    58b{order:6d}{2:6d}{11:12d}{8 * row.size:12d}" + " " * 36
+        head = "".join(f"{line}\n" for line in ["    -1", *lines[:12]])
+        values = row.astype("<f8" if order == 1 else ">f8").tobytes()
+        parts.append(head.encode() + values + b"    -1\n")
+    whole = tmp_path / "whole.uff"
+    whole.write_bytes(b"".join(parts))
+    found = read_universal(whole, columns=None, point="1")
+    assert np.array_equal(found.samples, ROWS)
+    assert found.sample_rate == RATE
+    whole.write_bytes(whole.read_bytes()[:-200])
+    with pytest.raises(FormatError, match="data set 2 has no end; it is cut short"):
+        read_universal(whole, columns=None, point="1")
+
+
+def test_a_unit_of_another_quantity_than_the_file_says_is_named(
+    tmp_path: Path,
+) -> None:
+    """An acceleration in N: what is wrong is the unit, whose quantity is known."""
+    with pytest.raises(UnitError, match="'N', which is none of acceleration;"):
+        read_universal(universal(tmp_path / "u.uff", unit="N"), columns=None, point="1")
+
+
+def test_a_mat_file_that_was_cut_is_refused_as_that(tmp_path: Path) -> None:
+    """Not as one that lacks the variable behind the cut."""
+    path = tmp_path / "m.mat"
+    content = {"t": np.arange(50) / RATE, "F": ROWS[0], "a1": ROWS[1]}
+    scipy.io.savemat(path, content)
+    path.write_bytes(path.read_bytes()[:-300])
+    with pytest.raises(FormatError, match="cut short"):
+        read_mat_recording(path, columns=MAT, point="1")
+
+
 def test_mat_variables_are_channels_by_their_labels(tmp_path: Path) -> None:
     """Time in ms, force in kN at point 3, acceleration in g."""
     path = tmp_path / "m.mat"
@@ -139,6 +180,31 @@ def test_a_wav_file_needs_units_and_full_scale(tmp_path: Path) -> None:
     assert found.sample_rate == 48000.0
 
 
+@pytest.mark.parametrize("scale", [-1.0, 0.0, np.nan, np.inf])
+def test_a_full_scale_that_is_none_is_refused(tmp_path: Path, scale: float) -> None:
+    """A negative one would turn every sample round."""
+    path = tmp_path / "w.wav"
+    wavfile.write(path, 48000, np.zeros((10, 2), dtype=np.int16))
+    with pytest.raises(UsageError, match="above zero"):
+        read_wave(path, columns="force:N,acceleration:g", point="1", full_scale=scale)
+
+
+def test_three_bytes_a_sample_keep_all_their_bits(tmp_path: Path) -> None:
+    """24 bits, as audio interfaces write them: a step is full scale / 2^23."""
+    path = tmp_path / "w.wav"
+    counts = np.array([[1, -1], [2**23 - 1, -(2**23)]])
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(2)
+        file.setsampwidth(3)
+        file.setframerate(48000)
+        file.writeframes(
+            b"".join(int(c).to_bytes(3, "little", signed=True) for c in counts.ravel())
+        )
+    columns = "force:N,acceleration:m/s^2"
+    found = read_wave(path, columns=columns, point="1", full_scale=2.0**23)
+    assert np.array_equal(found.samples, counts.T)
+
+
 def test_a_wav_file_that_was_cut_is_refused(tmp_path: Path) -> None:
     """Its chunk claims more than is left; so does a hostile one."""
     path = tmp_path / "w.wav"
@@ -174,6 +240,16 @@ def test_a_tdms_file_tells_units_and_rate(tmp_path: Path) -> None:
     assert found.sample_rate == pytest.approx(RATE)
     assert [c.name for c in found.channels] == ["hammer", "a1"]
     assert found.channels[0].point == "5"
+
+
+def test_volts_are_no_newtons_because_someone_says_so(tmp_path: Path) -> None:
+    """A file in V takes the sensitivity of its sensor, not another unit."""
+    path = tdms(tmp_path / "t.tdms", unit="V")
+    with pytest.raises(UnitError, match="the sensitivity of the sensor"):
+        read_tdms(path, columns="force.hammer:N,acceleration.a1:g", point="1")
+    columns = "force.hammer:N,acceleration.a1:V@10mV/g"
+    found = read_tdms(path, columns=columns, point="1")
+    np.testing.assert_allclose(found.samples[1], 980.665 * ROWS[1])
 
 
 def test_a_tdms_file_without_units_or_rate_is_refused(tmp_path: Path) -> None:

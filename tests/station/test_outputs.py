@@ -50,6 +50,10 @@ def test_another_session_is_not_replaced_by_results(session: Path) -> None:
         ("a.json", "my notes", True),
         ("a.html", "<!doctype html>", False),
         ("a.html", "<p>mine</p>", True),
+        ("a.csv", "file,input_sha256,session", False),
+        ("a.csv", "my,numbers", True),
+        ("a.parquet", "PAR1", False),
+        ("a.nc", "my notes", True),
     ],
 )
 def test_a_file_of_another_kind_is_kept(

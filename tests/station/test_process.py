@@ -1,25 +1,45 @@
 """A recorded session under a recipe: results, kept stages, verdicts that changed."""
 
+import io
+import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from jointbench.acquisition.errors import BadData
-from jointbench.acquisition.records import Hit, Recording, Verdict
+from jointbench.acquisition.errors import BadData, FormatError
+from jointbench.acquisition.records import Channel, Hit, Recording, Verdict
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.acquisition.text_files import file_digest
-from jointbench.signal.frf import Frf
+from jointbench.signal.frf import Frf, FrfKind
+from jointbench.station import process_file
 from jointbench.station.chain import run_chain
+from jointbench.station.compare_results import compare_results
+from jointbench.station.export_results import result_texts
 from jointbench.station.process import run_process
 from jointbench.station.process_file import State, Task, process_task
 from jointbench.station.processed_file import processed_path
-from jointbench.station.recipe import HitsPart, Recipe, WindowsPart
+from jointbench.station.recipe import HitsPart, Recipe, WindowsPart, read_recipe
+from jointbench.station.record import record_visit
 from jointbench.station.record_codec import decode_record, encode_record
-from jointbench.station.results_read import read_result
+from jointbench.station.results_read import StoredResult, read_result
+from jointbench.station.sources import open_visit
 from jointbench.station.stage_store import StageStore, prune_stages, stage_key
 
+BENCH = """\
+[bodies.base]
+mass = "9 kg"
+channel = "a0"
+[bodies.top]
+mass = "4.6 kg"
+channel = "a1"
+[links.support]
+between = ["ground", "base"]
+[links.joint]
+between = ["base", "top"]
+"""
 PLAIN = Recipe(name="plain")
 WIDE = Recipe(name="wide", windows=WindowsPart(force_width="30 ms"))
 
@@ -67,6 +87,25 @@ def test_a_changed_input_is_done_again(make_session) -> None:
     path.unlink()
     make_session("s.h5", seed=2)
     assert done(path).state is State.DONE
+
+
+def test_a_file_that_changes_while_it_is_read_is_tried_again(
+    make_session, monkeypatch
+) -> None:
+    """Its digest would be that of another content: no result, and no lasting fault."""
+    path = make_session("s.h5")
+    reading = process_file.read_session
+
+    def rewritten(file: Path):
+        session = reading(file)
+        os.utime(file, (1e9, 1e9))
+        return session
+
+    monkeypatch.setattr(process_file, "read_session", rewritten)
+    outcome = done(path)
+    assert (outcome.state, outcome.lasting) == (State.FAILED, False)
+    assert "changed while it was read" in outcome.reason
+    assert not outcome.result.exists()
 
 
 def test_a_changed_window_runs_what_depends_on_it_and_nothing_else(
@@ -166,7 +205,7 @@ def test_records_survive_being_kept() -> None:
     frf = Frf(
         np.arange(1.0, 9.0),
         rng.normal(size=(1, 1, 8)) + 1j * rng.normal(size=(1, 1, 8)),
-        kind="accelerance",  # type: ignore[arg-type]
+        kind=FrfKind.ACCELERANCE,
     )
     data = encode_record(frf)
     assert encode_record(decode_record(data, Frf)) == data
@@ -174,19 +213,64 @@ def test_records_survive_being_kept() -> None:
 
 def test_a_kept_stage_cannot_name_a_record_of_its_choice() -> None:
     """A file that says Recording where an Frf is wanted is refused."""
-    from jointbench.acquisition.errors import FormatError
-
     recording = Recording("r", np.zeros((0, 4)), 1.0, ())
     with pytest.raises(FormatError):
         decode_record(encode_record(recording), Frf)
+
+
+@pytest.mark.parametrize(
+    ("value", "kind"),
+    [
+        ("text", float),
+        ((1.0, "a"), tuple[float, ...]),
+        ({"a": 1.0}, tuple[float, ...]),
+        (Channel("force", "newton"), Channel),  # type: ignore[arg-type]
+    ],
+)
+def test_a_kept_stage_holds_what_it_should(value: object, kind: type) -> None:
+    """Another type, at the top or in a field, is refused before it is used."""
+    with pytest.raises(FormatError):
+        decode_record(encode_record(value), kind)
+
+
+def test_a_kept_stage_that_would_unpack_to_more_is_refused() -> None:
+    """Zeros that take a thousandth of their place: nothing of ours is packed."""
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, record=np.zeros(10_000, np.uint8))
+    with pytest.raises(FormatError, match="packed"):
+        decode_record(buffer.getvalue(), Frf)
+
+
+def test_a_stage_under_the_name_of_another_is_run_again(tmp_path: Path) -> None:
+    """A whole stage copied over another of its kind is found out by its key."""
+    keys = [stage_key("s", number) for number in range(2)]
+    for value, key in enumerate(keys):
+        StageStore(tmp_path).run("s", key, float, lambda value=value: float(value))
+    first, second = (next(tmp_path.rglob(f"{key}.stage")) for key in keys)
+    second.write_bytes(first.read_bytes())
+    store = StageStore(tmp_path)
+    assert store.run("s", keys[1], float, lambda: 1.0) == 1.0
+    assert store.computed == ["s"]
+    assert store.run("s", keys[0], float, lambda: 9.0) == 0.0
+
+
+def test_half_written_stages_of_killed_workers_go(tmp_path: Path) -> None:
+    """An old one is dropped with the rest; a fresh one may be in work."""
+    key = stage_key("s", 1)
+    old, fresh = (tmp_path / key[:2] / f"{key}.stage.{n}.part" for n in (1, 2))
+    old.parent.mkdir()
+    for path in (old, fresh):
+        path.write_bytes(b"half")
+    os.utime(old, (1e9, 1e9))
+    prune_stages(tmp_path, 10**9)
+    assert not old.exists()
+    assert fresh.exists()
 
 
 def test_stages_that_were_not_used_for_longest_are_dropped_first(
     tmp_path: Path,
 ) -> None:
     """Three stages of equal size, room for two: the oldest goes."""
-    import os
-
     store = StageStore(tmp_path)
     keys = [stage_key("s", number) for number in range(3)]
     for age, key in zip((100, 300, 200), keys, strict=True):
@@ -196,3 +280,47 @@ def test_stages_that_were_not_used_for_longest_are_dropped_first(
     size = next(tmp_path.rglob("*.stage")).stat().st_size
     assert prune_stages(tmp_path, 2 * size) == 1
     assert not list(tmp_path.rglob(f"{keys[1]}.stage"))
+
+
+def test_links_are_identified_at_every_preload(tmp_path: Path) -> None:
+    """Two preloads in one session: a row each, and a page that holds both."""
+    recordings = []
+    for number, preload in enumerate((20_000, 30_000)):
+        url = f"sim:two-body?seed={number + 1}&hits=3&interval=0.7&preload={preload}"
+        visit = record_visit(open_visit(url))
+        recordings.append(replace(visit.recordings[0], name=f"run-{number}"))
+    path = tmp_path / "s.h5"
+    write_session(replace(visit, recordings=tuple(recordings), joint=None), path)
+    (tmp_path / "bench.toml").write_text(BENCH, encoding="utf-8")
+    recipe_file = tmp_path / "r.toml"
+    recipe_file.write_text(
+        '[identification]\nmodel = "bench.toml"\n'
+        '[contact]\nmodulus = "29 GPa"\nhardness = "1 GPa"\n',
+        encoding="utf-8",
+    )
+    outcome = done(path, read_recipe(recipe_file))
+    assert outcome.state is State.DONE, outcome.reason
+    stored = read_result(outcome.result)
+    found = {
+        (q.preload, q.item): q.value
+        for q in stored.quantities
+        if q.part == "joint" and q.name == "stiffness"
+    }
+    assert set(found) == {
+        (p, link) for p in (20_000.0, 30_000.0) for link in ("support", "joint")
+    }
+    # The simulated joint stiffens with its preload, the support does not.
+    assert found[30_000.0, "joint"] > 1.1 * found[20_000.0, "joint"]
+    assert found[30_000.0, "support"] == pytest.approx(
+        found[20_000.0, "support"], rel=0.02
+    )
+    assert any("No contact prediction: no surface" in one for one in stored.remarks)
+    pages = json.loads(result_texts(outcome.result)["joint"])["preloads"]
+    assert [page["preload_n"] for page in pages] == [20_000.0, 30_000.0]
+    assert same_again(outcome.result, stored)
+
+
+def same_again(path: Path, stored: StoredResult) -> bool:
+    """Tell whether a comparison of a result with itself finds nothing."""
+    found = compare_results([stored], [read_result(path)])
+    return not (found.moved or found.unjudged or found.causes)

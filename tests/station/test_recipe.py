@@ -42,13 +42,27 @@ def test_numbers_with_units_reach_the_settings_in_si(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('[hits]\ndouble = "5 %"\n', ("hits.double", "not permitted")),
+        ('[hits]\ndouble = "5 %"\n', ("hits.double", "'double_ratio' is meant?")),
         ('[windows]\nforce_width = "5 N"\n', ("windows.force_width", "unit of force")),
         ("[windows]\nforce_width = 5\n", ("windows.force_width", "with its unit")),
         ('[frf]\nestimator = "H3"\n', ("frf.estimator", "'H3'")),
         ('[modes]\nband = ["2 kHz", "50 Hz"]\n', ("modes", "lower end first")),
         ('[identification]\nmodel = "no.toml"\n', ("no.toml", "no such file")),
         ("models = 3\n", ("models", "no table")),
+        ('[windos]\nlead = "none"\n', ("windos", "'windows' is meant?")),
+        ("[windows]\nzzz = 1\n", ("zzz", "there are force_width, exponential")),
+        ("windows = [1]\n", ("windows", "write a table")),
+        ('[identification]\nmodel = "../m.toml"\n', ("../m.toml", "beside the")),
+        ('[gap]\nmodel = "/etc/hostname"\n', ("/etc/hostname", "beside the")),
+        ('[gap]\nmodel = "C:\\\\m.toml"\n', ("m.toml", "beside the")),
+        ('[gap]\nmodel = "m.toml"\nwithout = ["jenkin"]\n', ("jenkin", "jenkins")),
+        (
+            '[contact]\nmodulus = "29 GPa"\nhardness = "1 GPa"\nmodel = "ke_3"\n',
+            ("contact.model", "did you mean"),
+        ),
+        ('name = "../up"\n', ("../up", "part of file names")),
+        ('name = "a\\nb"\n', ("part of file names",)),
+        (f'name = "{"x" * 61}"\n', ("60 at the most",)),
     ],
 )
 def test_what_is_wrong_is_named_by_file_key_value_and_rule(
@@ -58,6 +72,17 @@ def test_what_is_wrong_is_named_by_file_key_value_and_rule(
     with pytest.raises(BadData) as caught:
         read_recipe(written(tmp_path, text))
     assert all(word in str(caught.value) for word in (".toml", *words))
+
+
+def test_a_recipe_that_has_no_end_is_not_read(tmp_path: Path) -> None:
+    """A device or a pipe has no size to hold against the limit."""
+    if not Path("/dev/zero").exists():
+        pytest.skip("no such device on this system")
+    (tmp_path / "zero.toml").symlink_to("/dev/zero")
+    with pytest.raises(BadData, match="device"):
+        read_recipe(tmp_path / "zero.toml")
+    with pytest.raises(BadData, match="folder"):
+        read_recipe(tmp_path)
 
 
 def test_the_digest_follows_the_content_and_not_the_spelling(tmp_path: Path) -> None:

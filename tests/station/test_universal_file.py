@@ -28,14 +28,28 @@ def test_an_frf_comes_back_from_its_universal_file(tmp_path: Path) -> None:
         assert int(lines[first + 7][41:51]) == number + 1
         assert int(lines[first + 8][:10]) == 6
         assert int(lines[first + 8][10:20]) == 7
-        rows = np.array(
-            [
-                [float(line[i : i + 20]) for i in (0, 20, 40)]
-                for line in lines[first + 13 : last]
-            ]
-        )
-        assert np.allclose(rows[:, 0], frequency, rtol=1e-11)
-        assert np.allclose(rows[:, 1] + 1j * rows[:, 2], values[number, 0], rtol=1e-10)
+        assert int(lines[first + 8][20:30]) == 1
+        start, step = (float(lines[first + 8][i : i + 13]) for i in (30, 43))
+        assert np.allclose(start + step * np.arange(7), frequency, rtol=1e-5)
+        text = "".join(lines[first + 13 : last])
+        parts = np.array([float(text[i : i + 20]) for i in range(0, len(text), 20)])
+        assert np.allclose(parts[::2] + 1j * parts[1::2], values[number, 0], rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    "frequency", [np.linspace(1.0, 9.0, 7), np.array([1.0, 2.0, 4.0, 8.0])]
+)
+def test_another_program_reads_the_frf(tmp_path: Path, frequency: np.ndarray) -> None:
+    """Even lines and uneven ones, negative numbers and large exponents."""
+    pyuff = pytest.importorskip("pyuff")
+    rng = np.random.default_rng(1)
+    values = rng.normal(size=frequency.size) * 1e-120 - 1j * frequency
+    frf = Frf(frequency, values[None, None], FrfKind.RECEPTANCE)
+    path = tmp_path / "frf.uff"
+    write_universal_frf(path, frf)
+    read = pyuff.UFF(str(path)).read_sets(0)
+    assert np.allclose(read["x"], frequency, rtol=1e-5)
+    assert np.allclose(read["data"], values, rtol=1e-10)
 
 
 def test_a_hostile_label_stays_on_its_line(tmp_path: Path) -> None:
