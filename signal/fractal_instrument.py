@@ -129,7 +129,12 @@ def _or_tip(
     )
     sizes = glance.parameters.size, blurred.parameters.size
     likelier = glance.chi2 + 2 * sizes[0] < blurred.chi2 + 2 * sizes[1]
-    if not likelier or glance.probability < HOPELESS_PROBABILITY:
+    if not likelier:
+        return blurred, doubt
+    # Where the Gaussian is far off its weights say nothing of how well a tip fits.
+    own = weigh(problem, glance.seen)
+    glance = fit_model(problem, glance.model, own, start=glance.parameters)
+    if glance.probability < HOPELESS_PROBABILITY:
         return blurred, doubt
     large = settle(problem, glance.model, glance.seen)
     fit = settle(problem, Model(kinds.STYLUS), glance.seen)
