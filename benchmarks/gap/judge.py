@@ -5,6 +5,8 @@ Usage: python benchmarks/gap/judge.py FOLDER RUNS.jsonl [--jobs 2] [--kind singl
 
 One JSON line a campaign: truth, the whole diagnosis, CPU seconds. Campaigns that the
 file already holds are passed over, so that an interrupted run goes on where it was.
+With --whole those of the kind "hidden" are judged by the whole catalogue, and count as
+single effects.
 """
 
 import argparse
