@@ -71,6 +71,11 @@ class Bench(Protocol):
         ...
 
     @property
+    def probes(self) -> tuple[Candidate, ...]:
+        """Shapes that are tested of a fit beside the catalogue, but never named."""
+        ...
+
+    @property
     def blocks(self) -> Blocks:
         """The groups that are held out one at a time."""
         ...

@@ -13,6 +13,9 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 
+PROBE_FAMILY = "probe"
+"""Family of what is tested of a fit but never named."""
+
 
 class Transform(StrEnum):
     """How a fitted coordinate u becomes a value, given the scale of the bench.

@@ -163,7 +163,7 @@ def _judged(
 ) -> _Judged:
     """Settle the first of some fits and judge it."""
     bench, fit = _settled(bench, ranked[0], progress)
-    left = screen(bench, fit, _others(bench, fit))
+    left = screen(bench, fit, [*_others(bench, fit), *bench.probes])
     return _Judged(ranked[0], fit, bench, left, gate(bench, fit, base, left, ranked))
 
 

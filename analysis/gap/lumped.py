@@ -18,6 +18,7 @@ from jointbench.analysis.gap.forward import Excitation, prepare_excitation, resp
 from jointbench.analysis.gap.lumped_noise import Settled, refine_noise
 from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import Conditions, LumpedEffect
+from jointbench.analysis.gap.probes import PROBES
 from jointbench.analysis.gap.records import View
 from jointbench.analysis.gap.views import residual_peaks, slice_views
 
@@ -35,6 +36,7 @@ class LumpedBench:
         campaign: the measurement.
         entries: the catalogue of this run.
         candidates: it, at every site.
+        probes: shapes that are tested of a fit beside it, at every site.
         excitation: forces made ready.
         gate: first and last sample of the force that count.
         noise: what is to be expected of a residual.
@@ -49,6 +51,7 @@ class LumpedBench:
     campaign: Campaign
     entries: tuple[LumpedEffect, ...]
     candidates: tuple[Candidate, ...]
+    probes: tuple[Candidate, ...]
     excitation: Excitation
     gate: tuple[int, int]
     noise: Noise
@@ -89,7 +92,7 @@ class LumpedBench:
 
     def actions(self, terms: Sequence[Term]) -> list[Action]:
         """Return terms with the hooks of their entries."""
-        entries = {entry.effect.name: entry for entry in self.entries}
+        entries = {e.effect.name: e for e in (*self.entries, *PROBES)}
         return [
             Action(
                 entries[t.candidate.effect.name],

@@ -14,6 +14,7 @@ from jointbench.analysis.gap.forward import motion
 from jointbench.analysis.gap.lumped import LumpedBench, gated_excitation
 from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import LumpedEffect
+from jointbench.analysis.gap.probes import PROBES
 
 PAD = 48
 """Samples kept on each side of a hit: the anti-alias filter rings that far."""
@@ -50,6 +51,7 @@ def make_bench(
         campaign=campaign,
         entries=entries,
         candidates=candidates_of(entries, campaign.model),
+        probes=candidates_of(PROBES, campaign.model),
         excitation=excitation,
         gate=gate,
         noise=Noise(sigma, force_sigma, (), scatter_known=False),

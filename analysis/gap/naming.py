@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.effects import PROBE_FAMILY
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.own_parameters import most_unlike
 from jointbench.analysis.gap.race import score
-from jointbench.analysis.gap.screening import Screening
+from jointbench.analysis.gap.screening import Direction, Screening
 
 RIVAL_WITHIN = 15.0
 """Score within which a rival is not told apart."""
@@ -96,14 +97,15 @@ def gate(
     excess = fit.chi2 / dof - 1.0
     base_excess = max(base.chi2 / dof - 1.0, 0.0)
     allowed = GLOBAL_SD * noise_sd(bench) + share * base_excess
-    remaining, limit = 0.0, np.inf
+    worst, beyond = None, -np.inf
     if left is not None and bench.blocks.white:
-        remaining, limit = _worst(fit, left, base_excess * dof)
+        worst, beyond = _worst(fit, left, base_excess * dof)
+    remaining = worst.drop if worst else 0.0
     reason = ""
     if excess > allowed:
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
-    elif remaining > limit:
-        reason = f"a further effect would take {remaining:.0f} units of chi2"
+    elif worst and beyond > 0.0:
+        reason = _looks_like(worst)
     elif unlike := _unlike(bench, fit, share * base_excess * dof):
         reason = unlike
     elif np.abs(fit.pulls).max() > PULL_LIMIT:
@@ -129,23 +131,36 @@ def model_error(fit: Fit) -> float:
     return max(shares, default=EXACT)
 
 
-def _worst(fit: Fit, left: Screening, base_excess: float) -> tuple[float, float]:
-    """Return the directed drop that exceeds its limit most, and that limit.
+def _looks_like(left: Direction) -> str:
+    """Say what a fit leaves, by the directed test that sees most of it."""
+    if left.candidate.effect.family != PROBE_FAMILY:
+        return f"a further effect would take {left.drop:.0f} units of chi2"
+    kind = left.candidate.effect.name
+    return (
+        f"{left.drop:.0f} units of chi2 are left that look like: {kind}, "
+        f"{left.candidate.site}"
+    )
+
+
+def _worst(
+    fit: Fit, left: Screening, base_excess: float
+) -> tuple[Direction | None, float]:
+    """Return the directed test that exceeds its limit most, and by how much.
 
     What a law leaves looks like other laws of the same site: its sliders are not
     those of the joint. Anywhere else less of it should be seen.
     """
     own = {c.site for c in fit.candidates}
     here = model_error(fit)
-    worst, at = (0.0, WIDENED * left.threshold), -np.inf
+    worst, beyond = None, -np.inf
     for d in left.directions:
         if d.suggested:
             continue
         share = here if d.candidate.site in own else min(here, ELSEWHERE)
         limit = WIDENED * left.threshold + share * base_excess
-        if d.drop - limit > at:
-            worst, at = (d.drop, limit), d.drop - limit
-    return worst
+        if d.drop - limit > beyond:
+            worst, beyond = d, d.drop - limit
+    return worst, beyond
 
 
 def _unlike(bench: Bench, fit: Fit, allowed: float) -> str:
