@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Second starts: fits whose base has lost its way start again from a better one."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.descent import cost_at, minimise
+from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.race import MIDDLE, MOST_STEPS, Progress, finish
+
+ASTRAY = 4.0
+"""Sd off its sheet from which a base has lost its way."""
+BETTER = 0.5
+"""Share of a fit's cost below which another start is worth a descent."""
+
+
+def crossed(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+    """Let fits that went astray start again from the base of the best.
+
+    Two great effects drag the base with them while only one of them is fitted. The
+    second comes in far from the sheet, and there a pair that is right can end behind
+    one that is wrong.
+
+    Args:
+        bench: measurement and model.
+        fits: of as many effects each, best first.
+        progress: told what is being tried.
+
+    Returns:
+        The fits, each the better of what it was and what it became.
+    """
+    return [_again(bench, f, fits[0], progress) if k else f for k, f in enumerate(fits)]
+
+
+def caught_up(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
+    """Fit again under a noise that was estimated at the best, from the better start.
+
+    Args:
+        bench: with the noise of the best.
+        fit: of another noise.
+        best: of this one.
+        progress: told what is being tried.
+    """
+    problem = make_problem(bench, fit.candidates)
+    borrowed = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
+    starts = (fit.x, borrowed)
+    costs = [cost_at(problem, x, MIDDLE) for x in starts]
+    return finish(bench, problem, starts[int(np.argmin(costs))], progress)
+
+
+def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
+    """Return the better of a fit and what it becomes from the best's base."""
+    pull, least = np.abs(fit.pulls).max(), np.abs(best.pulls).max()
+    if pull < ASTRAY or pull < least:
+        return fit
+    problem = make_problem(bench, fit.candidates)
+    start = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
+    if cost_at(problem, start, MIDDLE) > _hope(fit, best):
+        return fit
+    progress(" + ".join(c.label for c in fit.candidates) + " (again)")
+    middle = minimise(problem, start, MIDDLE, iterations=MOST_STEPS, rival=best.cost)
+    if middle.cost > BETTER * fit.cost:
+        return fit
+    return finish(bench, problem, middle.x, progress)
+
+
+def _hope(fit: Fit, best: Fit) -> float:
+    """Return the cost at which a start is no better than nothing."""
+    return 10.0 * max(fit.cost, best.cost)
+
+
+def _borrowed(fit: Fit, best: Fit) -> FloatArray:
+    """Return a fit with the base of the best, and of its effects those they share."""
+    known = {t.candidate.label: t.coordinates for t in best.terms}
+    own = [known.get(t.candidate.label, t.coordinates) for t in fit.terms]
+    return np.concatenate([best.base, *own])

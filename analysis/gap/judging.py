@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""Judging: noise estimated at the winner, rivals fitted again there, and the gate."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.crossing import caught_up
+from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.naming import Gate, gate
+from jointbench.analysis.gap.race import Progress, finish, score, started
+from jointbench.analysis.gap.screening import Screening, screen
+
+REJUDGED = 12
+AGREED = 2.0
+"""Change of a winner's cost below which it agrees with the noise estimated at it."""
+OVERTAKEN = 2
+CLOSE = 1000.0
+"""Score behind the winner up to which a rival is fitted again with the new noise."""
+CLOSE_FAILED = 100.0
+"""The same where the winner itself does not explain the records."""
+STALE = 0.2
+"""Share of what the winner gains by being settled that may hide a rival."""
+MOST_STALE = 3
+MOST_HELD_BACK = 2
+
+
+def judge(
+    bench: Bench,
+    fits: Sequence[Fit],
+    base: Fit,
+    progress: Progress,
+    hopes: Screening | None = None,
+) -> tuple[Bench, list[Fit], Gate]:
+    """Estimate the noise at the winner, refit the leaders there and judge.
+
+    Noise, scatter and settling of the hits are known no better than the fit at which
+    they were estimated, so they and the winner are brought to agree. Rivals are then
+    fitted with the same noise; one that overtakes is judged in its turn. Where the
+    winner fails, those that were held back are settled each by itself.
+    """
+    if not fits:
+        return bench, [], gate(bench, base, base, None)
+    ranked = list(fits)
+    for _ in range(OVERTAKEN):
+        found = _judged(bench, ranked, base, progress)
+        if hopes is not None and not found.gate.passed:
+            found = _own_settling(found, ranked, base, hopes, progress)
+        bench = found.bench
+        rest = [f for f in ranked if f is not found.first]
+        close = _close(found, rest)
+        ranked = [found.fit] + [
+            caught_up(bench, f, found.fit, progress)
+            if f in close or _part_of(f, found.fit)
+            else f
+            for f in rest
+        ]
+        ranked.sort(key=lambda f: score(bench, f))
+        if ranked[0] is found.fit:
+            break
+    return bench, ranked, gate(bench, ranked[0], base, found.left, ranked)
+
+
+def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
+    """Return the fits behind the winner that may still overtake it.
+
+    What the winner gained by being settled, the next few may gain too: their costs
+    are those under a noise that was estimated where less was explained.
+    """
+    reach = CLOSE if found.gate.passed else CLOSE_FAILED
+    gained = max(found.first.cost - found.fit.cost, 0.0)
+    behind = [score(found.bench, f) - score(found.bench, found.first) for f in rest]
+    near = [f for f, b in zip(rest, behind, strict=True) if b < reach]
+    wide = [f for f, b in zip(rest, behind, strict=True) if b < STALE * gained]
+    return near + wide[:MOST_STALE]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Judged:
+    """A fit before and after it was settled, its bench, directed tests and gate."""
+
+    first: Fit
+    fit: Fit
+    bench: Bench
+    left: Screening
+    gate: Gate
+
+
+def _judged(
+    bench: Bench, ranked: Sequence[Fit], base: Fit, progress: Progress
+) -> _Judged:
+    """Settle the first of some fits and judge it."""
+    bench, fit = _settled(bench, ranked[0], progress)
+    left = screen(bench, fit, [*others(bench, fit), *bench.probes])
+    return _Judged(ranked[0], fit, bench, left, gate(bench, fit, base, left, ranked))
+
+
+def _own_settling(
+    failed: _Judged,
+    ranked: Sequence[Fit],
+    base: Fit,
+    hopes: Screening,
+    progress: Progress,
+) -> _Judged:
+    """Return the first of those held back that passes by itself, or what failed.
+
+    What scatters cannot be told where a fit misses by more than noise.
+    """
+    if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
+        return failed
+    for f in _held_back(failed, ranked, base, hopes):
+        rest = [r for r in ranked if r is not f]
+        found = _judged(failed.bench, [f, *rest], base, progress)
+        if found.gate.passed:
+            return found
+    return failed
+
+
+def _held_back(
+    failed: _Judged, ranked: Sequence[Fit], base: Fit, hopes: Screening
+) -> list[Fit]:
+    """Return the fits of which their directed tests foretold more than was gained.
+
+    An expansion about another fit holds back one that differs from it; it may even
+    have lost the race.
+    """
+    gained = base.cost - failed.first.cost
+    fits = {f.candidates[-1].label: f for f in ranked}
+    held: dict[str, Fit] = {}
+    for d in hopes.directions:
+        label = d.candidate.label
+        if d.drop > gained and not d.suggested and label not in held:
+            held[label] = fits.get(label) or started(failed.bench, base, d)
+    return [f for f in held.values() if f is not failed.first][:MOST_HELD_BACK]
+
+
+def _part_of(fewer: Fit, more: Fit) -> bool:
+    """Tell whether a fit is another one without some of its effects.
+
+    What an effect is worth is read from such a fit, so its noise must be the same.
+    """
+    labels = {c.label for c in more.candidates}
+    return {c.label for c in fewer.candidates} < labels
+
+
+def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
+    """Bring a fit and the noise estimated at it to agree."""
+    for _ in range(REJUDGED):
+        before = fit.cost
+        bench = bench.refine(fit.base, fit.terms)
+        problem = make_problem(bench, fit.candidates)
+        fit = finish(bench, problem, fit.x, progress)
+        if abs(fit.cost - before) < AGREED:
+            break
+    return bench, fit
+
+
+def others(bench: Bench, fit: Fit) -> list[Candidate]:
+    """Return what the catalogue holds beside the effects of a fit."""
+    return [c for c in bench.candidates if c not in fit.candidates]
