@@ -34,6 +34,7 @@ class Curve:
     measured: FloatArray
     candidates: tuple[Candidate, ...]
     base_names: tuple[str, ...] = ("slope",)
+    probes: tuple[Candidate, ...] = ()
 
     @property
     def base_sd(self) -> FloatArray:
@@ -125,6 +126,13 @@ def test_an_effect_outside_the_catalogue_is_left_unexplained() -> None:
     """A square with only a cube to offer does not pass the gate."""
     bench = replace(curve(square=0.05), candidates=(effect("cube"),))
     assert not run(bench).gate.passed
+
+
+def test_what_a_wrong_effect_leaves_is_seen_by_the_probes() -> None:
+    """A square that a faint cube rides on explains chi2, but not its own shape."""
+    bench = replace(curve(square=0.05, cube=0.006), candidates=(effect("square"),))
+    assert run(bench).gate.passed
+    assert not run(replace(bench, probes=(effect("cube"),))).gate.passed
 
 
 def test_the_null_threshold_of_one_direction_is_the_quantile_of_chi_square() -> None:
