@@ -11,7 +11,14 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import Blocks, Stage
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.effects import Candidate, Effect, Parameter, Site, Term
+from jointbench.analysis.gap.effects import (
+    PROBE_FAMILY,
+    Candidate,
+    Effect,
+    Parameter,
+    Site,
+    Term,
+)
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
@@ -128,11 +135,14 @@ def test_an_effect_outside_the_catalogue_is_left_unexplained() -> None:
     assert not run(bench).gate.passed
 
 
-def test_what_a_wrong_effect_leaves_is_seen_by_the_probes() -> None:
-    """A square that a faint cube rides on explains chi2, but not its own shape."""
+def test_what_a_wrong_effect_leaves_is_told_by_its_shape() -> None:
+    """A cube that rides on a square is seen by a probe, and never named."""
     bench = replace(curve(square=0.05, cube=0.006), candidates=(effect("square"),))
-    assert run(bench).gate.passed
-    assert not run(replace(bench, probes=(effect("cube"),))).gate.passed
+    cube = effect("cube")
+    probe = replace(cube, effect=replace(cube.effect, family=PROBE_FAMILY))
+    outcome = run(replace(bench, probes=(probe,)))
+    assert "look like: cube, curve:y" in outcome.gate.reason
+    assert names(outcome) == ["square"]
 
 
 def test_the_null_threshold_of_one_direction_is_the_quantile_of_chi_square() -> None:
