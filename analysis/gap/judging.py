@@ -4,12 +4,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.bench import FULL, Bench
 from jointbench.analysis.gap.crossing import caught_up
 from jointbench.analysis.gap.effects import Candidate
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.naming import Gate, gate
-from jointbench.analysis.gap.race import Progress, finish, score, started
+from jointbench.analysis.gap.race import EVERYDAY, Progress, finish, score, started
 from jointbench.analysis.gap.screening import Screening, screen
 
 REJUDGED = 12
@@ -42,6 +42,8 @@ def judge(
     """
     if not fits:
         return bench, [], gate(bench, base, base, None)
+    if _hopeless(bench, fits[0]):
+        return bench, list(fits), gate(bench, fits[0], base, None, fits)
     ranked = list(fits)
     for _ in range(OVERTAKEN):
         found = _judged(bench, ranked, base, progress)
@@ -60,6 +62,23 @@ def judge(
         if ranked[0] is found.fit:
             break
     return bench, ranked, gate(bench, ranked[0], base, found.left, ranked)
+
+
+def far_off(bench: Bench, fit: Fit) -> bool:
+    """Tell whether a fit leaves a misfit of many times the noise."""
+    return fit.chi2 > EVERYDAY * bench.blocks.dof
+
+
+def _hopeless(bench: Bench, fit: Fit) -> bool:
+    """Tell whether a fit is far off even under the noise estimated at it.
+
+    Nothing can be learnt of noise and scatter there, and rivals are no better.
+    """
+    if not far_off(bench, fit):
+        return False
+    there = bench.refine(fit.base, fit.terms)
+    r = there.residual(fit.base, fit.terms, FULL)
+    return float(r @ r) > EVERYDAY * bench.blocks.dof
 
 
 def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:

@@ -10,14 +10,16 @@ from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.crossing import crossed
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
 from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.exchange import exchanged
+from jointbench.analysis.gap.far_pairs import far_pairs
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.judging import judge, others
+from jointbench.analysis.gap.judging import far_off, judge, others
 from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import (
-    EVERYDAY,
     Progress,
     finish,
     race,
+    race_on,
     score,
 )
 from jointbench.analysis.gap.screening import Screening, screen
@@ -27,6 +29,7 @@ SETTLED = 0.5
 """Change of the cost below which noise, scatter and fit agree with each other."""
 MOST_EFFECTS = 3
 FIRSTS = 3
+EXCHANGES = 2
 HOPEFUL = 4.0
 """Cost over the best first's above which a first is not given a second."""
 SECONDS = 4
@@ -75,7 +78,10 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         firsts = fits[: FIRSTS if count == 1 else 1]
         if count > 1 and not _fit_for_more(refined, firsts[0]):
             break
-        more = add_another(refined, firsts, progress)
+        if count == 1 and far_off(refined, firsts[0]):
+            more = race_on(refined, far_pairs(refined, progress), progress)
+        else:
+            more = add_another(refined, firsts, progress)
         if not more:
             break
         more = crossed(refined, more, progress)
@@ -85,10 +91,27 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         if not _worthwhile(again, merged[0], fits[0]):
             break
         refined, fits, judged = again, merged, rejudged
+        if judged.unexplained and len(fits[0].candidates) > 1:
+            refined, fits, judged = _exchange(refined, fits, base, judged, progress)
     fits = without_twins(refined, fits)
     best = fits[0] if fits else base
     level = tuple(rivals(refined, fits))
     return Outcome(refined, base, first, screening, best, judged, tuple(fits), level)
+
+
+def _exchange(
+    bench: Bench, fits: list[Fit], base: Fit, judged: Gate, progress: Progress
+) -> tuple[Bench, list[Fit], Gate]:
+    """Put other effects in the place of each, as long as that helps."""
+    for _ in range(EXCHANGES):
+        more = exchanged(bench, fits[0], progress)
+        merged = sorted([*fits, *more], key=lambda f: score(bench, f))
+        if merged[0] is fits[0]:
+            break
+        bench, fits, judged = judge(bench, best_of_each(merged), base, progress)
+        if not judged.unexplained:
+            break
+    return bench, fits, judged
 
 
 def _fit_for_more(bench: Bench, fit: Fit) -> bool:
@@ -98,7 +121,7 @@ def _fit_for_more(bench: Bench, fit: Fit) -> bool:
     """
     links = [c.site for c in fit.candidates if c.site.kind == "link"]
     apart = len(set(links)) == len(links)
-    return apart and fit.chi2 < EVERYDAY * bench.blocks.dof
+    return apart and not far_off(bench, fit)
 
 
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:
@@ -124,10 +147,11 @@ def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit
         coordinates = [t.coordinates for i, t in enumerate(best.terms) if i != k]
         start = np.concatenate([best.base, *coordinates])
         found.append(finish(bench, make_problem(bench, kept), start, progress))
-    return _best_of_each(sorted(found, key=lambda f: score(bench, f)))
+    return best_of_each(sorted(found, key=lambda f: score(bench, f)))
 
 
-def _best_of_each(fits: Sequence[Fit]) -> list[Fit]:
+def best_of_each(fits: Sequence[Fit]) -> list[Fit]:
+    """Return the first fit of each set of effects."""
     best: dict[frozenset[str], Fit] = {}
     for f in fits:
         best.setdefault(frozenset(c.label for c in f.candidates), f)

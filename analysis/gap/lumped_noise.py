@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.bench import FULL
 from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.effects import Term
 from jointbench.analysis.gap.forward import prepare_excitation, respond
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 SETTLING_SEEN = 1e-5
 LOST = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
+EVERYDAY = 30.0
+"""Chi2 over dof beyond which what seems to settle is the missing effect itself."""
 SETTLING_REACH = 3.0
 """Scatter sd beyond which a settling is no scatter but a missing effect."""
 SCATTER_STEP = 1e-6
@@ -86,7 +89,11 @@ def refine_noise(
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
     reach = SETTLING_REACH * scatter[1]
     settling = np.clip(-coefficients[:, 1] * share, -reach, reach)
-    return _expanded(refined, settling, base, terms, columns)
+    expanded = _expanded(refined, settling, base, terms, columns)
+    left = expanded.residual(base, terms, FULL)
+    if left @ left > EVERYDAY * bench.blocks.dof:
+        return _settle(refined, None)
+    return expanded
 
 
 def _centred(bench: "LumpedBench", base: FloatArray) -> "LumpedBench":

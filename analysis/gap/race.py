@@ -89,6 +89,30 @@ def race(
     runners = _near(bench, fit, screening, candidates)
     if fit.chi2 > EVERYDAY * bench.blocks.dof:
         runners += _far(bench, fit, screening, candidates, progress)
+    return _run_out(bench, runners, progress)
+
+
+def race_on(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+    """Race fits of a shorter window over the whole records.
+
+    Args:
+        bench: measurement and model.
+        fits: where to start from.
+        progress: told what is being tried.
+
+    Returns:
+        One fit for each that came far enough, best score first.
+    """
+    problems = [make_problem(bench, f.candidates) for f in fits]
+    runners = [
+        Runner(p, f.x, cost_at(p, f.x, MIDDLE))
+        for p, f in zip(problems, fits, strict=True)
+    ]
+    return _run_out(bench, runners, progress)
+
+
+def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fit]:
+    """Run starts to the end, the hopeless dropped on the way."""
     for iterations, keep in ROUNDS:
         runners = _keep(_heat(runners, iterations, progress), keep)
     best, done = None, []
@@ -135,7 +159,7 @@ def _near(
         shaped = len(candidate.effect.parameters) > 2
         for d in screening.best(candidate, STARTS if shaped else 1):
             if d.drop >= least:
-                runners.append(_along(problem, fit, d, MIDDLE))
+                runners.append(along(problem, fit, d, MIDDLE))
         if candidate.effect.by_prior:
             x = np.clip(swapped(bench, fit, candidate), problem.lower, problem.upper)
             runners.append(Runner(problem, x, cost_at(problem, x, MIDDLE)))
@@ -154,7 +178,7 @@ def _far(
     for candidate in candidates:
         problem = make_problem(bench, (*fit.candidates, candidate))
         directions = screening.best(candidate, 2)
-        runners += [_along(problem, fit, d, COARSE_ROUNDS[0][0]) for d in directions]
+        runners += [along(problem, fit, d, COARSE_ROUNDS[0][0]) for d in directions]
         for amplitude in candidate.effect.parameters[0].far:
             x = np.concatenate([fit.x, [amplitude]])
             runners.append(_started(problem, x))
@@ -167,11 +191,17 @@ def _far(
     return runners
 
 
-def _along(problem: Problem, fit: Fit, direction: Direction, stage: Stage) -> Runner:
+def along(problem: Problem, fit: Fit, direction: Direction, stage: Stage) -> Runner:
     """Return the best start on the way that a directed test foretells.
 
     The effect comes in and the base gives way together; what is far from small is
     not foretold well, so shorter ways are looked at too.
+
+    Args:
+        problem: of the fit's effects and the one tested, in that order.
+        fit: that was tested.
+        direction: the test.
+        stage: at which starts are compared.
     """
     full = np.concatenate([fit.x + direction.shift, direction.coordinates])
     trials = [np.concatenate([fit.x, direction.coordinates])]
@@ -198,7 +228,7 @@ def started(bench: Bench, fit: Fit, direction: Direction) -> Fit:
         direction: the test.
     """
     problem = make_problem(bench, (*fit.candidates, direction.candidate))
-    runner = _along(problem, fit, direction, MIDDLE)
+    runner = along(problem, fit, direction, MIDDLE)
     return minimise(problem, runner.x, MIDDLE, iterations=MOST_STEPS)
 
 

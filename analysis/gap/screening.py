@@ -65,6 +65,14 @@ class Screening:
     threshold: float
     largest: float
 
+    def leaders(self, count: int) -> list[Candidate]:
+        """Return the candidates of the largest drops."""
+        found: list[Candidate] = []
+        for d in self.directions:
+            if d.candidate not in found and len(found) < count:
+                found.append(d.candidate)
+        return found
+
     def best(self, candidate: Candidate, count: int) -> list[Direction]:
         """Return the best starts of a candidate."""
         own = [d for d in self.directions if d.candidate == candidate]
@@ -76,6 +84,7 @@ def screen(
     fit: Fit,
     candidates: Sequence[Candidate],
     *,
+    stage: Stage = SCREEN,
     seed: int = 0,
 ) -> Screening:
     """Test every candidate at every point of its start grid.
@@ -84,13 +93,15 @@ def screen(
         bench: measurement and model.
         fit: a minimum, possibly with effects switched on.
         candidates: what to test.
+        stage: how thoroughly; the fit must be one of the same window.
         seed: of the null draws.
     """
     starts = [(c, u) for c in candidates for u in start_grid(c)]
     fixed = len(starts)
-    starts += [(c, u) for c in candidates for u in bench.hints(fit, c)]
+    if stage.window is None:
+        starts += [(c, u) for c in candidates for u in bench.hints(fit, c)]
     tangent = _tangent(fit)
-    base = bench.residual(fit.base, fit.terms, SCREEN)
+    base = bench.residual(fit.base, fit.terms, stage)
     left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
     taken = np.empty((len(starts), fit.x.size))
     norm = np.empty(len(starts))
@@ -98,7 +109,7 @@ def screen(
         probe, unit = _probe(candidate, u)
         terms = (*fit.terms, Term(candidate, probe))
         row = np.zeros(tangent.q.shape[0])
-        row[: base.size] = (bench.residual(fit.base, terms, SCREEN) - base) / unit
+        row[: base.size] = (bench.residual(fit.base, terms, stage) - base) / unit
         taken[k] = tangent.q.T @ row
         norm[k] = row @ row
         left[k] = row - tangent.q @ taken[k]

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""Other effects in the place of one: a pair may be half right."""
+
+from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.far_pairs import without
+from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.race import MIDDLE, Progress, race
+from jointbench.analysis.gap.screening import screen
+
+TRIED = 4
+"""Effects that are tried in each place, by what their directed tests foretell."""
+
+
+def exchanged(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
+    """Take each effect out of a fit and race others for its place.
+
+    The first effect of a pair is chosen while the second is missing, so that one may
+    stand in for another. With its partner in, the directed tests see clearly.
+
+    Args:
+        bench: measurement and model.
+        fit: of several effects, which does not explain the records.
+        progress: told what is being tried.
+
+    Returns:
+        Fits of as many effects, in no order.
+    """
+    found: list[Fit] = []
+    for k, candidate in enumerate(fit.candidates):
+        kept = without(bench, fit, k, MIDDLE)
+        known = {candidate.label, *(c.label for c in kept.candidates)}
+        others = [c for c in bench.candidates if c.label not in known]
+        screening = screen(bench, kept, others)
+        found += race(bench, kept, screening, screening.leaders(TRIED), progress)
+    return found
