@@ -255,19 +255,20 @@ def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
 
     A range of the converter that only one channel reaches is the range of all.
     """
-    common = [
-        f
-        for f in fits
-        if len(f.candidates) == 1 and f.candidates[0].site.name == EVERYWHERE
-    ]
     return [
         f
         for f in fits
         if not any(
-            f is not c
-            and len(f.candidates) == 1
-            and f.candidates[0].effect.name == c.candidates[0].effect.name
-            and abs(score(bench, f) - score(bench, c)) < TWIN_WITHIN
-            for c in common
+            _twin_of(f, c) and abs(score(bench, f) - score(bench, c)) < TWIN_WITHIN
+            for c in fits
         )
     ]
+
+
+def _twin_of(fit: Fit, common: Fit) -> bool:
+    """Tell whether a fit is another one with a fault of all at one channel only."""
+    own = [c for c in fit.candidates if c not in common.candidates]
+    other = [c for c in common.candidates if c not in fit.candidates]
+    if len(own) != 1 or len(other) != 1 or other[0].site.name != EVERYWHERE:
+        return False
+    return own[0].effect.name == other[0].effect.name

@@ -1,13 +1,30 @@
 # SPDX-License-Identifier: MIT
 """What keeps a fit from being a name although little of the gap is left."""
 
+import importlib.util
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from jointbench.analysis.gap.catalogue_nonlinear import BOUC_WEN, IWAN, JENKINS
+from jointbench.analysis.gap.catalogue_linear import GAIN_ERROR
+from jointbench.analysis.gap.catalogue_nonlinear import (
+    BOUC_WEN,
+    IWAN,
+    JENKINS,
+    SATURATION,
+)
 from jointbench.analysis.gap.effects import Candidate, Effect, Site
 from jointbench.analysis.gap.fit import Fit
-from jointbench.analysis.gap.naming import at_the_end, model_error
+from jointbench.analysis.gap.lumped_make import make_bench
+from jointbench.analysis.gap.naming import at_the_end, model_error, without_twins
+
+_SPEC = importlib.util.spec_from_file_location(
+    "gap_bench", Path(__file__).with_name("gap_bench.py")
+)
+assert _SPEC is not None and _SPEC.loader is not None
+made = importlib.util.module_from_spec(_SPEC)
+_SPEC.loader.exec_module(made)
 
 JOINT = Site("link", "joint")
 
@@ -45,3 +62,26 @@ def test_only_a_law_that_cannot_be_exact_may_leave_much() -> None:
     iwan = model_error(fit_of(IWAN.effect, [0.01, -1.0, 0.5, 2.6]))
     jenkins = model_error(fit_of(JENKINS.effect, [0.01, -1.0, 2.6]))
     assert iwan >= 10 * jenkins
+
+
+def two_channel_fit(site: str) -> Fit:
+    """Return a fit of a gain and of a converter that clips at a site."""
+    clipping = Candidate(SATURATION.effect, Site("channel", site))
+    gain = Candidate(GAIN_ERROR.effect, Site("channel", "a0"))
+    nothing = np.zeros(3)
+    return Fit(nothing, 1, (gain, clipping), nothing, np.eye(3), 0.0, nothing, nothing)
+
+
+def test_one_fault_of_all_channels_and_of_one_are_one_statement() -> None:
+    """Beside another effect too: only one channel may reach the range of all."""
+    bench = make_bench(made.quiet_campaign())
+    every, one = two_channel_fit("all"), two_channel_fit("a1")
+    assert without_twins(bench, [one, every]) == [every]
+    assert without_twins(bench, [every]) == [every]
+
+
+def test_two_channels_apart_are_two_statements() -> None:
+    """Only a fault of all channels takes the place of another."""
+    bench = make_bench(made.quiet_campaign())
+    fits = [two_channel_fit("a0"), two_channel_fit("a1")]
+    assert without_twins(bench, fits) == fits
