@@ -31,7 +31,9 @@ MOST_EFFECTS = 3
 FIRSTS = 3
 EXCHANGES = 2
 HOPEFUL = 4.0
-"""Cost over the best first's above which a first is not given a second."""
+"""Excess of the cost over the best first's above which a first is given no second."""
+NOTHING = 0.01
+"""Excess over dof that noise may make of nothing."""
 SECONDS = 4
 MIN_GAIN = 35.0
 """Chi2 that a further effect must take, beyond its charge."""
@@ -162,8 +164,7 @@ def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[F
     """Try the best further effects on the best fits."""
     found: list[Fit] = []
     tried: set[frozenset[str]] = set()
-    hopeful = [f for f in fits if f.cost < HOPEFUL * fits[0].cost]
-    for first in hopeful:
+    for first in _hopeful(bench, fits):
         screening = screen(bench, first, others(bench, first))
         chosen = [
             c
@@ -175,6 +176,13 @@ def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[F
         }
         found += race(bench, first, screening, chosen, progress)
     return sorted(found, key=lambda f: score(bench, f))
+
+
+def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+    """Return the fits that a second effect may yet bring ahead of all others."""
+    dof = bench.blocks.dof
+    least = max(fits[0].cost - dof, NOTHING * dof)
+    return [f for f in fits if f.cost - dof < HOPEFUL * least]
 
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
