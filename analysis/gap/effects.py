@@ -5,7 +5,7 @@ An effect is data plus pure functions; the functions that carry its physics belo
 a bench (see `jointbench.analysis.gap.physics`), so the engine never sees any.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -124,6 +124,7 @@ class Effect:
         by_prior: True where the base can take the effect in whole, so that only the
             priors of the base see it (an added mass, a gain).
         refit_nominal: True where the fit must start from the nominal base as well.
+        has_sliders: True for friction laws made of sliders that stick and slip.
     """
 
     name: str
@@ -134,6 +135,7 @@ class Effect:
     report: Report | None = None
     by_prior: bool = False
     refit_nominal: bool = False
+    has_sliders: bool = False
 
     def reported(self, values: FloatArray) -> tuple[Reported, ...]:
         """Return what the user reads of fitted `values`, shape (n_parameters,)."""
@@ -156,6 +158,24 @@ class Candidate:
     def label(self) -> str:
         """Name and site in one word, for progress lines and tables."""
         return f"{self.effect.name}@{self.site}"
+
+
+def may_join(candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
+    """Tell whether a candidate may be added to what is fitted.
+
+    Not twice the same; and two laws of sliders across one link are one law of more
+    sliders, which no measurement splits.
+
+    Args:
+        candidate: what would be added.
+        fitted: what is there.
+    """
+    if candidate in fitted:
+        return False
+    return not (
+        candidate.effect.has_sliders
+        and any(c.effect.has_sliders and c.site == candidate.site for c in fitted)
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

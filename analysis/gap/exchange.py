@@ -2,6 +2,7 @@
 """Other effects in the place of one: a pair may be half right."""
 
 from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.effects import may_join
 from jointbench.analysis.gap.far_pairs import without
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.race import MIDDLE, Progress, race
@@ -28,8 +29,11 @@ def exchanged(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
     found: list[Fit] = []
     for k, candidate in enumerate(fit.candidates):
         kept = without(bench, fit, k, MIDDLE)
-        known = {candidate.label, *(c.label for c in kept.candidates)}
-        others = [c for c in bench.candidates if c.label not in known]
+        others = [
+            c
+            for c in bench.candidates
+            if c != candidate and may_join(c, kept.candidates)
+        ]
         screening = screen(bench, kept, others)
         found += race(bench, kept, screening, screening.leaders(TRIED), progress)
     return found

@@ -14,7 +14,7 @@ import numpy as np
 
 from jointbench.analysis.gap.bench import Bench, Stage
 from jointbench.analysis.gap.descent import fit_stages, minimise
-from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.effects import Candidate, may_join
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.race import Progress, along
 from jointbench.analysis.gap.screening import screen
@@ -75,7 +75,7 @@ def without(bench: Bench, fit: Fit, k: int, stage: Stage) -> Fit:
 
 def _with_one_more(bench: Bench, fit: Fit, count: int, progress: Progress) -> list[Fit]:
     """Return short fits of the effects that directed tests put first."""
-    others = [c for c in bench.candidates if c not in fit.candidates]
+    others = [c for c in bench.candidates if may_join(c, fit.candidates)]
     screening = screen(bench, fit, others, stage=SHORT)
     found = []
     for candidate in screening.leaders(count):

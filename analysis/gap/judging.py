@@ -111,7 +111,7 @@ def _judged(
 ) -> _Judged:
     """Settle the first of some fits and judge it."""
     bench, fit = _settled(bench, ranked[0], progress)
-    left = screen(bench, fit, [*others(bench, fit), *bench.probes])
+    left = screen(bench, fit, [*_others(bench, fit), *bench.probes])
     return _Judged(ranked[0], fit, bench, left, gate(bench, fit, base, left, ranked))
 
 
@@ -175,6 +175,5 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     return bench, fit
 
 
-def others(bench: Bench, fit: Fit) -> list[Candidate]:
-    """Return what the catalogue holds beside the effects of a fit."""
+def _others(bench: Bench, fit: Fit) -> list[Candidate]:
     return [c for c in bench.candidates if c not in fit.candidates]

@@ -9,11 +9,11 @@ import numpy as np
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.crossing import crossed
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
-from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.effects import Candidate, may_join
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.far_pairs import far_pairs
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.judging import far_off, judge, others
+from jointbench.analysis.gap.judging import far_off, judge
 from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import (
     Progress,
@@ -29,7 +29,9 @@ SETTLED = 0.5
 """Change of the cost below which noise, scatter and fit agree with each other."""
 MOST_EFFECTS = 3
 FIRSTS = 3
-EXCHANGES = 2
+EXCHANGES = 1
+THIRD_LEFT = 0.01
+"""Share of the base's excess chi2 that a pair may leave for a third effect."""
 HOPEFUL = 4.0
 """Excess of the cost over the best first's above which a first is given no second."""
 NOTHING = 0.01
@@ -78,7 +80,7 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         if not judged.unexplained or not fits or len(fits[0].candidates) < count:
             break
         firsts = fits[: FIRSTS if count == 1 else 1]
-        if count > 1 and not _fit_for_more(refined, firsts[0]):
+        if count > 1 and not _fit_for_more(refined, firsts[0], base):
             break
         if count == 1 and far_off(refined, firsts[0]):
             more = race_on(refined, far_pairs(refined, progress), progress)
@@ -116,14 +118,15 @@ def _exchange(
     return bench, fits, judged
 
 
-def _fit_for_more(bench: Bench, fit: Fit) -> bool:
+def _fit_for_more(bench: Bench, fit: Fit, base: Fit) -> bool:
     """Tell whether a pair is worth a third effect.
 
-    Three at one link explain anything, and a pair that leaves most is no part of it.
+    Three at one link explain anything, and a pair that leaves much is no part of it.
     """
     links = [c.site for c in fit.candidates if c.site.kind == "link"]
     apart = len(set(links)) == len(links)
-    return apart and not far_off(bench, fit)
+    dof = bench.blocks.dof
+    return apart and fit.chi2 - dof < THIRD_LEFT * (base.chi2 - dof)
 
 
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:
@@ -165,7 +168,7 @@ def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[F
     found: list[Fit] = []
     tried: set[frozenset[str]] = set()
     for first in _hopeful(bench, fits):
-        screening = screen(bench, first, others(bench, first))
+        screening = screen(bench, first, _addable(bench, first))
         chosen = [
             c
             for c in _seconds(bench, first, screening)
@@ -176,6 +179,10 @@ def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[F
         }
         found += race(bench, first, screening, chosen, progress)
     return sorted(found, key=lambda f: score(bench, f))
+
+
+def _addable(bench: Bench, fit: Fit) -> list[Candidate]:
+    return [c for c in bench.candidates if may_join(c, fit.candidates)]
 
 
 def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
@@ -192,7 +199,7 @@ def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
     for d in screening.directions:
         if d.candidate not in chosen and len(chosen) < SECONDS:
             chosen.append(d.candidate)
-    for c in others(bench, first):
+    for c in _addable(bench, first):
         if pulled and c.effect.by_prior and c not in chosen:
             chosen.append(c)
     return chosen
