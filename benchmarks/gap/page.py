@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from estimates import coverage, force_curves, pulls, shrinkage, site_share
+from estimates import coverage, fisher, force_curves, pulls, shrinkage, site_share
 from outcomes import (
     NAMEABLE,
     WORDS,
@@ -182,6 +182,7 @@ def page(runs: list[Run], engine: str) -> str:
         [f"Pull where only the priors see the effect: {pulls(runs)}.", ""],
         ["## What was told of each effect", "", *matrix(runs), ""],
         ["## Parameters of right names", "", *coverage(runs), ""],
+        [f"Sd told over the Fisher bound, one parameter: {fisher(runs)}.", ""],
         [f"Force curves of hysteretic laws: {force_curves(runs)}.", ""],
         ["## Confidence", "", *reliability(runs), ""],
         ["## Beside answerers that do not think", "", *trivial(sets), ""],

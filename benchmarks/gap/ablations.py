@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""Diagnose the same campaigns with one part of the engine switched off at a time.
+
+Usage: python benchmarks/gap/ablations.py FOLDER RUNS.jsonl --count 100 [--jobs 2]
+       python benchmarks/gap/ablations.py --page RUNS.jsonl > docs/gap-ablations.md
+
+Campaigns are taken by turns from the kinds in the folder, single effects more often
+than nothing and what is taken out; RUNS.jsonl goes on where it was.
+"""
+
+import argparse
+import json
+import multiprocessing
+import os
+import sys
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from outcomes import Run, word_of
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+ONE_TEST = 7.88
+"""99.5 % of chi2 with one degree of freedom: what a single test would ask for."""
+SHARES = {"single": 6, "null": 2, "hidden": 2}
+
+
+def no_coarse_stages() -> None:
+    """Fit whole records from the first step on."""
+    from jointbench.analysis.gap import loop, race
+    from jointbench.analysis.gap.bench import FULL
+
+    loop.BASE_STAGES = ((FULL, 38),)
+    race.EVERYDAY = np.inf
+    loop.far_off = lambda *_: False
+
+
+def no_bootstrap() -> None:
+    """Hold the largest of all directed tests against the limit of one."""
+    from jointbench.analysis.gap import screening
+
+    screening.null_threshold = lambda *_, **__: ONE_TEST
+
+
+def no_pulls() -> None:
+    """Let the base go where it likes at no price, and ask nothing of it."""
+    from jointbench.analysis.gap import fit, naming
+
+    free = fit.make_problem
+
+    def unpriced(bench: Any, candidates: Any) -> Any:
+        from dataclasses import replace
+
+        problem = free(bench, candidates)
+        prior = problem.prior.copy()
+        prior[: problem.n_base] *= 1e-4
+        return replace(problem, prior=prior)
+
+    naming.PULL_LIMIT = np.inf
+    _everywhere("make_problem", unpriced)
+
+
+def one_start() -> None:
+    """Give each candidate one start, on the way its directed test foretells."""
+    from jointbench.analysis.gap import race
+
+    race.STARTS = 1
+    race.SHARES = (1.0,)
+    race.HUGE = np.inf
+
+
+def no_groups() -> None:
+    """Score all records as one, and ask no part of them."""
+    from jointbench.analysis.gap import naming
+
+    naming.UNLIKE_CHANCE = naming.UNLIKE_BASE_CHANCE = -1.0
+
+
+def no_probes() -> None:
+    """Look for what is left in the catalogue alone."""
+    from jointbench.analysis.gap import lumped_make
+
+    lumped_make.PROBES = ()
+
+
+def _everywhere(name: str, value: Any) -> None:
+    """Put a function in the place of another in all modules that imported it."""
+    for module in list(sys.modules.values()):
+        if module.__name__.startswith("jointbench.analysis.gap"):
+            if hasattr(module, name):
+                setattr(module, name, value)
+
+
+VARIANTS: Mapping[str, Callable[[], None]] = {
+    "whole engine": lambda: None,
+    "without coarse-to-fine": no_coarse_stages,
+    "without bootstrap null": no_bootstrap,
+    "without prior pulls": no_pulls,
+    "without multi-start": one_start,
+    "without group scoring": no_groups,
+    "without probes": no_probes,
+}
+
+
+def judge_variant(job: tuple[str, Path]) -> Run:
+    """Diagnose one campaign by one variant, in a process of its own."""
+    from judge import judge_one
+
+    from jointbench.analysis.gap import diagnose  # noqa: F401 - all modules loaded
+
+    variant, path = job
+    VARIANTS[variant]()
+    return judge_one(path, whole=False) | {"variant": variant}
+
+
+def chosen(folder: Path, count: int) -> list[Path]:
+    """Return campaigns of each kind, by its share."""
+    found: list[Path] = []
+    for kind, share in SHARES.items():
+        paths = sorted(folder.glob(f"**/{kind}-*.json"))
+        found += paths[: round(count * share / sum(SHARES.values()))]
+    return found
+
+
+def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
+    """Diagnose what is not yet in the file."""
+    done = set()
+    if runs.exists():
+        for line in runs.read_text(encoding="utf-8").splitlines():
+            run = json.loads(line)
+            done.add((run["variant"], run["kind"], run["seed"]))
+    todo = [
+        (variant, path)
+        for path in chosen(folder, count)
+        for variant in VARIANTS
+        if (variant, *_key(path)) not in done
+    ]
+    with (
+        multiprocessing.Pool(jobs, maxtasksperchild=1) as pool,
+        runs.open("a", encoding="utf-8") as out,
+    ):
+        for k, run in enumerate(pool.imap_unordered(partial(judge_variant), todo)):
+            out.write(json.dumps(run) + "\n")
+            out.flush()
+            sys.stderr.write(f"\r{k + 1}/{len(todo)} {run['variant']}   ")
+
+
+def _key(path: Path) -> tuple[str, int]:
+    kind, _, seed = path.stem.partition("-")
+    return kind, int(seed)
+
+
+def page(runs: list[Run]) -> str:
+    """Return the page: what each part buys."""
+    lines = [
+        "# What each part of the gap engine buys",
+        "",
+        "Made by `benchmarks/gap/ablations.py`: the same campaigns, one part switched "
+        "off at a time. Right: the very name, none where nothing is missing, unknown "
+        "where the effect was taken out. Doubt: ambiguous, or unknown, or none where "
+        "an effect is hidden. Wrong: a wrong name, or one where nothing is missing.",
+        "",
+        "| engine | nothing missing: right, wrong | one effect: right, doubt, wrong | "
+        "taken out: right, wrong | median s |",
+        "|---|---|---|---|---|",
+    ]
+    return "\n".join([*lines, *(_row(v, runs) for v in VARIANTS), ""])
+
+
+def _row(variant: str, runs: list[Run]) -> str:
+    mine = [r for r in runs if r["variant"] == variant]
+    null, single, hidden = (
+        [word_of(r) for r in mine if r["kind"] == kind]
+        for kind in ("null", "single", "hidden")
+    )
+    wrong = {"wrong name", "right"}
+    seconds = np.median([r["seconds"] for r in mine]) if mine else np.nan
+    doubt = len(single) - single.count("right") - single.count("wrong name")
+    return (
+        f"| {variant} | {null.count('none')}, {sum(w in wrong for w in null)} of "
+        f"{len(null)} | {single.count('right')}, {doubt}, "
+        f"{single.count('wrong name')} of {len(single)} | {hidden.count('unknown')}, "
+        f"{hidden.count('wrong name')} of {len(hidden)} | {seconds:.1f} |"
+    )
+
+
+def main() -> None:
+    """Run the variants, or print the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("runs", type=Path, nargs="?")
+    parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--page", action="store_true")
+    arguments = parser.parse_args()
+    if arguments.page:
+        lines = arguments.folder.read_text(encoding="utf-8").splitlines()
+        sys.stdout.write(page([json.loads(line) for line in lines]))
+        return
+    run_all(arguments.folder, arguments.runs, arguments.count, arguments.jobs)
+
+
+if __name__ == "__main__":
+    main()
