@@ -142,7 +142,8 @@ def without_trend(
     A trend over the records is no scatter, but counts as scatter if nothing is done:
     then it hides itself. Only a pattern that chance would hardly make is taken out.
     Records say very different amounts (a soft hit hardly anything), so that each
-    counts by its own variance and the scatter that the pattern leaves.
+    counts by its own variance and the scatter that the pattern leaves. Their weighted
+    mean stays: the base has already brought it to nothing.
 
     Args:
         values: shape (n_records,).
@@ -157,17 +158,19 @@ def without_trend(
         q = pattern - pattern.mean()
         if q @ q < 1e-12 or values.size < 4:
             continue
-        slope, squared = _trend(values, variances, q)
+        slope, squared, middle = _trend(values, variances, q)
         chance = float(scipy.stats.f.sf(squared, 1, values.size - 2))
         if chance < least:
-            best, least = values - slope * q, chance
+            best, least = values - slope * (q - middle), chance
     return best
 
 
 def _trend(
     values: FloatArray, variances: FloatArray, q: FloatArray
-) -> tuple[float, float]:
-    """Return the slope along a pattern and the square of slope over sd.
+) -> tuple[float, float, float]:
+    """Return the slope along a pattern, the square of slope over sd, and its middle.
+
+    The middle is the weighted mean of the pattern.
 
     Source:
         Weighted least squares of a mean and a slope, the scatter by restricted
@@ -185,7 +188,8 @@ def _trend(
     deviance += np.linalg.slogdet(normal)[1]
     at = int(np.argmin(deviance))
     slope = float(solution[at, 1])
-    return slope, slope**2 / float(np.linalg.inv(normal[at])[1, 1])
+    middle = float(weight[at] @ q / weight[at].sum())
+    return slope, slope**2 / float(np.linalg.inv(normal[at])[1, 1]), middle
 
 
 def _scatter_grid() -> FloatArray:
