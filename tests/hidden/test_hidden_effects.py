@@ -70,6 +70,16 @@ def test_two_hidden_effects_are_both_named(tmp_path: Path) -> None:
     assert found.verdict is Finding.NAMED
 
 
+def test_two_great_effects_are_both_named(tmp_path: Path) -> None:
+    """A cubic spring and a delay of hundreds of times the noise each."""
+    names = ("cubic_stiffness", "delay")
+    campaign = quick_campaign(922, effects=names, size=1.0, grid="small", noise=0.05)
+    found = told(campaign, tmp_path)
+    assert {e.name for e in found.effects} == set(names)
+    assert found.verdict is Finding.NAMED
+    assert found.gap_before.chi2_per_dof > 30.0
+
+
 @pytest.mark.parametrize("name", ["extra_damping", "hidden_mode", "saturation"])
 def test_an_effect_out_of_the_catalogue_gets_no_other_name(
     name: str, tmp_path: Path

@@ -10,6 +10,7 @@ import pytest
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import Blocks, Stage
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
+from jointbench.analysis.gap.crossing import caught_up, crossed
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import (
     PROBE_FAMILY,
@@ -19,13 +20,14 @@ from jointbench.analysis.gap.effects import (
     Site,
     Term,
 )
+from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.screening import null_threshold
 
 ROWS, GROUPS = 4000, 8
-POWERS = {"square": 2, "cube": 3}
+POWERS = {"square": 2, "cube": 3, "fifth": 5}
 
 
 def effect(name: str) -> Candidate:
@@ -143,6 +145,30 @@ def test_what_a_wrong_effect_leaves_is_told_by_its_shape() -> None:
     outcome = run(replace(bench, probes=(probe,)))
     assert "look like: cube, curve:y" in outcome.gate.reason
     assert names(outcome) == ["square"]
+
+
+def test_half_a_pair_is_exchanged() -> None:
+    """A cube in the place of a fifth power gives way once its partner is in."""
+    noise = 0.01 * np.random.default_rng(8).standard_normal(ROWS)
+    measured = 1.05 * LOAD + 0.2 * LOAD**2 + 0.3 * LOAD**5 + noise
+    bench = Curve(measured, tuple(effect(name) for name in POWERS))
+    wrong = (effect("square"), effect("cube"))
+    fit = minimise(make_problem(bench, wrong), np.array([0.0, 0.1, 0.1]))
+    best = min(exchanged(bench, fit, lambda line: None), key=lambda f: f.cost)
+    assert {c.effect.name for c in best.candidates} == {"square", "fifth"}
+    assert best.cost < 0.9 * fit.cost
+
+
+def test_a_fit_that_went_astray_catches_up_from_the_base_of_the_best() -> None:
+    """From a slope of e^3 the way down is long; from the best's base it is short."""
+    bench = curve(cube=0.2)
+    best = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
+    astray = replace(best, x=np.array([3.0, -15.0]), cost=1e9)
+    again = crossed(bench, [best, astray], lambda line: None)[1]
+    assert again.cost == pytest.approx(best.cost, rel=1e-6)
+    assert caught_up(bench, astray, best, lambda line: None).cost == pytest.approx(
+        best.cost, rel=1e-6
+    )
 
 
 def test_the_null_threshold_of_one_direction_is_the_quantile_of_chi_square() -> None:
