@@ -5,7 +5,12 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.effects import Effect, Parameter, Reported, Transform
-from jointbench.analysis.gap.physics import ElementState, LumpedEffect, one_row
+from jointbench.analysis.gap.physics import (
+    Conditions,
+    ElementState,
+    LumpedEffect,
+    one_row,
+)
 
 LOG = Transform.LOG
 
@@ -50,8 +55,12 @@ def _hidden_mode_report(v: FloatArray) -> tuple[Reported, ...]:
     )
 
 
+def _preload_rise(conditions: Conditions, v: FloatArray) -> FloatArray:
+    return np.asarray(conditions.preload ** v[0] - 1.0)
+
+
 def _preload_stiffness(state: ElementState, v: FloatArray) -> ComplexArray:
-    rise = state.stiffness * (state.conditions.preload ** v[0] - 1.0)
+    rise = state.stiffness * _preload_rise(state.conditions, v)
     return np.asarray(rise[:, None] * np.ones_like(state.s))
 
 
@@ -60,8 +69,12 @@ def _preload_damping(state: ElementState, v: FloatArray) -> ComplexArray:
     return np.asarray(rise[:, None] * state.s)
 
 
+def _loosening_rise(conditions: Conditions, v: FloatArray) -> FloatArray:
+    return np.asarray(-v[0] * conditions.progress)
+
+
 def _loosening(state: ElementState, v: FloatArray) -> ComplexArray:
-    loss = -state.stiffness * v[0] * state.conditions.progress
+    loss = state.stiffness * _loosening_rise(state.conditions, v)
     return np.asarray(loss[:, None] * np.ones_like(state.s))
 
 
@@ -178,6 +191,7 @@ PRELOAD_STIFFNESS = LumpedEffect(
     ),
     ("link",),
     stiffness=_preload_stiffness,
+    rise=_preload_rise,
 )
 PRELOAD_DAMPING = LumpedEffect(
     Effect(
@@ -200,6 +214,7 @@ LOOSENING = LumpedEffect(
     ),
     ("link",),
     stiffness=_loosening,
+    rise=_loosening_rise,
 )
 DELAY = LumpedEffect(
     Effect(

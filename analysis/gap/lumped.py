@@ -15,7 +15,7 @@ from jointbench.analysis.gap.catalogue import site_index
 from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.forward import Excitation, prepare_excitation, respond
-from jointbench.analysis.gap.lumped_noise import Settled, refine_noise
+from jointbench.analysis.gap.lumped_noise import Settled, refine_noise, settle
 from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import Conditions, LumpedEffect
 from jointbench.analysis.gap.probes import PROBES
@@ -24,6 +24,8 @@ from jointbench.analysis.gap.views import residual_peaks, slice_views
 
 PEAKED = ("hum", "hidden_mode")
 """Effects whose second parameter is a frequency at which the residual peaks."""
+LEAST_RISE = -0.999
+"""Smallest share that laws may add to a stiffness: less would be none at all."""
 WINDOW_REACH = 5.0
 """Decay times after which a windowed record is cut."""
 
@@ -131,20 +133,50 @@ class LumpedBench:
         """Return model minus measurement, shape of the response.
 
         The settling of each hit counts as scatter: its share is left in the misfit.
+        The response is taken at the stiffness of each hit, so that a law which does
+        nothing but change it from hit to hit enters by the slope alone.
         """
-        settling = self.excitation.conditions.settling
-        if self.settled is None or settling is None:
+        if self.settled is None:
             r = self.response(base, terms, oversampling)
             r -= self.campaign.response
             return r
         mean = self.mean_stiffness(base, self.settled)
         moved = base.copy()
         moved[self.joint_at] = mean
-        r = self.response(moved, terms, oversampling)
+        others = [
+            t
+            for t, a in zip(terms, self.actions(terms), strict=True)
+            if not self._rises(a)
+        ]
+        hits = self.hit_stiffness(self.settled)
+        r = settle(self, hits).response(moved, others, oversampling)
         r -= self.campaign.response
-        share = base[self.joint_at] - mean - settling
+        share = base[self.joint_at] - mean + np.log1p(self.rise(terms)) - hits
         r += share[:, None, None] * self.settled.slope
         return r
+
+    def hit_stiffness(self, settled: Settled) -> FloatArray:
+        """Return the log of each hit's stiffness over the mean, shape (n_records,)."""
+        settling = self.excitation.conditions.settling
+        left = 1.0 if settling is None else np.exp(settling)
+        return np.asarray(np.log(left + settled.rise))
+
+    def rise(self, terms: Sequence[Term]) -> FloatArray:
+        """Return what terms add to the joint's stiffness in each record [-].
+
+        Shape (n_records,); as a share of the stiffness without them, above -1.
+        """
+        total = np.zeros(len(self.campaign.hit))
+        for action in self.actions(terms):
+            if self._rises(action) and action.entry.rise is not None:
+                conditions = self.excitation.conditions
+                total += action.entry.rise(conditions, action.values)
+        return np.maximum(total, LEAST_RISE)
+
+    def _rises(self, action: Action) -> bool:
+        """Tell whether an action is a mere change of the first joint's stiffness."""
+        joint = self.joint_at - len(self.campaign.model.bodies)
+        return action.entry.rise is not None and action.index == joint
 
     def mean_stiffness(self, base: FloatArray, settled: Settled) -> float:
         """Return the log of the joint's stiffness that the settling was added to.

@@ -32,7 +32,9 @@ LOST = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
 EVERYDAY = 30.0
 """Chi2 over dof beyond which what seems to settle is the missing effect itself."""
-SETTLING_REACH = 3.0
+LEAST_FACTOR = 1e-3
+"""Smallest share of a stiffness that a settling may leave."""
+SETTLING_REACH = 10.0
 """Scatter sd beyond which a settling is no scatter but a missing effect."""
 SCATTER_STEP = 1e-6
 """Difference step of the ways to scatter: at 1e-4 the late record has already bent a
@@ -51,17 +53,19 @@ class Settled:
     Attributes:
         anchor: base at which the model was expanded, shape (n_base,).
         slope: change of the response with it, shape of the response.
+        rise: what laws added to the joint's stiffness there [-], (n_records,).
     """
 
     anchor: FloatArray
     slope: FloatArray
+    rise: FloatArray
 
 
 def refine_noise(
     bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
 ) -> "LumpedBench":
     """Return the bench with its noise estimated at a solution."""
-    at = _centred(bench, base)
+    at = _centred(bench, base, terms)
     model = at.response(base, terms)
     residual = model - bench.campaign.response
     bench.mask(residual)
@@ -77,32 +81,40 @@ def refine_noise(
         bare.basis,
         bare.shrink,
     )
+    rise = at.rise(terms)
     known = at.excitation.conditions.settling
     if known is not None:
-        coefficients[:, 1] -= known
+        coefficients[:, 1] -= np.log((np.exp(known) + rise) / (1.0 + rise))
     scatter, groups = _scatter_of(at, coefficients, variances)
     noise = replace(noise, scatter=scatter, scatter_known=groups)
     refined = _with_noise(at, noise, columns, ways)
     lost = np.linalg.norm(residual) > LOST * np.linalg.norm(model)
     if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
-        return _settle(refined, None)
+        return settle(refined, None)
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
     reach = SETTLING_REACH * scatter[1]
-    settling = np.clip(-coefficients[:, 1] * share, -reach, reach)
+    off = np.clip(-coefficients[:, 1] * share, -reach, reach)
+    settling = np.log(np.maximum(np.exp(off) * (1.0 + rise) - rise, LEAST_FACTOR))
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)
     if left @ left > EVERYDAY * bench.blocks.dof:
-        return _settle(refined, None)
+        return settle(refined, None)
     return expanded
 
 
-def _centred(bench: "LumpedBench", base: FloatArray) -> "LumpedBench":
-    """Return the bench with each hit's stiffness kept, about the base's mean."""
-    settling = bench.excitation.conditions.settling
-    if bench.settled is None or settling is None:
+def _centred(
+    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
+) -> "LumpedBench":
+    """Return the bench with each hit's stiffness kept, about the base's mean.
+
+    A settling is what base and laws leave of that stiffness.
+    """
+    if bench.settled is None:
         return bench
     mean = bench.mean_stiffness(base, bench.settled)
-    return _settle(bench, settling + mean - base[bench.joint_at])
+    kept = np.exp(mean - base[bench.joint_at] + bench.hit_stiffness(bench.settled))
+    rest = np.maximum(kept - bench.rise(terms), LEAST_FACTOR)
+    return settle(bench, np.log(rest))
 
 
 def _channel_noise(
@@ -149,13 +161,13 @@ def _expanded(
     What is taken by the slope is then the very direction that whitening blurs,
     and nothing of the settling leaks past it.
     """
-    there = _settle(bench, settling)
+    there = settle(bench, settling)
     sigma = bench.noise.sigma
     moved = there.response(base, terms)
     ways = _scatter_ways(there, base, terms, moved, sigma)
     slope = ways[:, 1].reshape(*sigma.shape, -1) * sigma[:, :, None]
     whitened = _with_noise(there, bench.noise, columns, ways)
-    settled = Settled(base.copy(), slope)
+    settled = Settled(base.copy(), slope, there.rise(terms))
     return replace(whitened, settled=settled)
 
 
@@ -238,8 +250,13 @@ def _harder(
     return (pushed.response(base, terms) - model) / SCATTER_STEP
 
 
-def _settle(bench: "LumpedBench", settling: FloatArray | None) -> "LumpedBench":
-    """Return the bench with its model taken at a settling of the joint."""
+def settle(bench: "LumpedBench", settling: FloatArray | None) -> "LumpedBench":
+    """Return the bench with its model taken at a settling of the joint.
+
+    Args:
+        bench: to be changed.
+        settling: log of the joint's stiffness in each hit over its mean, (n_records,).
+    """
     conditions = replace(bench.excitation.conditions, settling=settling)
     excitation = replace(bench.excitation, conditions=conditions)
     return replace(bench, excitation=excitation, settled=None, short={})

@@ -75,6 +75,7 @@ Stiffness = Callable[[ElementState, FloatArray], ComplexArray]
 Transfer = Callable[[ComplexArray, FloatArray], ComplexArray]
 Shape = Callable[[FloatArray, FloatArray, FloatArray, float], FloatArray]
 Bend = Callable[[FloatArray], Law]
+Rise = Callable[[Conditions, FloatArray], FloatArray]
 
 
 def _nothing() -> Mapping[str, str]:
@@ -97,6 +98,10 @@ class LumpedEffect:
         mixing: factor of the other channels added to this one.
         shape: from (model, measured, values, sample_rate) to the channel's output
             [SI], all of shape (n_records, n_channels, n_samples).
+        rise: relative change of a link's stiffness in each record, for effects that do
+            nothing else, from conditions and values, shape (n_records,); None for
+            others. Where the joint's stiffness is taken from each hit, it enters by
+            the slope there.
         every_channel: True where a fault of all channels alike is a site of its own.
     """
 
@@ -108,6 +113,7 @@ class LumpedEffect:
     transfer: Transfer | None = None
     mixing: Callable[[FloatArray], float] | None = None
     shape: Shape | None = None
+    rise: Rise | None = None
     every_channel: bool = False
 
 
