@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""Where a joint settles anew in each hit, laws of its stiffness are found as well."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.descent import minimise
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.loop import fit_base
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_make import make_bench
+from jointbench.analysis.gap.lumped_noise import settle
+
+_spec = importlib.util.spec_from_file_location(
+    "gap_bench", Path(__file__).with_name("gap_bench.py")
+)
+assert _spec is not None and _spec.loader is not None
+made = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(made)
+
+SETTLING = 1.5e-3 * np.array([0.4, -1.1, 0.8, 1.3, -0.6, 0.2, -0.9, 0.1])
+BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
+
+
+def settled_campaign(exponent: float) -> Campaign:
+    """Return hits of a joint that settles, and stiffens with preload^exponent."""
+    bench = make_bench(made.quiet_campaign())
+    law = made.term_of(bench, "preload_stiffness", "link:joint", [exponent])
+    clean = settle(bench, SETTLING).response(BASE, [law])
+    rng = np.random.default_rng(4)
+    return made.quiet_campaign(clean + 0.05 * rng.standard_normal(clean.shape))
+
+
+def fitted(exponent: float) -> tuple[LumpedBench, float, float, float]:
+    """Return the bench, the exponent found, its sd and the chi2 that it took."""
+    bench, base = fit_base(make_bench(settled_campaign(exponent)))
+    assert isinstance(bench, LumpedBench)
+    law = made.term_of(bench, "preload_stiffness", "link:joint", [0.0])
+    problem = make_problem(bench, (law.candidate,))
+    fit = minimise(problem, np.concatenate([base.x, [0.0]]))
+    sd = float(np.sqrt(fit.covariance[-1, -1]))
+    return bench, float(fit.x[-1]), sd, base.cost - fit.cost
+
+
+@pytest.mark.parametrize("exponent", [0.0, 0.02, -0.02])
+def test_a_preload_law_is_found_within_the_scatter_of_the_hits(exponent: float) -> None:
+    """Its sd is that of the one hit at the higher preload, its value within 4 of it."""
+    bench, found, sd, _ = fitted(exponent)
+    assert bench.expanded
+    assert 1e-3 < sd < 6e-3
+    assert found == pytest.approx(exponent, abs=4 * sd)
+
+
+def test_a_trend_that_the_scatter_may_be_takes_no_more_chi2_than_it_is_worth() -> None:
+    """The drop is the square of the distance from off, in sd."""
+    _, found, sd, drop = fitted(0.004)
+    assert drop == pytest.approx((found / sd) ** 2, rel=0.1, abs=0.1)
