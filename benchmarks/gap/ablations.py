@@ -4,8 +4,7 @@
 Usage: python benchmarks/gap/ablations.py FOLDER RUNS.jsonl --count 100 [--jobs 2]
        python benchmarks/gap/ablations.py --page RUNS.jsonl > docs/gap-ablations.md
 
-Campaigns are taken by turns from the kinds in the folder, single effects more often
-than nothing and what is taken out; RUNS.jsonl goes on where it was.
+Half of the campaigns hide one effect, half nothing; RUNS.jsonl goes on where it was.
 """
 
 import argparse
@@ -19,13 +18,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from outcomes import Run, word_of
+from outcomes import NAMEABLE, Run, word_of
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 ONE_TEST = 7.88
 """99.5 % of chi2 with one degree of freedom: what a single test would ask for."""
-SHARES = {"single": 6, "null": 2, "hidden": 2}
+KINDS = ("single", "null")
 
 
 def no_coarse_stages() -> None:
@@ -117,12 +116,9 @@ def judge_variant(job: tuple[str, Path]) -> Run:
 
 
 def chosen(folder: Path, count: int) -> list[Path]:
-    """Return campaigns of each kind, by its share."""
-    found: list[Path] = []
-    for kind, share in SHARES.items():
-        paths = sorted(folder.glob(f"**/{kind}-*.json"))
-        found += paths[: round(count * share / sum(SHARES.values()))]
-    return found
+    """Return as many campaigns of each kind."""
+    each = count // len(KINDS)
+    return [p for kind in KINDS for p in sorted(folder.glob(f"{kind}-*.json"))[:each]]
 
 
 def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
@@ -159,32 +155,36 @@ def page(runs: list[Run]) -> str:
         "# What each part of the gap engine buys",
         "",
         "Made by `benchmarks/gap/ablations.py`: the same campaigns, one part switched "
-        "off at a time. Right: the very name, none where nothing is missing, unknown "
-        "where the effect was taken out. Doubt: ambiguous, or unknown, or none where "
-        "an effect is hidden. Wrong: a wrong name, or one where nothing is missing.",
+        "off at a time. Right: the very name, or none where nothing is missing. Wrong: "
+        "another name, or any where nothing is missing. The rest is doubt: ambiguous, "
+        "unknown, or none where an effect is hidden. Margins are log-uniform from 1 to "
+        "10,000, so that a part of the effects cannot be named by anyone.",
         "",
-        "| engine | nothing missing: right, wrong | one effect: right, doubt, wrong | "
-        "taken out: right, wrong | median s |",
-        "|---|---|---|---|---|",
+        "| engine | nothing missing: right, wrong, of | margin >= 50: right, wrong, of "
+        "| margin < 50: right, wrong, of | median s | worst s |",
+        "|---|---|---|---|---|---|",
     ]
     return "\n".join([*lines, *(_row(v, runs) for v in VARIANTS), ""])
 
 
 def _row(variant: str, runs: list[Run]) -> str:
     mine = [r for r in runs if r["variant"] == variant]
-    null, single, hidden = (
-        [word_of(r) for r in mine if r["kind"] == kind]
-        for kind in ("null", "single", "hidden")
-    )
-    wrong = {"wrong name", "right"}
-    seconds = np.median([r["seconds"] for r in mine]) if mine else np.nan
-    doubt = len(single) - single.count("right") - single.count("wrong name")
-    return (
-        f"| {variant} | {null.count('none')}, {sum(w in wrong for w in null)} of "
-        f"{len(null)} | {single.count('right')}, {doubt}, "
-        f"{single.count('wrong name')} of {len(single)} | {hidden.count('unknown')}, "
-        f"{hidden.count('wrong name')} of {len(hidden)} | {seconds:.1f} |"
-    )
+    null = [r for r in mine if r["kind"] == "null"]
+    single = [r for r in mine if r["kind"] == "single"]
+    clear = [r for r in single if min(r["margins"]) >= NAMEABLE]
+    faint = [r for r in single if min(r["margins"]) < NAMEABLE]
+    seconds = [r["seconds"] for r in mine] or [np.nan]
+    cells = [_share(part) for part in (null, clear, faint)]
+    times = f"{np.median(seconds):.1f} | {max(seconds):.0f}"
+    return f"| {variant} | {' | '.join(cells)} | {times} |"
+
+
+def _share(runs: list[Run]) -> str:
+    """Return right, wrong and all."""
+    words = [word_of(r) for r in runs]
+    if runs and runs[0]["kind"] == "null":
+        return f"{words.count('none')}, {words.count('wrong name')}, {len(runs)}"
+    return f"{words.count('right')}, {words.count('wrong name')}, {len(runs)}"
 
 
 def main() -> None:
