@@ -19,7 +19,7 @@ from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.naming import noise_sd, weakest
+from jointbench.analysis.gap.naming import GLOBAL_SD, noise_sd, weakest
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.race import Progress, score
 from jointbench.analysis.gap.records import (
@@ -136,13 +136,17 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
 
 
 def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:
-    """Return a warning where one record holds nearly all of the misfit."""
+    """Return a warning where one record holds nearly all of the misfit.
+
+    Its excess must be more than that of noise, or some record always holds most.
+    """
     excess = outcome.best.residual**2 - 1.0
     groups = bench.blocks.group
     share = np.bincount(groups, weights=excess)
     worst = int(np.argmax(share))
     total = float(np.clip(share, 0, None).sum())
-    if total <= 0 or share[worst] < 0.8 * total:
+    noise = noise_sd(bench) * np.sqrt(share.size) * np.mean(np.bincount(groups))
+    if share[worst] < max(0.8 * total, GLOBAL_SD * noise):
         return ""
     labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
     return (
