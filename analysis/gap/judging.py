@@ -47,7 +47,7 @@ def judge(
     ranked = list(fits)
     for _ in range(OVERTAKEN):
         found = _judged(bench, ranked, base, progress)
-        if hopes is not None and not found.gate.passed:
+        if not found.gate.passed:
             found = _own_settling(found, ranked, base, hopes, progress)
         bench = found.bench
         rest = [f for f in ranked if f is not found.first]
@@ -119,7 +119,7 @@ def _own_settling(
     failed: _Judged,
     ranked: Sequence[Fit],
     base: Fit,
-    hopes: Screening,
+    hopes: Screening | None,
     progress: Progress,
 ) -> _Judged:
     """Return the first of those held back that passes by itself, or what failed.
@@ -128,7 +128,8 @@ def _own_settling(
     """
     if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
         return failed
-    for f in _held_back(failed, ranked, base, hopes):
+    held = _held_back(failed, ranked, base, hopes) if hopes else _next(failed, ranked)
+    for f in held[:MOST_HELD_BACK]:
         rest = [r for r in ranked if r is not f]
         found = _judged(failed.bench, [f, *rest], base, progress)
         if found.gate.passed:
@@ -151,7 +152,20 @@ def _held_back(
         label = d.candidate.label
         if d.drop > gained and not d.suggested and label not in held:
             held[label] = fits.get(label) or started(failed.bench, base, d)
-    return [f for f in held.values() if f is not failed.first][:MOST_HELD_BACK]
+    return [f for f in held.values() if f is not failed.first]
+
+
+def _next(failed: _Judged, ranked: Sequence[Fit]) -> list[Fit]:
+    """Return the fits of as many effects that lie close behind one that failed."""
+    count = len(failed.first.candidates)
+    reach = score(failed.bench, failed.first) + CLOSE_FAILED
+    return [
+        f
+        for f in ranked
+        if f is not failed.first
+        and len(f.candidates) == count
+        and score(failed.bench, f) < reach
+    ]
 
 
 def _part_of(fewer: Fit, more: Fit) -> bool:
