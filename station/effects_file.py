@@ -149,6 +149,8 @@ def _silent(entry: LumpedEffect) -> bool:
     left: list[object] = []
     if entry.stiffness is not None:
         left.append(np.any(entry.stiffness(state, values)))
+    if entry.rise is not None:
+        left.append(np.any(entry.rise(state.conditions, values)))
     if entry.transfer is not None:
         left.append(np.any(entry.transfer(s, values) != 1.0))
     if entry.mixing is not None:
