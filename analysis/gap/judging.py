@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from jointbench.analysis.gap.bench import FULL, Bench
 from jointbench.analysis.gap.crossing import caught_up
-from jointbench.analysis.gap.effects import Candidate
+from jointbench.analysis.gap.effects import PROBE_FAMILY, Candidate
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.naming import Gate, gate
 from jointbench.analysis.gap.race import EVERYDAY, Progress, finish, score, started
@@ -32,6 +32,7 @@ def judge(
     base: Fit,
     progress: Progress,
     hopes: Screening | None = None,
+    onto: Fit | None = None,
 ) -> tuple[Bench, list[Fit], Gate]:
     """Estimate the noise at the winner, refit the leaders there and judge.
 
@@ -47,8 +48,9 @@ def judge(
     ranked = list(fits)
     for _ in range(OVERTAKEN):
         found = _judged(bench, ranked, base, progress)
-        if not found.gate.passed:
-            found = _own_settling(found, ranked, base, hopes, progress)
+        if hopes is not None and not found.gate.passed:
+            onto = onto or base
+            found = _own_settling(found, ranked, base, onto, hopes, progress)
         bench = found.bench
         rest = [f for f in ranked if f is not found.first]
         close = _close(found, rest)
@@ -119,7 +121,8 @@ def _own_settling(
     failed: _Judged,
     ranked: Sequence[Fit],
     base: Fit,
-    hopes: Screening | None,
+    onto: Fit,
+    hopes: Screening,
     progress: Progress,
 ) -> _Judged:
     """Return the first of those held back that passes by itself, or what failed.
@@ -128,8 +131,7 @@ def _own_settling(
     """
     if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
         return failed
-    held = _held_back(failed, ranked, base, hopes) if hopes else _next(failed, ranked)
-    for f in held[:MOST_HELD_BACK]:
+    for f in _held_back(failed, ranked, onto, hopes)[:MOST_HELD_BACK]:
         rest = [r for r in ranked if r is not f]
         found = _judged(failed.bench, [f, *rest], base, progress)
         if found.gate.passed:
@@ -138,34 +140,22 @@ def _own_settling(
 
 
 def _held_back(
-    failed: _Judged, ranked: Sequence[Fit], base: Fit, hopes: Screening
+    failed: _Judged, ranked: Sequence[Fit], onto: Fit, hopes: Screening
 ) -> list[Fit]:
     """Return the fits of which their directed tests foretold more than was gained.
 
     An expansion about another fit holds back one that differs from it; it may even
     have lost the race.
     """
-    gained = base.cost - failed.first.cost
-    fits = {f.candidates[-1].label: f for f in ranked}
-    held: dict[str, Fit] = {}
+    gained = onto.cost - failed.first.cost
+    fits = {_labels(f.candidates): f for f in ranked}
+    held: dict[frozenset[str], Fit] = {}
     for d in hopes.directions:
-        label = d.candidate.label
-        if d.drop > gained and not d.suggested and label not in held:
-            held[label] = fits.get(label) or started(failed.bench, base, d)
+        both = _labels((*onto.candidates, d.candidate))
+        fair = not d.suggested and d.candidate.effect.family != PROBE_FAMILY
+        if fair and d.drop > gained and both not in held:
+            held[both] = fits.get(both) or started(failed.bench, onto, d)
     return [f for f in held.values() if f is not failed.first]
-
-
-def _next(failed: _Judged, ranked: Sequence[Fit]) -> list[Fit]:
-    """Return the fits of as many effects that lie close behind one that failed."""
-    count = len(failed.first.candidates)
-    reach = score(failed.bench, failed.first) + CLOSE_FAILED
-    return [
-        f
-        for f in ranked
-        if f is not failed.first
-        and len(f.candidates) == count
-        and score(failed.bench, f) < reach
-    ]
 
 
 def _part_of(fewer: Fit, more: Fit) -> bool:
@@ -173,8 +163,11 @@ def _part_of(fewer: Fit, more: Fit) -> bool:
 
     What an effect is worth is read from such a fit, so its noise must be the same.
     """
-    labels = {c.label for c in more.candidates}
-    return {c.label for c in fewer.candidates} < labels
+    return _labels(fewer.candidates) < _labels(more.candidates)
+
+
+def _labels(candidates: Sequence[Candidate]) -> frozenset[str]:
+    return frozenset(c.label for c in candidates)
 
 
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:

@@ -91,7 +91,10 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         more = crossed(refined, more, progress)
         merged = sorted([*fits, *more], key=lambda f: score(refined, f))
         merged = take_back(refined, merged, progress)
-        again, merged, rejudged = judge(refined, merged, base, progress)
+        hopes = judged.left if count == 1 else None
+        again, merged, rejudged = judge(
+            refined, merged, base, progress, hopes, firsts[0]
+        )
         if not _worthwhile(again, merged[0], fits[0]):
             break
         refined, fits, judged = again, merged, rejudged

@@ -54,7 +54,7 @@ LOOSE = 0.3
 """Sd over the range beyond which a parameter stands nowhere in particular."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Gate:
     """Whether a fit explains the measurement.
 
@@ -66,6 +66,7 @@ class Gate:
         remaining: largest directed drop that is left.
         unexplained: records or sheet hold more than the fit explains, so that a
             further effect may help.
+        left: directed tests of what the fit leaves, None where there are none.
     """
 
     passed: bool
@@ -74,6 +75,7 @@ class Gate:
     allowed: float
     remaining: float
     unexplained: bool
+    left: Screening | None
 
 
 def gate(
@@ -112,7 +114,7 @@ def gate(
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
     unexplained = bool(reason)
     reason = reason or _doubt(fit, (base, *others))
-    return Gate(not reason, reason, excess, allowed, remaining, unexplained)
+    return Gate(not reason, reason, excess, allowed, remaining, unexplained, left)
 
 
 def _doubt(fit: Fit, others: Sequence[Fit]) -> str:
