@@ -24,7 +24,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 ONE_TEST = 7.88
 """99.5 % of chi2 with one degree of freedom: what a single test would ask for."""
-KINDS = ("single", "null")
+KINDS = ("null", "single")
 
 
 def no_coarse_stages() -> None:
