@@ -161,10 +161,10 @@ class Candidate:
 
 
 def may_join(candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
-    """Tell whether a candidate may be added to what is fitted.
+    """Tell whether a candidate is worth a race beside what is fitted.
 
-    Not twice the same; and two laws of sliders across one link are one law of more
-    sliders, which no measurement splits.
+    Not twice the same; and two laws of sliders across one link are mostly one law of
+    more sliders, which few measurements split.
 
     Args:
         candidate: what would be added.
