@@ -78,13 +78,6 @@ def no_groups() -> None:
     naming.UNLIKE_CHANCE = naming.UNLIKE_BASE_CHANCE = -1.0
 
 
-def no_probes() -> None:
-    """Look for what is left in the catalogue alone."""
-    from jointbench.analysis.gap import lumped_make
-
-    lumped_make.PROBES = ()
-
-
 def _everywhere(name: str, value: Any) -> None:
     """Put a function in the place of another in all modules that imported it."""
     for module in list(sys.modules.values()):
@@ -100,7 +93,6 @@ VARIANTS: Mapping[str, Callable[[], None]] = {
     "without prior pulls": no_pulls,
     "without multi-start": one_start,
     "without group scoring": no_groups,
-    "without probes": no_probes,
 }
 
 
