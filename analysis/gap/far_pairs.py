@@ -47,7 +47,7 @@ def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
     for first in singles:
         pairs += _with_one_more(bench, first, SECONDS, progress)
     pairs = _best(pairs, KEPT)
-    for _ in range(PASSES):
+    for _ in range(PASSES if pairs else 0):
         leader = pairs[0]
         for k in range(len(leader.candidates)):
             kept = without(bench, leader, k, SHORT)

@@ -47,6 +47,16 @@ def test_a_probe_is_a_first_term(name: str) -> None:
     assert np.abs(twice - 2 * once).max() < 1e-2 * np.abs(twice).max()
 
 
+@pytest.mark.parametrize("names", [{"delay"}, {"polarity"}, set()])
+def test_a_great_misfit_and_next_to_no_catalogue_is_unknown(names: set[str]) -> None:
+    """Nothing to pair with is no reason to fail."""
+    campaign = made.made_campaign([("cubic_stiffness", "link:joint", [2e17])])
+    entries = tuple(e for e in CATALOGUE if e.effect.name in names)
+    found = diagnose(campaign, entries=entries)
+    assert found.verdict is Finding.UNKNOWN
+    assert found.gap_before.chi2_per_dof > 30.0
+
+
 def test_no_probe_can_be_named() -> None:
     """They are beside the catalogue, with a family of their own."""
     assert all(p.effect.family == PROBE_FAMILY for p in PROBES)
