@@ -12,6 +12,7 @@ import json
 import multiprocessing
 import os
 import sys
+from collections import Counter
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
@@ -142,7 +143,9 @@ def _key(path: Path) -> tuple[str, int]:
 
 
 def page(runs: list[Run]) -> str:
-    """Return the page: what each part buys."""
+    """Return the page: what each part buys, on what all variants have judged."""
+    judged = Counter((r["kind"], r["seed"]) for r in runs)
+    runs = [r for r in runs if judged[r["kind"], r["seed"]] == len(VARIANTS)]
     lines = [
         "# What each part of the gap engine buys",
         "",
