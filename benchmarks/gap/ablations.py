@@ -121,7 +121,7 @@ def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
         for line in runs.read_text(encoding="utf-8").splitlines():
             run = json.loads(line)
             done.add((run["variant"], run["kind"], run["seed"]))
-    todo = [
+    waiting = [
         (variant, path)
         for path in chosen(folder, count)
         for variant in VARIANTS
@@ -131,10 +131,10 @@ def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
         multiprocessing.Pool(jobs, maxtasksperchild=1) as pool,
         runs.open("a", encoding="utf-8") as out,
     ):
-        for k, run in enumerate(pool.imap_unordered(partial(judge_variant), todo)):
+        for k, run in enumerate(pool.imap_unordered(partial(judge_variant), waiting)):
             out.write(json.dumps(run) + "\n")
             out.flush()
-            sys.stderr.write(f"\r{k + 1}/{len(todo)} {run['variant']}   ")
+            sys.stderr.write(f"\r{k + 1}/{len(waiting)} {run['variant']}   ")
 
 
 def _key(path: Path) -> tuple[str, int]:
@@ -142,7 +142,7 @@ def _key(path: Path) -> tuple[str, int]:
     return kind, int(seed)
 
 
-def page(runs: list[Run]) -> str:
+def page(runs: list[Run], engine: str) -> str:
     """Return the page: what each part buys, on what all variants have judged."""
     judged = Counter((r["kind"], r["seed"]) for r in runs)
     runs = [r for r in runs if judged[r["kind"], r["seed"]] == len(VARIANTS)]
@@ -154,6 +154,7 @@ def page(runs: list[Run]) -> str:
         "another name, or any where nothing is missing. The rest is doubt: ambiguous, "
         "unknown, or none where an effect is hidden. Margins are log-uniform from 1 to "
         "10,000, so that a part of the effects cannot be named by anyone.",
+        f"Engine: {engine}." if engine else "",
         "",
         "| engine | nothing missing: right, wrong, of | margin >= 50: right, wrong, of "
         "| margin < 50: right, wrong, of | median s | worst s |",
@@ -190,10 +191,11 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--page", action="store_true")
+    parser.add_argument("--engine", default="", help="which state was judged")
     arguments = parser.parse_args()
     if arguments.page:
         lines = arguments.folder.read_text(encoding="utf-8").splitlines()
-        sys.stdout.write(page([json.loads(line) for line in lines]))
+        sys.stdout.write(page([json.loads(line) for line in lines], arguments.engine))
         return
     run_all(arguments.folder, arguments.runs, arguments.count, arguments.jobs)
 
