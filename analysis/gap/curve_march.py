@@ -26,7 +26,7 @@ FASTEST = 100.0
 Curve = Callable[[FloatArray], FloatArray]
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, inline="always")
 def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
     """Interpolate a row of a table at x by a cubic through four points.
 
@@ -46,7 +46,7 @@ def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
     return float(b + 0.5 * t * (c - a + t * bend))
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, inline="always")
 def curve_force(tables: FloatArray, p: FloatArray, r: float, v: float) -> float:
     """Return spring(r) + damping(r) v + drag(v) [N].
 

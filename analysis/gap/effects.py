@@ -5,7 +5,7 @@ An effect is data plus pure functions; the functions that carry its physics belo
 a bench (see `jointbench.analysis.gap.physics`), so the engine never sees any.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -176,6 +176,11 @@ def may_join(candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
         candidate.effect.has_sliders
         and any(c.effect.has_sliders and c.site == candidate.site for c in fitted)
     )
+
+
+def labels_of(candidates: Iterable[Candidate]) -> frozenset[str]:
+    """Return the labels of a set of candidates, which tell it from all others."""
+    return frozenset(c.label for c in candidates)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

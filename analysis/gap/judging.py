@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from jointbench.analysis.gap.bench import FULL, Bench
 from jointbench.analysis.gap.crossing import caught_up
-from jointbench.analysis.gap.effects import PROBE_FAMILY, Candidate
+from jointbench.analysis.gap.effects import PROBE_FAMILY, Candidate, labels_of
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.naming import Gate, gate
 from jointbench.analysis.gap.race import EVERYDAY, Progress, finish, score, started
@@ -148,10 +148,10 @@ def _held_back(
     have lost the race.
     """
     gained = onto.cost - failed.first.cost
-    fits = {_labels(f.candidates): f for f in ranked}
+    fits = {labels_of(f.candidates): f for f in ranked}
     held: dict[frozenset[str], Fit] = {}
     for d in hopes.directions:
-        both = _labels((*onto.candidates, d.candidate))
+        both = labels_of((*onto.candidates, d.candidate))
         fair = not d.suggested and d.candidate.effect.family != PROBE_FAMILY
         if fair and d.drop > gained and both not in held:
             held[both] = fits.get(both) or started(failed.bench, onto, d)
@@ -163,11 +163,7 @@ def _part_of(fewer: Fit, more: Fit) -> bool:
 
     What an effect is worth is read from such a fit, so its noise must be the same.
     """
-    return _labels(fewer.candidates) < _labels(more.candidates)
-
-
-def _labels(candidates: Sequence[Candidate]) -> frozenset[str]:
-    return frozenset(c.label for c in candidates)
+    return labels_of(fewer.candidates) < labels_of(more.candidates)
 
 
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:

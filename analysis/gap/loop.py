@@ -9,19 +9,13 @@ import numpy as np
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.crossing import crossed
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
-from jointbench.analysis.gap.effects import Candidate, may_join
+from jointbench.analysis.gap.effects import Candidate, labels_of, may_join
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.far_pairs import far_pairs
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.judging import far_off, judge
 from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
-from jointbench.analysis.gap.race import (
-    Progress,
-    finish,
-    race,
-    race_on,
-    score,
-)
+from jointbench.analysis.gap.race import Progress, finish, race, race_on, score
 from jointbench.analysis.gap.screening import Screening, screen
 
 REFINEMENTS = 12
@@ -29,7 +23,6 @@ SETTLED = 0.5
 """Change of the cost below which noise, scatter and fit agree with each other."""
 MOST_EFFECTS = 3
 FIRSTS = 3
-EXCHANGES = 1
 THIRD_LEFT = 0.01
 """Share of the base's excess chi2 that a pair may leave for a third effect."""
 HOPEFUL = 4.0
@@ -109,16 +102,12 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
 def _exchange(
     bench: Bench, fits: list[Fit], base: Fit, judged: Gate, progress: Progress
 ) -> tuple[Bench, list[Fit], Gate]:
-    """Put other effects in the place of each, as long as that helps."""
-    for _ in range(EXCHANGES):
-        more = exchanged(bench, fits[0], progress)
-        merged = sorted([*fits, *more], key=lambda f: score(bench, f))
-        if merged[0] is fits[0]:
-            break
-        bench, fits, judged = judge(bench, best_of_each(merged), base, progress)
-        if not judged.unexplained:
-            break
-    return bench, fits, judged
+    """Put other effects in the place of each, if that helps."""
+    more = exchanged(bench, fits, progress)
+    merged = sorted([*fits, *more], key=lambda f: score(bench, f))
+    if merged[0] is fits[0]:
+        return bench, fits, judged
+    return judge(bench, best_of_each(merged), base, progress)
 
 
 def _fit_for_more(bench: Bench, fit: Fit, base: Fit) -> bool:
@@ -162,7 +151,7 @@ def best_of_each(fits: Sequence[Fit]) -> list[Fit]:
     """Return the first fit of each set of effects."""
     best: dict[frozenset[str], Fit] = {}
     for f in fits:
-        best.setdefault(frozenset(c.label for c in f.candidates), f)
+        best.setdefault(labels_of(f.candidates), f)
     return list(best.values())
 
 
@@ -175,11 +164,9 @@ def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[F
         chosen = [
             c
             for c in _seconds(bench, first, screening)
-            if frozenset((*(x.label for x in first.candidates), c.label)) not in tried
+            if labels_of((*first.candidates, c)) not in tried
         ]
-        tried |= {
-            frozenset((*(x.label for x in first.candidates), c.label)) for c in chosen
-        }
+        tried |= {labels_of((*first.candidates, c)) for c in chosen}
         found += race(bench, first, screening, chosen, progress)
     return sorted(found, key=lambda f: score(bench, f))
 

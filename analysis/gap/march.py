@@ -69,7 +69,7 @@ def _rub(limit: float, width: float, v: float, slope: float, guess: float) -> fl
     return force
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, inline="always")
 def _forces(
     law: MarchLaw,
     r: FloatArray,
@@ -130,7 +130,7 @@ def _hold(poles: ComplexArray, residues: ComplexArray, dt: float) -> FloatArray:
     return c
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, inline="always")
 def _predict(
     er: FloatArray,
     ei: FloatArray,

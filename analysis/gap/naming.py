@@ -8,6 +8,7 @@ import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.effects import PROBE_FAMILY
+from jointbench.analysis.gap.effects import labels_of
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.own_parameters import most_unlike
 from jointbench.analysis.gap.race import score
@@ -208,10 +209,10 @@ def weakest(fit: Fit, others: Sequence[Fit]) -> float:
     By the rise of the cost where a fit without it is at hand, else by its amplitude:
     the amplitude of a weak law of friction is loose although the law is needed.
     """
-    own, sure = _labels(fit), []
+    own, sure = labels_of(fit.candidates), []
     for candidate in fit.candidates:
         rest = own - {candidate.label}
-        without = [f.cost for f in others if _labels(f) == rest]
+        without = [f.cost for f in others if labels_of(f.candidates) == rest]
         if not without:
             return weakest_amplitude(fit)
         sure.append(np.sqrt(max(min(without) - fit.cost, 0.0)))
@@ -238,18 +239,15 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     """
     if not fits:
         return []
-    best, own = score(bench, fits[0]), _labels(fits[0])
+    best, own = score(bench, fits[0]), labels_of(fits[0].candidates)
     sites = [c.site for c in fits[0].candidates]
     near = RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
     return [
         f
         for f in fits
-        if score(bench, f) < best + near and (f is fits[0] or not own < _labels(f))
+        if score(bench, f) < best + near
+        and (f is fits[0] or not own < labels_of(f.candidates))
     ]
-
-
-def _labels(fit: Fit) -> set[str]:
-    return {c.label for c in fit.candidates}
 
 
 def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:

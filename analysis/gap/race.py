@@ -29,8 +29,8 @@ HOPELESS = 6.0
 """Cost over the best's above which a finalist is not fitted to the end."""
 HUGE = 100.0
 """Chi2 over dof of the base above which a flipped sign is worth a start."""
-ROUNDS = ((3, 12), (5, 8))
-"""Steps of every start still in the race, and how many go on."""
+ROUNDS = ((3, 12, 2), (5, 8, 1))
+"""Steps of every start still in the race, how many go on, and how many of one set."""
 LEAST = 0.04
 """Share of the largest directed drop below which an effect is no candidate."""
 MOST_STEPS = 16
@@ -113,10 +113,12 @@ def race_on(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
 
 def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fit]:
     """Run starts to the end, the hopeless dropped on the way."""
-    for iterations, keep in ROUNDS:
-        runners = _keep(_heat(runners, iterations, progress), keep)
+    for iterations, keep, alike in ROUNDS:
+        runners = _best_of_each(
+            _keep(_heat(runners, iterations, progress), keep), alike
+        )
     best, done = None, []
-    for r in _best_of_each(runners):
+    for r in runners:
         progress(r.label)
         middle = minimise(r.problem, r.x, MIDDLE, iterations=MOST_STEPS, rival=best)
         done.append(Runner(r.problem, middle.x, middle.cost, middle))
@@ -294,17 +296,16 @@ def _run(
     return Runner(runner.problem, fit.x, fit.cost, fit)
 
 
-def _best_of_each(runners: Sequence[Runner]) -> list[Runner]:
-    best: dict[str, Runner] = {}
+def _best_of_each(runners: Sequence[Runner], count: int) -> list[Runner]:
+    """Return the best starts of each set of effects, the best first."""
+    kept: list[Runner] = []
     for r in sorted(runners, key=lambda r: r.cost):
-        best.setdefault(r.label, r)
-    return list(best.values())
+        if sum(k.label == r.label for k in kept) < count:
+            kept.append(r)
+    return kept
 
 
 def _keep(runners: Sequence[Runner], count: int) -> list[Runner]:
     return sorted((r for r in runners if np.isfinite(r.cost)), key=lambda r: r.cost)[
         :count
     ]
-
-
-__all__ = ["finish", "race", "score", "started"]

@@ -18,11 +18,12 @@ STALE = 1e30
 """Loading coordinate of a slider that has unloaded since it was last known."""
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, inline="always")
 def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     """Interpolate a row of evenly spaced points; constant above its end.
 
-    Rows are not sliced out: making a view costs more than the lookup.
+    Rows are not sliced out: making a view costs more than the lookup. Nor is it called:
+    handing an array over costs ten times as much, so that it is copied in.
     """
     position = x * per_unit
     index = int(position)
@@ -33,9 +34,13 @@ def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     return float(low + (position - index) * (tables[row, index + 1] - low))
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, inline="always")
 def slide(
-    u: float, loading: float, step: float, tables: FloatArray, tops: FloatArray
+    u: float,
+    loading: float,
+    step: float,
+    tables: FloatArray,
+    tops: tuple[float, ...] | FloatArray,
 ) -> tuple[float, float]:
     """Move a slider along its loading and unloading curves.
 
@@ -70,7 +75,7 @@ def slide(
     return side * (left if elastic else _lookup(tables, 3, tops[3], left)), STALE
 
 
-@njit(cache=True, fastmath=True)
+@njit(cache=True, fastmath=True, inline="always")
 def bank_forces(
     r: FloatArray,
     before: FloatArray,
@@ -88,9 +93,10 @@ def bank_forces(
     never left their elastic range follow the joint, and are passed over.
     """
     rates = 1.0 / slips
+    ends = (tops[0], tops[1], tops[2], tops[3], tops[4], tops[5], tops[6])
     for k in range(r.size):
         total, count = 0.0, active[k]
-        while count < slips.size and abs(r[k]) > tops[4] * slips[count]:
+        while count < slips.size and abs(r[k]) > ends[4] * slips[count]:
             states[k, count, 0] = before[k] / slips[count]
             states[k, count, 1] = states[k, count, 0]
             count += 1
@@ -98,7 +104,7 @@ def bank_forces(
         step = r[k] - before[k]
         for i in range(count):
             u, loading = states[k, i, 0], states[k, i, 1]
-            u, loading = slide(u, loading, step * rates[i], tables, tops)
+            u, loading = slide(u, loading, step * rates[i], tables, ends)
             states[k, i, 0], states[k, i, 1] = u, loading
             total += weights[i] * (slips[i] * u - r[k])
         force[k] += total
