@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
-from jointbench.analysis.gap.effects import PROBE_FAMILY
-from jointbench.analysis.gap.effects import labels_of
+from jointbench.analysis.gap.effects import PROBE_FAMILY, labels_of
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.own_parameters import most_unlike
 from jointbench.analysis.gap.race import score

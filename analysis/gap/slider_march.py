@@ -22,8 +22,8 @@ STALE = 1e30
 def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     """Interpolate a row of evenly spaced points; constant above its end.
 
-    Rows are not sliced out: making a view costs more than the lookup. Nor is it called:
-    handing an array over costs ten times as much, so that it is copied in.
+    Rows are not sliced out, and the function is compiled into its caller: a view costs
+    more than the lookup, and an array that is handed over ten times as much.
     """
     position = x * per_unit
     index = int(position)
