@@ -1,11 +1,10 @@
 """The page and the words of a gap, for each verdict."""
 
-import importlib.util
 import re
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
+import gap_outcomes as outcomes
 import pytest
 from rich.console import Console
 
@@ -16,13 +15,6 @@ from jointbench.station.gap_output import show_diagnosis
 from jointbench.station.gap_words import effect_words, headline, next_step, why_lost
 from jointbench.station.report_gap import gap_report
 from jointbench.station.report_page import DataTable, Plot, render
-
-_spec = importlib.util.spec_from_file_location(
-    "gap_outcomes", Path(__file__).parents[1] / "analysis/gap/gap_outcomes.py"
-)
-assert _spec is not None and _spec.loader is not None
-outcomes = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(outcomes)
 
 VERDICTS = ("none", "named", "ambiguous", "unknown")
 LATE = ("delay", "channel:a1", [4e-5])

@@ -1,9 +1,8 @@
 """Outcomes of the gap engine made by hand: no race, so that tests stay fast."""
 
-import importlib.util
 from dataclasses import replace
-from pathlib import Path
 
+import gap_bench as made
 import numpy as np
 
 from jointbench.analysis.gap.descent import minimise
@@ -13,13 +12,6 @@ from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.naming import gate
 from jointbench.analysis.gap.screening import screen
-
-_spec = importlib.util.spec_from_file_location(
-    "gap_bench", Path(__file__).with_name("gap_bench.py")
-)
-assert _spec is not None and _spec.loader is not None
-made = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(made)
 
 Hidden = tuple[str, str, list[float]]
 

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Every effect of the catalogue: off is off, and it grows from there in a line."""
 
-import importlib.util
-from pathlib import Path
-
+import gap_bench as made
 import numpy as np
 import pytest
 
@@ -13,13 +11,6 @@ from jointbench.analysis.gap.catalogue import CATALOGUE, check_names
 from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.screening import start_grid
-
-_spec = importlib.util.spec_from_file_location(
-    "gap_bench", Path(__file__).with_name("gap_bench.py")
-)
-assert _spec is not None and _spec.loader is not None
-made = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(made)
 
 BENCH = make_bench(made.made_campaign([]))
 BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """From a campaign to a verdict: names, refusals, limits and the JSON contract."""
 
-import importlib.util
 import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import gap_bench as made
 import h5py
 import numpy as np
 import pytest
@@ -17,13 +17,6 @@ from jointbench.analysis.gap.catalogue_linear import LINEAR
 from jointbench.analysis.gap.checks import campaign_limits
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.records import Finding, diagnosis_json
-
-_spec = importlib.util.spec_from_file_location(
-    "gap_bench", Path(__file__).with_name("gap_bench.py")
-)
-assert _spec is not None and _spec.loader is not None
-made = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(made)
 
 
 def test_a_campaign_with_nothing_missing_is_told_so() -> None:

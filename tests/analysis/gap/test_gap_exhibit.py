@@ -1,10 +1,9 @@
 """The evidence of a gap: does it point to where the truth is, and say it right?"""
 
-import importlib.util
 import json
 from functools import cache
-from pathlib import Path
 
+import gap_outcomes as outcomes
 import numpy as np
 import pytest
 
@@ -13,13 +12,6 @@ from jointbench.analysis.gap.exhibit_level import is_linear, recurrences
 from jointbench.analysis.gap.exhibit_records import Exhibit, exhibit_json
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
-
-_spec = importlib.util.spec_from_file_location(
-    "gap_outcomes", Path(__file__).with_name("gap_outcomes.py")
-)
-assert _spec is not None and _spec.loader is not None
-outcomes = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(outcomes)
 
 LATE = ("delay", "channel:a1", [4e-5])
 CUBIC = ("cubic_stiffness", "link:joint", [3e15])

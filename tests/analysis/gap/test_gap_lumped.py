@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Forward models against another integrator, noise against its own statistics."""
 
-import importlib.util
 from dataclasses import replace
-from pathlib import Path
 
+import gap_bench as made
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -20,13 +19,6 @@ from jointbench.analysis.gap.noise import (
     without_trend,
 )
 from jointbench.analysis.gap.slider_march import slide, slider_tables
-
-_spec = importlib.util.spec_from_file_location(
-    "gap_bench", Path(__file__).with_name("gap_bench.py")
-)
-assert _spec is not None and _spec.loader is not None
-made = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(made)
 
 
 def integrate(k3: float) -> FloatArray:

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What keeps a fit from being a name although little of the gap is left."""
 
-import importlib.util
-from pathlib import Path
-
+import gap_bench as made
 import numpy as np
 import pytest
 
@@ -18,13 +16,6 @@ from jointbench.analysis.gap.effects import Candidate, Effect, Site
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.naming import at_the_end, model_error, without_twins
-
-_SPEC = importlib.util.spec_from_file_location(
-    "gap_bench", Path(__file__).with_name("gap_bench.py")
-)
-assert _SPEC is not None and _SPEC.loader is not None
-made = importlib.util.module_from_spec(_SPEC)
-_SPEC.loader.exec_module(made)
 
 JOINT = Site("link", "joint")
 

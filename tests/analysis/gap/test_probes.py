@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a wrong law leaves is seen although the right one is not in the catalogue."""
 
-import importlib.util
-from pathlib import Path
-
+import gap_bench as made
 import numpy as np
 import pytest
 
@@ -13,13 +11,6 @@ from jointbench.analysis.gap.effects import PROBE_FAMILY, Term
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.probes import PROBES
 from jointbench.analysis.gap.records import Finding
-
-_SPEC = importlib.util.spec_from_file_location(
-    "gap_bench", Path(__file__).with_name("gap_bench.py")
-)
-assert _SPEC is not None and _SPEC.loader is not None
-made = importlib.util.module_from_spec(_SPEC)
-_SPEC.loader.exec_module(made)
 
 BENCH = make_bench(made.made_campaign([]))
 BASE = np.zeros(len(BENCH.base_names))

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Where a joint settles anew in each hit, laws of its stiffness are found as well."""
 
-import importlib.util
-from pathlib import Path
-
+import gap_bench as made
 import numpy as np
 import pytest
 
@@ -14,13 +12,6 @@ from jointbench.analysis.gap.loop import fit_base
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.lumped_noise import settle
-
-_spec = importlib.util.spec_from_file_location(
-    "gap_bench", Path(__file__).with_name("gap_bench.py")
-)
-assert _spec is not None and _spec.loader is not None
-made = importlib.util.module_from_spec(_spec)
-_spec.loader.exec_module(made)
 
 SETTLING = 1.5e-3 * np.array([0.4, -1.1, 0.8, 1.3, -0.6, 0.2, -0.9, 0.1])
 BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])

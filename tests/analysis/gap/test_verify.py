@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
+import gap_bench as made
 import numpy as np
 import pytest
 
@@ -30,8 +31,6 @@ from jointbench.analysis.gap.verify import (
     verify_response,
 )
 
-HERE = Path(__file__)
-
 
 def load(path: Path) -> ModuleType:
     """Return a module by its file."""
@@ -42,8 +41,7 @@ def load(path: Path) -> ModuleType:
     return module
 
 
-made = load(HERE.with_name("gap_bench.py"))
-BENCHMARKS = HERE.parents[3] / "benchmarks" / "gap"
+BENCHMARKS = Path(__file__).parents[3] / "benchmarks" / "gap"
 with pytest.MonkeyPatch.context() as path:
     path.syspath_prepend(BENCHMARKS)
     drawing = load(BENCHMARKS / "null_bootstrap.py")
