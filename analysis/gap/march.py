@@ -7,6 +7,10 @@ The link's own compliance is a sum of modes, each stepped exactly for a force th
 a straight line within the step (first-order hold); the force at the end of a step is
 found from the motion predicted with an extrapolated force, whose error is of the
 order dt^2/m of a second difference and far below the noise.
+
+All that a step calls is compiled into it: handing arrays over would cost more than the
+step. Numba's cache looks only at the date of this file, so touch it after an edit of
+`slider_march` or `curve_march`.
 """
 
 import math
