@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Other effects in the place of one: a pair may be half right."""
 
-from collections.abc import Sequence
-
 from jointbench.analysis.gap.bench import Bench
-from jointbench.analysis.gap.effects import labels_of, may_join
+from jointbench.analysis.gap.effects import may_join
 from jointbench.analysis.gap.far_pairs import without
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.race import MIDDLE, Progress, race
@@ -14,23 +12,21 @@ TRIED = 4
 """Effects that are tried in each place, by what their directed tests foretell."""
 
 
-def exchanged(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
-    """Take each effect out of the best fit and race others for its place.
+def exchanged(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
+    """Take each effect out of a fit and race others for its place.
 
     The first effect of a pair is chosen while the second is missing, so that one may
     stand in for another. With its partner in, the directed tests see clearly.
 
     Args:
         bench: measurement and model.
-        fits: known so far, best first; the best is of several effects and does not
-            explain the records. What is known is not raced again.
+        fit: of several effects, which does not explain the records.
         progress: told what is being tried.
 
     Returns:
         Fits of as many effects, in no order.
     """
     found: list[Fit] = []
-    fit, known = fits[0], {labels_of(f.candidates) for f in fits}
     for k, candidate in enumerate(fit.candidates):
         kept = without(bench, fit, k, MIDDLE)
         others = [
@@ -39,10 +35,5 @@ def exchanged(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit
             if c != candidate and may_join(c, kept.candidates)
         ]
         screening = screen(bench, kept, others)
-        fresh = [
-            c
-            for c in screening.leaders(TRIED)
-            if labels_of((*kept.candidates, c)) not in known
-        ]
-        found += race(bench, kept, screening, fresh, progress)
+        found += race(bench, kept, screening, screening.leaders(TRIED), progress)
     return found

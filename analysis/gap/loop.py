@@ -69,12 +69,16 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         return Outcome(bench, base, first, screening, base, first, (), (base,))
     fits = race(bench, base, screening, bench.candidates, progress)
     refined, fits, judged = judge(bench, fits, base, progress, screening)
+    grown: set[frozenset[str]] = set()
     for count in range(1, MOST_EFFECTS):
-        if not judged.unexplained or not fits or len(fits[0].candidates) < count:
+        if not judged.unexplained or not fits:
             break
         firsts = fits[: FIRSTS if count == 1 else 1]
-        if count > 1 and not _fit_for_more(refined, firsts[0], base):
+        if labels_of(firsts[0].candidates) in grown:
             break
+        if not _fit_for_more(refined, firsts[0], base):
+            break
+        grown |= {labels_of(f.candidates) for f in firsts}
         if count == 1 and far_off(refined, firsts[0]):
             more = race_on(refined, far_pairs(refined, progress), progress)
         else:
@@ -103,7 +107,7 @@ def _exchange(
     bench: Bench, fits: list[Fit], base: Fit, judged: Gate, progress: Progress
 ) -> tuple[Bench, list[Fit], Gate]:
     """Put other effects in the place of each, if that helps."""
-    more = exchanged(bench, fits, progress)
+    more = exchanged(bench, fits[0], progress)
     merged = sorted([*fits, *more], key=lambda f: score(bench, f))
     if merged[0] is fits[0]:
         return bench, fits, judged
@@ -111,10 +115,12 @@ def _exchange(
 
 
 def _fit_for_more(bench: Bench, fit: Fit, base: Fit) -> bool:
-    """Tell whether a pair is worth a third effect.
+    """Tell whether a fit is worth one more effect: a single one always is.
 
     Three at one link explain anything, and a pair that leaves much is no part of it.
     """
+    if len(fit.candidates) < MOST_EFFECTS - 1:
+        return True
     links = [c.site for c in fit.candidates if c.site.kind == "link"]
     apart = len(set(links)) == len(links)
     dof = bench.blocks.dof
