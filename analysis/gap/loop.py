@@ -68,62 +68,85 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     if first.passed:
         return Outcome(bench, base, first, screening, base, first, (), (base,))
     fits = race(bench, base, screening, bench.candidates, progress)
-    refined, fits, judged = judge(bench, fits, base, progress, screening)
+    found = _Round(*judge(bench, fits, base, progress, screening))
     grown: set[frozenset[str]] = set()
     for count in range(1, MOST_EFFECTS):
-        if not judged.unexplained or not fits:
-            break
-        firsts = fits[: FIRSTS if count == 1 else 1]
-        if labels_of(firsts[0].candidates) in grown:
-            break
-        if not _fit_for_more(refined, firsts[0], base):
+        firsts = found.fits[: FIRSTS if count == 1 else 1]
+        known = bool(firsts) and labels_of(firsts[0].candidates) in grown
+        if known or not _worth_more(found, base):
             break
         grown |= {labels_of(f.candidates) for f in firsts}
-        if count == 1 and far_off(refined, firsts[0]):
-            more = race_on(refined, far_pairs(refined, progress), progress)
-        else:
-            more = add_another(refined, firsts, progress)
-        if not more:
+        after = _one_more(found, firsts, base, progress, early=count == 1)
+        if after is None:
             break
-        more = crossed(refined, more, progress)
-        merged = sorted([*fits, *more], key=lambda f: score(refined, f))
-        merged = take_back(refined, merged, progress)
-        hopes = judged.left if count == 1 else None
-        again, merged, rejudged = judge(
-            refined, merged, base, progress, hopes, firsts[0]
-        )
-        if not _worthwhile(again, merged[0], fits[0]):
-            break
-        refined, fits, judged = again, merged, rejudged
-        if judged.unexplained and len(fits[0].candidates) > 1:
-            refined, fits, judged = _exchange(refined, fits, base, judged, progress)
-    fits = without_twins(refined, fits)
+        found = after
+    fits = without_twins(found.bench, found.fits)
     best = fits[0] if fits else base
-    level = tuple(rivals(refined, fits))
-    return Outcome(refined, base, first, screening, best, judged, tuple(fits), level)
+    level = tuple(rivals(found.bench, fits))
+    return Outcome(
+        found.bench, base, first, screening, best, found.gate, tuple(fits), level
+    )
 
 
-def _exchange(
-    bench: Bench, fits: list[Fit], base: Fit, judged: Gate, progress: Progress
-) -> tuple[Bench, list[Fit], Gate]:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Round:
+    """What a round ended with: the bench with its noise, fits best first, the gate."""
+
+    bench: Bench
+    fits: list[Fit]
+    gate: Gate
+
+
+def _one_more(
+    found: _Round,
+    firsts: Sequence[Fit],
+    base: Fit,
+    progress: Progress,
+    *,
+    early: bool,
+) -> _Round | None:
+    """Add one more effect to each of some fits; None where none of them earns it."""
+    bench = found.bench
+    if early and far_off(bench, firsts[0]):
+        more = race_on(bench, far_pairs(bench, progress), progress)
+    else:
+        more = add_another(bench, firsts, progress)
+    if not more:
+        return None
+    more = crossed(bench, more, progress)
+    merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
+    merged = take_back(bench, merged, progress)
+    hopes = found.gate.left if early else None
+    after = _Round(*judge(bench, merged, base, progress, hopes, firsts[0]))
+    if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
+        return None
+    if after.gate.unexplained and len(after.fits[0].candidates) > 1:
+        return _exchange(after, base, progress)
+    return after
+
+
+def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
     """Put other effects in the place of each, if that helps."""
-    more = exchanged(bench, fits[0], progress)
-    merged = sorted([*fits, *more], key=lambda f: score(bench, f))
-    if merged[0] is fits[0]:
-        return bench, fits, judged
-    return judge(bench, best_of_each(merged), base, progress)
+    more = exchanged(found.bench, found.fits[0], progress)
+    merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
+    if merged[0] is found.fits[0]:
+        return found
+    return _Round(*judge(found.bench, best_of_each(merged), base, progress))
 
 
-def _fit_for_more(bench: Bench, fit: Fit, base: Fit) -> bool:
-    """Tell whether a fit is worth one more effect: a single one always is.
+def _worth_more(found: _Round, base: Fit) -> bool:
+    """Tell whether the best fit is worth one more effect.
 
     Three at one link explain anything, and a pair that leaves much is no part of it.
     """
-    if len(fit.candidates) < MOST_EFFECTS - 1:
+    if not found.gate.unexplained or not found.fits:
+        return False
+    fit = found.fits[0]
+    if len(fit.candidates) == 1:
         return True
     links = [c.site for c in fit.candidates if c.site.kind == "link"]
     apart = len(set(links)) == len(links)
-    dof = bench.blocks.dof
+    dof = found.bench.blocks.dof
     return apart and fit.chi2 - dof < THIRD_LEFT * (base.chi2 - dof)
 
 
