@@ -11,7 +11,7 @@ import pytest
 from jointbench.analysis.gap.campaign import read_campaign
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.records import Diagnosis, Finding
-from jointbench.simulators.campaign import Campaign, quick_campaign
+from jointbench.simulators.campaign import Campaign, make_campaign, quick_campaign
 from jointbench.simulators.campaign_file import write_campaign
 
 pytestmark = pytest.mark.timeout(400)
@@ -78,6 +78,15 @@ def test_two_great_effects_are_both_named(tmp_path: Path) -> None:
     assert {e.name for e in found.effects} == set(names)
     assert found.verdict is Finding.NAMED
     assert found.gap_before.chi2_per_dof > 30.0
+
+
+def test_a_single_effect_that_pairs_brought_forth_gets_a_second(tmp_path: Path) -> None:
+    """Pairs with a hidden mode lead to maxwell alone; the added mass comes after."""
+    names = ("added_mass", "maxwell")
+    campaign = make_campaign(93061, effects=names, margin=(50.0, 1e4), hit_scatter=0.0)
+    found = told(campaign, tmp_path)
+    assert {e.name for e in found.effects} == set(names)
+    assert found.verdict is Finding.NAMED
 
 
 @pytest.mark.parametrize("name", ["extra_damping", "hidden_mode", "saturation"])
