@@ -16,7 +16,7 @@ import json
 from pathlib import Path
 
 import numpy as np
-from page import NOT_IN_CATALOGUE, word_of
+from outcomes import NOT_IN_CATALOGUE, word_of
 from scipy.optimize import minimize
 
 from jointbench.analysis.gap.confidence import Evidence, features
