@@ -31,7 +31,7 @@ from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import (
     PULL_LIMIT,
     WIDENED,
-    model_error,
+    forgiven,
 )
 
 UNITS = {
@@ -100,13 +100,9 @@ def _cube(bench: LumpedBench, fit: Fit) -> FloatArray:
     return fit.residual.reshape(bench.campaign.response.shape)
 
 
-def _excess(bench: LumpedBench, fit: Fit) -> float:
-    return fit.chi2 / bench.blocks.dof - 1.0
-
-
 def _limits(bench: LumpedBench, base: Fit, outcome: Outcome) -> Limits:
     """Repeat the limits of the gate, whose threshold hardly moves with the fit."""
-    room = model_error(outcome.best) * max(_excess(bench, base), 0.0) * bench.blocks.dof
+    room = forgiven(outcome.best, (base, *outcome.ranked), bench.blocks.dof)
     return Limits(
         chi2_per_dof=1.0 + outcome.gate.excess,
         chi2_allowed=1.0 + outcome.gate.allowed,

@@ -94,21 +94,21 @@ def gate(
         left: directed tests of the fit; None to pass them over.
         others: what else was fitted, for what the fit would be without an effect.
     """
-    share = model_error(fit)
     dof = bench.blocks.dof
     excess = fit.chi2 / dof - 1.0
-    base_excess = max(base.chi2 / dof - 1.0, 0.0)
-    allowed = GLOBAL_SD * noise_sd(bench) + share * base_excess
+    model = forgiven(fit, (base, *others), dof)
+    allowed = GLOBAL_SD * noise_sd(bench) + model / dof
     worst, beyond = None, -np.inf
     if left is not None and bench.blocks.white:
-        worst, beyond = _worst(fit, left, base_excess * dof)
+        elsewhere = min(model, ELSEWHERE * max(base.chi2 - dof, 0.0))
+        worst, beyond = _worst(fit, left, model, elsewhere)
     remaining = worst.drop if worst else 0.0
     reason = ""
     if excess > allowed:
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
     elif worst and beyond > 0.0:
         reason = _looks_like(worst)
-    elif unlike := _unlike(bench, fit, share * base_excess * dof):
+    elif unlike := _unlike(bench, fit, model):
         reason = unlike
     elif np.abs(fit.pulls).max() > PULL_LIMIT:
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
@@ -124,13 +124,28 @@ def _doubt(fit: Fit, others: Sequence[Fit]) -> str:
     return at_the_end(fit)
 
 
-def model_error(fit: Fit) -> float:
-    """Return the share of the base's excess chi2 that a right fit may leave [-]."""
-    effects = [c.effect for c in fit.candidates]
-    shares = [
-        MODEL_ERROR.get(e.name, MODEL_ERROR.get(e.family, EXACT)) for e in effects
-    ]
-    return max(shares, default=EXACT)
+def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
+    """Return the chi2 that a right fit may leave: of each effect a share of its own.
+
+    An effect is no textbook law, so a share of what it explains may be left; of what
+    another one explains, nothing. Else a second effect of a loose law would excuse
+    whatever the first one leaves.
+
+    Args:
+        fit: of any effects.
+        others: the base, and what else was fitted; where the fit without an effect is
+            not among them, the base stands for it.
+        dof: degrees of freedom.
+    """
+    own, allowed = labels_of(fit.candidates), 0.0
+    for candidate in fit.candidates:
+        effect = candidate.effect
+        share = MODEL_ERROR.get(effect.name, MODEL_ERROR.get(effect.family, EXACT))
+        rest = own - {candidate.label}
+        without = [f.chi2 for f in others if labels_of(f.candidates) == rest]
+        left = min(without, default=others[0].chi2) - dof
+        allowed = max(allowed, share * left)
+    return allowed
 
 
 def _looks_like(left: Direction) -> str:
@@ -145,7 +160,7 @@ def _looks_like(left: Direction) -> str:
 
 
 def _worst(
-    fit: Fit, left: Screening, base_excess: float
+    fit: Fit, left: Screening, here: float, elsewhere: float
 ) -> tuple[Direction | None, float]:
     """Return the directed test that exceeds its limit most, and by how much.
 
@@ -153,13 +168,12 @@ def _worst(
     those of the joint. Anywhere else less of it should be seen.
     """
     own = {c.site for c in fit.candidates}
-    here = model_error(fit)
     worst, beyond = None, -np.inf
     for d in left.directions:
         if d.suggested:
             continue
-        share = here if d.candidate.site in own else min(here, ELSEWHERE)
-        limit = WIDENED * left.threshold + share * base_excess
+        model = here if d.candidate.site in own else elsewhere
+        limit = WIDENED * left.threshold + model
         if d.drop - limit > beyond:
             worst, beyond = d, d.drop - limit
     return worst, beyond

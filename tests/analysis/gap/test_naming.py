@@ -8,6 +8,7 @@ import pytest
 from jointbench.analysis.gap.catalogue_linear import GAIN_ERROR
 from jointbench.analysis.gap.catalogue_nonlinear import (
     BOUC_WEN,
+    GAP,
     IWAN,
     JENKINS,
     SATURATION,
@@ -15,7 +16,7 @@ from jointbench.analysis.gap.catalogue_nonlinear import (
 from jointbench.analysis.gap.effects import Candidate, Effect, Site
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.naming import at_the_end, model_error, without_twins
+from jointbench.analysis.gap.naming import at_the_end, forgiven, without_twins
 
 JOINT = Site("link", "joint")
 
@@ -50,9 +51,28 @@ def test_a_shape_that_the_data_do_not_know_is_no_objection() -> None:
 
 def test_only_a_law_that_cannot_be_exact_may_leave_much() -> None:
     """The sliders of an Iwan element are counted by its maker; a Jenkins has one."""
-    iwan = model_error(fit_of(IWAN.effect, [0.01, -1.0, 0.5, 2.6]))
-    jenkins = model_error(fit_of(JENKINS.effect, [0.01, -1.0, 2.6]))
+    base = bare_fit((), 1e6)
+    iwan = forgiven(fit_of(IWAN.effect, [0.01, -1.0, 0.5, 2.6]), (base,), 100)
+    jenkins = forgiven(fit_of(JENKINS.effect, [0.01, -1.0, 2.6]), (base,), 100)
     assert iwan >= 10 * jenkins
+
+
+def test_a_loose_law_does_not_excuse_what_another_one_leaves() -> None:
+    """A converter that clips takes a little of what a stop leaves, and no more."""
+    stop = Candidate(GAP.effect, JOINT)
+    clipping = Candidate(SATURATION.effect, Site("channel", "all"))
+    base, alone = bare_fit((), 1e9), bare_fit((stop,), 6000.0)
+    both = bare_fit((stop, clipping), 5900.0)
+    one = forgiven(alone, (base, alone, both), 1000)
+    assert forgiven(both, (base, alone, both), 1000) == pytest.approx(one)
+    assert forgiven(both, (base,), 1000) > 10 * one
+
+
+def bare_fit(candidates: tuple[Candidate, ...], chi2: float) -> Fit:
+    """Return a fit of which only its candidates and its chi2 matter."""
+    nothing = np.zeros(1)
+    left = np.array([np.sqrt(chi2)])
+    return Fit(nothing, 1, candidates, left, np.eye(1), chi2, nothing, nothing)
 
 
 def two_channel_fit(site: str) -> Fit:
