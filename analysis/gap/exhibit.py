@@ -28,11 +28,7 @@ from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.model import Output
-from jointbench.analysis.gap.naming import (
-    PULL_LIMIT,
-    WIDENED,
-    forgiven,
-)
+from jointbench.analysis.gap.naming import PULL_LIMIT, WIDENED, forgiven
 
 UNITS = {
     Output.DISPLACEMENT: "m",

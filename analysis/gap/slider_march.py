@@ -93,6 +93,7 @@ def bank_forces(
     never left their elastic range follow the joint, and are passed over.
     """
     rates = 1.0 / slips
+    # Numbers of their own: an array might change with `states`, and is read each time.
     ends = (tops[0], tops[1], tops[2], tops[3], tops[4], tops[5], tops[6])
     for k in range(r.size):
         total, count = 0.0, active[k]
