@@ -80,7 +80,6 @@ def prepare_excitation(
     time = np.arange(n) / sample_rate
     spectrum = scipy.fft.rfft(force * np.exp(-damping * time), 2 * n, axis=1)
     frequency = np.fft.rfftfreq(2 * n, 1 / sample_rate)
-    edge = (0.5 - frequency / sample_rate) / (0.5 - PASS_BAND)
     return Excitation(
         spectrum=spectrum,
         s=damping + 2j * np.pi * frequency,
@@ -89,8 +88,18 @@ def prepare_excitation(
         sample_rate=sample_rate,
         damping=damping,
         conditions=conditions,
-        taper=0.5 - 0.5 * np.cos(np.pi * np.clip(edge, 0, 1)),
+        taper=pass_band_end(frequency / sample_rate),
     )
+
+
+def pass_band_end(frequency: FloatArray) -> FloatArray:
+    """Return an anti-alias filter that is known by its pass band alone.
+
+    Args:
+        frequency: over the sample rate [-].
+    """
+    edge = (0.5 - frequency) / (0.5 - PASS_BAND)
+    return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.clip(edge, 0, 1)))
 
 
 def respond(

@@ -10,6 +10,7 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import FULL
 from jointbench.analysis.gap.campaign import TAIL
+from jointbench.analysis.gap.converter_edge import with_converter_edge
 from jointbench.analysis.gap.effects import Term
 from jointbench.analysis.gap.forward import prepare_excitation, respond
 from jointbench.analysis.gap.noise import (
@@ -65,7 +66,7 @@ def refine_noise(
     bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
 ) -> "LumpedBench":
     """Return the bench with its noise estimated at a solution."""
-    at = _centred(bench, base, terms)
+    at = with_converter_edge(_centred(bench, base, terms), base, terms)
     model = at.response(base, terms)
     residual = model - bench.campaign.response
     bench.mask(residual)
@@ -242,8 +243,12 @@ def _scatter_ways(
 def _harder(
     bench: "LumpedBench", base: FloatArray, terms: Sequence[Term], model: FloatArray
 ) -> FloatArray:
-    """Return the change of the response per relative change of the force."""
-    if not any(a.entry.law is not None for a in bench.actions(terms)):
+    """Return the change of the response per relative change of the force.
+
+    A clipped sample does not change at all.
+    """
+    entries = [a.entry for a in bench.actions(terms)]
+    if all(e.law is None and e.shape is None for e in entries):
         return model.copy()
     spectrum = bench.excitation.spectrum * (1.0 + SCATTER_STEP)
     pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Where the converter's pass band ends: estimated from what a nonlinear law makes there.
+
+Recorded force and recorded response carry the same anti-alias filter, so that it drops
+out of the linear part. The force of a nonlinear law is born inside the machine and
+meets the filter once. A stop that closes sounds up to the Nyquist frequency and
+beyond; a model that ends a hundredth of the sample rate too late is off there by
+thousands of times the noise of a quiet record. Data sheets give the pass band, not the
+shape of its end, so the shape is a nuisance: hats over frequency, by least squares.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.bench import FULL
+from jointbench.analysis.gap.effects import Term
+from jointbench.analysis.gap.forward import pass_band_end
+
+if TYPE_CHECKING:
+    from jointbench.analysis.gap.lumped import LumpedBench
+
+KNOTS = np.arange(0.37, 0.505, 0.01)
+"""Frequencies of the hats over the sample rate."""
+PRIOR_SD = 0.5
+"""Sd of the filter about its usual end: it is known no better at all."""
+AUDIBLE = 10.0
+"""Chi2 that the law must make up there for the end to matter."""
+EVERYDAY = 30.0
+"""Chi2 over dof beyond which a misfit says nothing about a filter."""
+
+
+def with_converter_edge(
+    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
+) -> "LumpedBench":
+    """Return the bench with the end of the pass band estimated at a solution.
+
+    Args:
+        bench: any.
+        base: log(parameter / nominal), shape (n_base,).
+        terms: the effects switched on; without a nonlinear law among them the end of
+            the pass band is of no consequence.
+    """
+    usual = pass_band_end(_frequency(bench))
+    plain = _with_taper(bench, usual)
+    if not any(a.entry.law is not None for a in bench.actions(terms)):
+        return plain
+    residual = plain.residual(base, terms, FULL)
+    if residual @ residual > EVERYDAY * bench.blocks.dof:
+        return plain
+    hats = _hats(_frequency(bench))
+    mute = _with_taper(bench, usual * (1.0 - hats.sum(axis=0)))
+    heard = residual - mute.residual(base, terms, FULL)
+    if heard @ heard < AUDIBLE:
+        return plain
+    raised = [_with_taper(bench, usual + h).residual(base, terms, FULL) for h in hats]
+    slopes = np.stack([r - residual for r in raised])
+    normal = slopes @ slopes.T + np.eye(len(hats)) / PRIOR_SD**2
+    change = np.linalg.solve(normal, -slopes @ residual)
+    return _with_taper(bench, usual + change @ hats)
+
+
+def _frequency(bench: "LumpedBench") -> FloatArray:
+    """Return the lines over the sample rate, shape (n_lines,)."""
+    excitation = bench.excitation
+    return np.asarray(excitation.s.imag / (2 * np.pi * excitation.sample_rate))
+
+
+def _hats(frequency: FloatArray) -> FloatArray:
+    """Return a hat about each knot, shape (n_knots, n_lines)."""
+    width = KNOTS[1] - KNOTS[0]
+    away = np.abs(frequency[None, :] - KNOTS[:, None])
+    return np.asarray(np.maximum(1.0 - away / width, 0.0))
+
+
+def _with_taper(bench: "LumpedBench", taper: FloatArray) -> "LumpedBench":
+    excitation = replace(bench.excitation, taper=taper)
+    return replace(bench, excitation=excitation, short={})
