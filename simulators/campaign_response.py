@@ -25,20 +25,24 @@ CONVERTER = AntiAlias(
 
 
 def simulate_records(
-    design: CampaignDesign, effects: Sequence[HiddenEffect]
+    design: CampaignDesign,
+    effects: Sequence[HiddenEffect],
+    *,
+    converter: AntiAlias = CONVERTER,
 ) -> tuple[FloatArray, FloatArray]:
     """Return what noise-free channels record.
 
     Args:
         design: specimen and hits.
         effects: hidden ones; none for the base model at its true values.
+        converter: that records force and accelerations alike.
 
     Returns:
         Forces [N], shape (n_records, n), and accelerations [m/s^2], shape
         (n_records, 2, n), both through the same anti-alias filter.
     """
     faults = [(effect.name, effect.parameters) for effect in effects]
-    beyond = CONVERTER.half_length // CONVERTER.oversampling + 1
+    beyond = converter.half_length // converter.oversampling + 1
     forces, responses = [], []
     for condition in design.conditions:
         force, acceleration = _stream(
@@ -46,9 +50,9 @@ def simulate_records(
             effects,
             condition,
             samples=SAMPLES + beyond,
-            oversampling=CONVERTER.oversampling,
+            oversampling=converter.oversampling,
         )
-        (seen,) = decimate([np.vstack((force, acceleration))], CONVERTER)
+        (seen,) = decimate([np.vstack((force, acceleration))], converter)
         forces.append(seen[0, :SAMPLES])
         responses.append(clip_samples(seen[1:, :SAMPLES], faults))
     return np.stack(forces), np.stack(responses)

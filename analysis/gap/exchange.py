@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Other effects in the place of one: a pair may be half right."""
 
+from collections.abc import Collection
+
 from jointbench.analysis.gap.bench import Bench
-from jointbench.analysis.gap.effects import may_join
+from jointbench.analysis.gap.effects import labels_of, may_join
 from jointbench.analysis.gap.far_pairs import without
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.race import MIDDLE, Progress, race
@@ -12,7 +14,12 @@ TRIED = 4
 """Effects that are tried in each place, by what their directed tests foretell."""
 
 
-def exchanged(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
+def exchanged(
+    bench: Bench,
+    fit: Fit,
+    known: Collection[frozenset[str]],
+    progress: Progress,
+) -> list[Fit]:
     """Take each effect out of a fit and race others for its place.
 
     The first effect of a pair is chosen while the second is missing, so that one may
@@ -21,6 +28,7 @@ def exchanged(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
     Args:
         bench: measurement and model.
         fit: of several effects, which does not explain the records.
+        known: sets of effects that need no other race.
         progress: told what is being tried.
 
     Returns:
@@ -35,5 +43,10 @@ def exchanged(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
             if c != candidate and may_join(c, kept.candidates)
         ]
         screening = screen(bench, kept, others)
-        found += race(bench, kept, screening, screening.leaders(TRIED), progress)
+        tried = [
+            c
+            for c in screening.leaders(TRIED)
+            if labels_of((*kept.candidates, c)) not in known
+        ]
+        found += race(bench, kept, screening, tried, progress)
     return found

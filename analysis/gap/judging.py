@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Judging: noise estimated at the winner, rivals fitted again there, and the gate."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from jointbench.analysis.gap.bench import FULL, Bench
@@ -45,12 +45,14 @@ def judge(
         return bench, [], gate(bench, base, base, None)
     if _hopeless(bench, fits[0]):
         return bench, list(fits), gate(bench, fits[0], base, None, fits)
-    ranked = list(fits)
+    ranked, tried = list(fits), set[frozenset[str]]()
     for _ in range(OVERTAKEN):
         found = _judged(bench, ranked, base, progress)
         if hopes is not None and not found.gate.passed:
             onto = onto or base
-            found = _own_settling(found, ranked, base, onto, hopes, progress)
+            held = _held_back(found, ranked, onto, hopes, tried)
+            tried |= {labels_of(f.candidates) for f in held}
+            found = _own_settling(found, held, ranked, base, progress)
         bench = found.bench
         rest = [f for f in ranked if f is not found.first]
         close = _close(found, rest)
@@ -119,19 +121,13 @@ def _judged(
 
 def _own_settling(
     failed: _Judged,
+    held: Sequence[Fit],
     ranked: Sequence[Fit],
     base: Fit,
-    onto: Fit,
-    hopes: Screening,
     progress: Progress,
 ) -> _Judged:
-    """Return the first of those held back that passes by itself, or what failed.
-
-    What scatters cannot be told where a fit misses by more than noise.
-    """
-    if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
-        return failed
-    for f in _held_back(failed, ranked, onto, hopes)[:MOST_HELD_BACK]:
+    """Return the first of those held back that passes by itself, or what failed."""
+    for f in held:
         rest = [r for r in ranked if r is not f]
         found = _judged(failed.bench, [f, *rest], base, progress)
         if found.gate.passed:
@@ -140,22 +136,30 @@ def _own_settling(
 
 
 def _held_back(
-    failed: _Judged, ranked: Sequence[Fit], onto: Fit, hopes: Screening
+    failed: _Judged,
+    ranked: Sequence[Fit],
+    onto: Fit,
+    hopes: Screening,
+    tried: Collection[frozenset[str]],
 ) -> list[Fit]:
     """Return the fits of which their directed tests foretold more than was gained.
 
     An expansion about another fit holds back one that differs from it; it may even
-    have lost the race.
+    have lost the race. What scatters cannot be told where a fit misses by more than
+    noise. What was tried by itself before comes out the same.
     """
+    if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
+        return []
     gained = onto.cost - failed.first.cost
     fits = {labels_of(f.candidates): f for f in ranked}
     held: dict[frozenset[str], Fit] = {}
     for d in hopes.directions:
         both = labels_of((*onto.candidates, d.candidate))
         fair = not d.suggested and d.candidate.effect.family != PROBE_FAMILY
-        if fair and d.drop > gained and both not in held:
+        if fair and d.drop > gained and both not in held and both not in tried:
             held[both] = fits.get(both) or started(failed.bench, onto, d)
-    return [f for f in held.values() if f is not failed.first]
+    fresh = [f for f in held.values() if f is not failed.first]
+    return fresh[:MOST_HELD_BACK]
 
 
 def _part_of(fewer: Fit, more: Fit) -> bool:

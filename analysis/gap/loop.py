@@ -13,7 +13,7 @@ from jointbench.analysis.gap.effects import Candidate, labels_of, may_join
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.far_pairs import far_pairs
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.judging import far_off, judge
+from jointbench.analysis.gap.judging import CLOSE_FAILED, far_off, judge
 from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
 from jointbench.analysis.gap.race import Progress, finish, race, race_on, score
 from jointbench.analysis.gap.screening import Screening, screen
@@ -76,7 +76,7 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
         if known or not _worth_more(found, base):
             break
         grown |= {labels_of(f.candidates) for f in firsts}
-        after = _one_more(found, firsts, base, progress, early=count == 1)
+        after = _one_more(found, firsts, base, progress)
         if after is None:
             break
         found = after
@@ -102,11 +102,9 @@ def _one_more(
     firsts: Sequence[Fit],
     base: Fit,
     progress: Progress,
-    *,
-    early: bool,
 ) -> _Round | None:
     """Add one more effect to each of some fits; None where none of them earns it."""
-    bench = found.bench
+    bench, early = found.bench, len(firsts[0].candidates) == 1
     if early and far_off(bench, firsts[0]):
         more = race_on(bench, far_pairs(bench, progress), progress)
     else:
@@ -126,8 +124,14 @@ def _one_more(
 
 
 def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
-    """Put other effects in the place of each, if that helps."""
-    more = exchanged(found.bench, found.fits[0], progress)
+    """Put other effects in the place of each, if that helps.
+
+    What comes close was fitted under this noise when the best was judged.
+    """
+    best = score(found.bench, found.fits[0])
+    close = [f for f in found.fits if score(found.bench, f) < best + CLOSE_FAILED]
+    known = {labels_of(f.candidates) for f in close}
+    more = exchanged(found.bench, found.fits[0], known, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
     if merged[0] is found.fits[0]:
         return found

@@ -38,7 +38,6 @@ MODEL_ERROR = {
     "stiffness": 1e-7,
     "contact": 1e-6,
     "damping": 1e-6,
-    "converter": 2e-5,
 }
 """Share of the base's excess chi2 that a right law may leave, by its name or family:
 an Iwan element has as many sliders as its maker gave it, a stop closes between steps,
