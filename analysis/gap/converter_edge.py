@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the converter's pass band ends: estimated from what a nonlinear law makes there.
+"""Where the converter's pass band ends, estimated from what a stiff law makes there.
 
 Recorded force and recorded response carry the same anti-alias filter, so that it drops
 out of the linear part. The force of a nonlinear law is born inside the machine and

@@ -130,13 +130,19 @@ def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fi
     return sorted(fits, key=lambda f: score(bench, f))
 
 
-def finish(bench: Bench, problem: Problem, x: FloatArray, progress: Progress) -> Fit:
-    """Fit to the end at the finest step."""
+def finish(
+    bench: Bench,
+    problem: Problem,
+    x: FloatArray,
+    progress: Progress,
+    stage: Stage = FULL,
+) -> Fit:
+    """Fit to the end at a fine step."""
     progress(" + ".join(c.label for c in problem.candidates) + " (fine)")
     families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}
     if families & {"friction", "stiffness", "contact", "damping"}:
-        return minimise(problem, x, FULL, iterations=8, jacobian_stage=MIDDLE)
-    return minimise(problem, x, FULL, iterations=8)
+        return minimise(problem, x, stage, iterations=8, jacobian_stage=MIDDLE)
+    return minimise(problem, x, stage, iterations=8)
 
 
 def _heat(
