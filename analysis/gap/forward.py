@@ -79,7 +79,7 @@ def prepare_excitation(
     damping = DAMPING_EXPONENT * sample_rate / (2 * n)
     time = np.arange(n) / sample_rate
     spectrum = scipy.fft.rfft(force * np.exp(-damping * time), 2 * n, axis=1)
-    frequency = np.fft.rfftfreq(2 * n, 1 / sample_rate)
+    frequency = np.asarray(np.fft.rfftfreq(2 * n, 1 / sample_rate), dtype=float)
     return Excitation(
         spectrum=spectrum,
         s=damping + 2j * np.pi * frequency,
