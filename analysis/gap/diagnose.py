@@ -12,7 +12,7 @@ from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.checks import campaign_limits, flat_tops
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.effects import Candidate, Reported, Term
+from jointbench.analysis.gap.effects import Candidate, Reported, Term, sum_of
 from jointbench.analysis.gap.exhibit import make_exhibit
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
@@ -124,7 +124,7 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
             )
         odd = _odd_record(outcome, bench)
         return Finding.UNKNOWN, odd or f"no effect explains it: {outcome.gate.reason}"
-    names = " or ".join(_words(f.candidates) for f in outcome.level)
+    names = " or ".join(sum_of(f.candidates) for f in outcome.level)
     if len(outcome.level) > MOST_RIVALS:
         return Finding.UNKNOWN, f"too many explanations fit alike: {names}"
     if len(outcome.level) > 1:
@@ -153,10 +153,6 @@ def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:
         f"record {worst} ({labels}) holds {100 * share[worst] / total:.0f} % of the "
         "misfit: check its labels (preload, level, point) or measure it again"
     )
-
-
-def _words(candidates: Sequence[Candidate]) -> str:
-    return " + ".join(c.label for c in candidates)
 
 
 def _gap(bench: LumpedBench, fit: Fit) -> Gap:

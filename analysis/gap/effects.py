@@ -183,6 +183,11 @@ def labels_of(candidates: Iterable[Candidate]) -> frozenset[str]:
     return frozenset(c.label for c in candidates)
 
 
+def sum_of(candidates: Iterable[Candidate]) -> str:
+    """Return a set of candidates in words, in an order of their own."""
+    return " + ".join(sorted(labels_of(candidates)))
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Term:
     """A candidate switched on: its fitted coordinates, shape (n_parameters,)."""

@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import FULL, Bench, Stage
 from jointbench.analysis.gap.descent import BASE_STAGES, cost_at, minimise
-from jointbench.analysis.gap.effects import Candidate, Term
+from jointbench.analysis.gap.effects import Candidate, Term, sum_of
 from jointbench.analysis.gap.fit import Fit, Problem, make_problem
 from jointbench.analysis.gap.screening import Direction, Screening
 
@@ -55,7 +55,7 @@ class Runner:
     @property
     def label(self) -> str:
         """The candidates in words, in an order of their own."""
-        return " + ".join(sorted(c.label for c in self.problem.candidates))
+        return sum_of(self.problem.candidates)
 
 
 def score(bench: Bench, fit: Fit) -> float:
@@ -138,7 +138,7 @@ def finish(
     stage: Stage = FULL,
 ) -> Fit:
     """Fit to the end at a fine step."""
-    progress(" + ".join(c.label for c in problem.candidates) + " (fine)")
+    progress(f"{sum_of(problem.candidates)} (fine)")
     families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}
     if families & {"friction", "stiffness", "contact", "damping"}:
         return minimise(problem, x, stage, iterations=8, jacobian_stage=MIDDLE)
