@@ -30,6 +30,9 @@ class Stage:
 
 FULL = Stage()
 FINE = Stage(oversampling=8)
+EVERYDAY = 30.0
+"""Chi2 over dof beyond which a misfit is a missing effect of everyday size: directed
+tests may point the wrong way, and nothing can be told of noise, settling or filter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

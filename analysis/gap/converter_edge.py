@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import FULL
+from jointbench.analysis.gap.bench import EVERYDAY, FINE, FULL
 from jointbench.analysis.gap.effects import Term
 from jointbench.analysis.gap.forward import pass_band_end
 
@@ -26,11 +26,9 @@ if TYPE_CHECKING:
 KNOTS = np.arange(0.37, 0.505, 0.01)
 """Frequencies of the hats over the sample rate."""
 PRIOR_SD = 0.5
-"""Sd of the filter about its usual end: it is known no better at all."""
+"""Sd of the filter about its usual end: anything from open to shut."""
 AUDIBLE = 10.0
 """Chi2 that the law must make up there for the end to matter."""
-EVERYDAY = 30.0
-"""Chi2 over dof beyond which a misfit says nothing about a filter."""
 
 
 def with_converter_edge(
@@ -39,7 +37,7 @@ def with_converter_edge(
     """Return the bench with the end of the pass band estimated at a solution.
 
     Args:
-        bench: any.
+        bench: with any filter; it is estimated anew, or put back to the usual one.
         base: log(parameter / nominal), shape (n_base,).
         terms: the effects switched on; without a nonlinear law among them the end of
             the pass band is of no consequence.
@@ -49,17 +47,19 @@ def with_converter_edge(
     if not any(a.entry.law is not None for a in bench.actions(terms)):
         return plain
     residual = plain.residual(base, terms, FULL)
-    if residual @ residual > EVERYDAY * bench.blocks.dof:
-        return plain
     hats = _hats(_frequency(bench))
     mute = _with_taper(bench, usual * (1.0 - hats.sum(axis=0)))
     heard = residual - mute.residual(base, terms, FULL)
-    if heard @ heard < AUDIBLE:
+    if not heard @ heard > AUDIBLE:
         return plain
     raised = [_with_taper(bench, usual + h).residual(base, terms, FULL) for h in hats]
     slopes = np.stack([r - residual for r in raised])
     normal = slopes @ slopes.T + np.eye(len(hats)) / PRIOR_SD**2
-    change = np.linalg.solve(normal, -slopes @ residual)
+    left = plain.residual(base, terms, FINE)
+    change = np.linalg.solve(normal, -slopes @ left)
+    left = left + change @ slopes
+    if not left @ left < EVERYDAY * bench.blocks.dof:
+        return plain
     return _with_taper(bench, usual + change @ hats)
 
 

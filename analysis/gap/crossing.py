@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.descent import cost_at, minimise
-from jointbench.analysis.gap.effects import sum_of
+from jointbench.analysis.gap.effects import words_of
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.race import MIDDLE, MOST_STEPS, Progress, finish
 
@@ -61,7 +61,7 @@ def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
     start = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
     if cost_at(problem, start, MIDDLE) > _hope(fit, best):
         return fit
-    progress(f"{sum_of(fit.candidates)} (again)")
+    progress(f"{words_of(fit.candidates)} (again)")
     middle = minimise(problem, start, MIDDLE, iterations=MOST_STEPS, rival=best.cost)
     if middle.cost > BETTER * fit.cost:
         return fit

@@ -234,6 +234,13 @@ def cost_at(problem: Problem, x: FloatArray, stage: Stage) -> float:
     return _looked_at(problem, x, stage)[1]
 
 
+def chi2_between(problem: Problem, x: FloatArray, coarse: Stage, fine: Stage) -> float:
+    """Return the chi2 by which two stages differ at x; NaN where one runs away."""
+    one, two = (_looked_at(problem, x, stage)[0] for stage in (coarse, fine))
+    with np.errstate(all="ignore"):
+        return float(np.sum((two - one) ** 2))
+
+
 def _looked_at(
     problem: Problem, x: FloatArray, stage: Stage
 ) -> tuple[FloatArray, float]:

@@ -12,7 +12,7 @@ from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.checks import campaign_limits, flat_tops
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.effects import Candidate, Reported, Term, sum_of
+from jointbench.analysis.gap.effects import Candidate, Reported, Term, words_of
 from jointbench.analysis.gap.exhibit import make_exhibit
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
@@ -124,7 +124,7 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
             )
         odd = _odd_record(outcome, bench)
         return Finding.UNKNOWN, odd or f"no effect explains it: {outcome.gate.reason}"
-    names = " or ".join(sum_of(f.candidates) for f in outcome.level)
+    names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) > MOST_RIVALS:
         return Finding.UNKNOWN, f"too many explanations fit alike: {names}"
     if len(outcome.level) > 1:

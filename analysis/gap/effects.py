@@ -183,7 +183,7 @@ def labels_of(candidates: Iterable[Candidate]) -> frozenset[str]:
     return frozenset(c.label for c in candidates)
 
 
-def sum_of(candidates: Iterable[Candidate]) -> str:
+def words_of(candidates: Iterable[Candidate]) -> str:
     """Return a set of candidates in words, in an order of their own."""
     return " + ".join(sorted(labels_of(candidates)))
 

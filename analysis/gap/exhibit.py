@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.campaign import TAIL
-from jointbench.analysis.gap.effects import sum_of
+from jointbench.analysis.gap.effects import words_of
 from jointbench.analysis.gap.exhibit_level import recurrences
 from jointbench.analysis.gap.exhibit_records import (
     Curves,
@@ -78,7 +78,7 @@ def make_exhibit(bench: LumpedBench, base: Fit, outcome: Outcome) -> Exhibit:
     elif not outcome.base_gate.passed:
         where, view = pulled(bench, base), "sheet"
     return Exhibit(
-        tried=sum_of(best.candidates),
+        tried=words_of(best.candidates),
         where=where,
         look=look,
         advice=advise(bench, relative, levels) if look else "",

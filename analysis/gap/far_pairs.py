@@ -14,7 +14,7 @@ import numpy as np
 
 from jointbench.analysis.gap.bench import Bench, Stage
 from jointbench.analysis.gap.descent import fit_stages, minimise
-from jointbench.analysis.gap.effects import labels_of, may_join, sum_of
+from jointbench.analysis.gap.effects import labels_of, may_join, words_of
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.race import Progress, along
 from jointbench.analysis.gap.screening import screen
@@ -80,7 +80,7 @@ def _with_one_more(bench: Bench, fit: Fit, count: int, progress: Progress) -> li
     found = []
     for candidate in screening.leaders(count):
         problem = make_problem(bench, (*fit.candidates, candidate))
-        progress(f"{sum_of(problem.candidates)} (first milliseconds)")
+        progress(f"{words_of(problem.candidates)} (first milliseconds)")
         starts = [along(problem, fit, d, SHORT) for d in screening.best(candidate, 2)]
         start = min(starts, key=lambda r: r.cost)
         found.append(minimise(problem, start.x, SHORT, iterations=STEPS))

@@ -4,21 +4,17 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from jointbench.analysis.gap.bench import FINE, FULL, Bench, Stage
+from jointbench.analysis.gap.bench import EVERYDAY, FULL, Bench
 from jointbench.analysis.gap.crossing import caught_up
 from jointbench.analysis.gap.effects import PROBE_FAMILY, Candidate, labels_of
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.naming import Gate, gate
-from jointbench.analysis.gap.race import EVERYDAY, Progress, finish, score, started
+from jointbench.analysis.gap.race import Progress, finish, score, started
 from jointbench.analysis.gap.screening import Screening, screen
 
 REJUDGED = 12
 AGREED = 2.0
 """Change of a winner's cost below which it agrees with the noise estimated at it."""
-MARCH_ERROR = 50.0
-"""Chi2 between two step sizes above which the finer one is taken."""
 OVERTAKEN = 2
 CLOSE = 1000.0
 """Score behind the winner up to which a rival is fitted again with the new noise."""
@@ -176,26 +172,14 @@ def _part_of(fewer: Fit, more: Fit) -> bool:
 
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     """Bring a fit and the noise estimated at it to agree."""
-    stage = _fine_enough(bench, fit)
     for _ in range(REJUDGED):
         before = fit.cost
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
-        fit = finish(bench, problem, fit.x, progress, stage)
+        fit = finish(bench, problem, fit.x, progress)
         if abs(fit.cost - before) < AGREED:
             break
     return bench, fit
-
-
-def _fine_enough(bench: Bench, fit: Fit) -> Stage:
-    """Return the step at which the march of a fit errs by less than noise does.
-
-    A stop of 75,000 times the noise is marched too coarsely by four steps a sample,
-    and a second law makes up for the error.
-    """
-    coarse = bench.residual(fit.base, fit.terms, FULL)
-    fine = bench.residual(fit.base, fit.terms, FINE)
-    return FINE if np.sum((fine - coarse) ** 2) > MARCH_ERROR else FULL
 
 
 def _others(bench: Bench, fit: Fit) -> list[Candidate]:

@@ -13,8 +13,14 @@ from jointbench.analysis.gap.effects import Candidate, labels_of, may_join
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.far_pairs import far_pairs
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.judging import CLOSE_FAILED, far_off, judge
-from jointbench.analysis.gap.naming import Gate, gate, rivals, without_twins
+from jointbench.analysis.gap.judging import far_off, judge
+from jointbench.analysis.gap.naming import (
+    CROWDED_WITHIN,
+    Gate,
+    gate,
+    rivals,
+    without_twins,
+)
 from jointbench.analysis.gap.race import Progress, finish, race, race_on, score
 from jointbench.analysis.gap.screening import Screening, screen
 
@@ -126,10 +132,10 @@ def _one_more(
 def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
     """Put other effects in the place of each, if that helps.
 
-    What comes close was fitted under this noise when the best was judged.
+    What is not told apart from the best was fitted again when that was judged.
     """
     best = score(found.bench, found.fits[0])
-    close = [f for f in found.fits if score(found.bench, f) < best + CLOSE_FAILED]
+    close = [f for f in found.fits if score(found.bench, f) < best + CROWDED_WITHIN]
     known = {labels_of(f.candidates) for f in close}
     more = exchanged(found.bench, found.fits[0], known, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import FULL
+from jointbench.analysis.gap.bench import EVERYDAY, FULL
 from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.converter_edge import with_converter_edge
 from jointbench.analysis.gap.effects import Term
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 SETTLING_SEEN = 1e-5
 LOST = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
-EVERYDAY = 30.0
-"""Chi2 over dof beyond which what seems to settle is the missing effect itself."""
 LEAST_FACTOR = 1e-3
 """Smallest share of a stiffness that a settling may leave."""
 SETTLING_REACH = 10.0

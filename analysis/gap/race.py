@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import FULL, Bench, Stage
-from jointbench.analysis.gap.descent import BASE_STAGES, cost_at, minimise
-from jointbench.analysis.gap.effects import Candidate, Term, sum_of
+from jointbench.analysis.gap.bench import EVERYDAY, FINE, FULL, Bench, Stage
+from jointbench.analysis.gap.descent import BASE_STAGES, chi2_between, cost_at, minimise
+from jointbench.analysis.gap.effects import Candidate, Term, words_of
 from jointbench.analysis.gap.fit import Fit, Problem, make_problem
 from jointbench.analysis.gap.screening import Direction, Screening
 
@@ -37,10 +37,10 @@ MOST_STEPS = 16
 STARTS = 3
 """Starts of a candidate that has a shape of its own."""
 SWAP_PROBE = 1e-4
+MARCH_ERROR = 50.0
+"""Chi2 between two step sizes above which the finer one is taken."""
 SHARES = (1.0, 0.3, 0.1)
 """Shares of a foretold step that are tried as starts."""
-EVERYDAY = 30.0
-"""Chi2 over dof of the base above which directed tests may point the wrong way."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +55,7 @@ class Runner:
     @property
     def label(self) -> str:
         """The candidates in words, in an order of their own."""
-        return sum_of(self.problem.candidates)
+        return words_of(self.problem.candidates)
 
 
 def score(bench: Bench, fit: Fit) -> float:
@@ -135,14 +135,23 @@ def finish(
     problem: Problem,
     x: FloatArray,
     progress: Progress,
-    stage: Stage = FULL,
 ) -> Fit:
-    """Fit to the end at a fine step."""
-    progress(f"{sum_of(problem.candidates)} (fine)")
+    """Fit to the end, at the step that the march of its start needs."""
+    stage = _step_for(problem, x)
+    progress(f"{words_of(problem.candidates)} (fine)")
     families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}
     if families & {"friction", "stiffness", "contact", "damping"}:
         return minimise(problem, x, stage, iterations=8, jacobian_stage=MIDDLE)
     return minimise(problem, x, stage, iterations=8)
+
+
+def _step_for(problem: Problem, x: FloatArray) -> Stage:
+    """Return eight steps a sample where four err by more than the noise hides.
+
+    A stop of 75,000 times the noise is marched too coarsely by four, and a second law
+    makes up for the error.
+    """
+    return FINE if chi2_between(problem, x, FULL, FINE) > MARCH_ERROR else FULL
 
 
 def _heat(

@@ -19,6 +19,7 @@ from jointbench.analysis.gap.effects import (
     Parameter,
     Site,
     Term,
+    labels_of,
 )
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.fit import Fit, make_problem
@@ -154,9 +155,13 @@ def test_half_a_pair_is_exchanged() -> None:
     bench = Curve(measured, tuple(effect(name) for name in POWERS))
     wrong = (effect("square"), effect("cube"))
     fit = minimise(make_problem(bench, wrong), np.array([0.0, 0.1, 0.1]))
-    best = min(exchanged(bench, fit, lambda line: None), key=lambda f: f.cost)
+    best = min(exchanged(bench, fit, (), lambda line: None), key=lambda f: f.cost)
     assert {c.effect.name for c in best.candidates} == {"square", "fifth"}
     assert best.cost < 0.9 * fit.cost
+    known = {labels_of(best.candidates)}
+    rest = exchanged(bench, fit, known, lambda line: None)
+    assert rest
+    assert all(labels_of(f.candidates) not in known for f in rest)
 
 
 def test_a_fit_that_went_astray_catches_up_from_the_base_of_the_best() -> None:
