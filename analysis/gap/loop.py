@@ -104,14 +104,11 @@ class _Round:
 
 
 def _one_more(
-    found: _Round,
-    firsts: Sequence[Fit],
-    base: Fit,
-    progress: Progress,
+    found: _Round, firsts: Sequence[Fit], base: Fit, progress: Progress
 ) -> _Round | None:
     """Add one more effect to each of some fits; None where none of them earns it."""
-    bench, early = found.bench, len(firsts[0].candidates) == 1
-    if early and far_off(bench, firsts[0]):
+    bench, alone = found.bench, len(firsts[0].candidates) == 1
+    if alone and far_off(bench, firsts[0]):
         more = race_on(bench, far_pairs(bench, progress), progress)
     else:
         more = add_another(bench, firsts, progress)
@@ -120,7 +117,7 @@ def _one_more(
     more = crossed(bench, more, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
     merged = take_back(bench, merged, progress)
-    hopes = found.gate.left if early else None
+    hopes = found.gate.left if alone else None
     after = _Round(*judge(bench, merged, base, progress, hopes, firsts[0]))
     if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
         return None
