@@ -38,10 +38,12 @@ MODEL_ERROR = {
     "stiffness": 1e-7,
     "contact": 1e-6,
     "damping": 1e-6,
+    "converter": 5e-6,
 }
 """Share of the base's excess chi2 that a right law may leave, by its name or family:
 an Iwan element has as many sliders as its maker gave it, a stop closes between steps,
-a smooth law is as exact as its march."""
+a smooth law is as exact as its march; scatter carries samples over the edge of a clip,
+which its slope does not tell."""
 EXACT = 1e-9
 """The same for what is linear or acts on a channel: it is as exact as the base, and
 any more would hide a second effect behind a great first one."""
