@@ -1,6 +1,7 @@
 """Small sessions in closed form, for the tests of offline work."""
 
-from collections.abc import Callable
+import signal
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,14 @@ from jointbench.signal.hits import find_hits
 RATE = 2048.0
 FREQUENCY, DAMPING = np.array([150.0, 420.0]), np.array([0.01, 0.012])
 Maker = Callable[..., Path]
+
+
+@pytest.fixture(autouse=True, scope="session")
+def heard_ctrl_c() -> Iterator[None]:
+    """Let children hear Ctrl-C, even where the tests run in a shell's background."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def ringing(seed: int, *, hits: int = 2, bounce: float = 0.0) -> Recording:

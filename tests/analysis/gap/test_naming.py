@@ -58,11 +58,10 @@ def test_only_a_law_that_cannot_be_exact_may_leave_much() -> None:
 
 
 def test_a_loose_law_does_not_excuse_what_another_one_leaves() -> None:
-    """A converter that clips takes a little of what a stop leaves, and no more."""
-    stop = Candidate(GAP.effect, JOINT)
-    clipping = Candidate(SATURATION.effect, Site("channel", "all"))
+    """An Iwan element takes a little of what a stop leaves, and no more."""
+    stop, loose = Candidate(GAP.effect, JOINT), Candidate(IWAN.effect, JOINT)
     base, alone = bare_fit((), 1e9), bare_fit((stop,), 6000.0)
-    both = bare_fit((stop, clipping), 5900.0)
+    both = bare_fit((stop, loose), 5900.0)
     one = forgiven(alone, (base, alone, both), 1000)
     assert forgiven(both, (base, alone, both), 1000) == pytest.approx(one)
     assert forgiven(both, (base,), 1000) > 10 * one
