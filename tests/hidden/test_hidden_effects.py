@@ -33,6 +33,14 @@ def test_nothing_hidden_is_nothing_found(
     assert found.verdict is Finding.NONE
 
 
+def test_a_base_in_a_wrong_valley_is_led_out_of_it(tmp_path: Path) -> None:
+    """A loosening leads the base out, which then explains the records without it."""
+    campaign = quick_campaign(80290, hit_scatter=0.0019730039844606992)
+    found = told(campaign, tmp_path)
+    assert found.verdict is Finding.NONE
+    assert found.null_statistic[0] < 1.3 * found.null_statistic[1]
+
+
 @pytest.mark.parametrize(
     ("name", "size", "scatter"),
     [
