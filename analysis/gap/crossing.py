@@ -49,7 +49,7 @@ def caught_up(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
     borrowed = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
     starts = (fit.x, borrowed)
     costs = [cost_at(problem, x, MIDDLE) for x in starts]
-    return finish(bench, problem, starts[int(np.argmin(costs))], progress)
+    return finish(problem, starts[int(np.argmin(costs))], progress)
 
 
 def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
@@ -65,7 +65,7 @@ def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
     middle = minimise(problem, start, MIDDLE, iterations=MOST_STEPS, rival=best.cost)
     if middle.cost > BETTER * fit.cost:
         return fit
-    return finish(bench, problem, middle.x, progress)
+    return finish(problem, middle.x, progress)
 
 
 def _hope(fit: Fit, best: Fit) -> float:

@@ -51,8 +51,7 @@ def judge(
         if hopes is not None and not found.gate.passed:
             onto = onto or base
             held = _held_back(found, ranked, onto, hopes, tried)
-            tried |= {labels_of(f.candidates) for f in held}
-            found = _own_settling(found, held, ranked, base, progress)
+            found = _own_settling(found, held, ranked, base, progress, tried)
         bench = found.bench
         rest = [f for f in ranked if f is not found.first]
         close = _close(found, rest)
@@ -125,9 +124,14 @@ def _own_settling(
     ranked: Sequence[Fit],
     base: Fit,
     progress: Progress,
+    tried: set[frozenset[str]],
 ) -> _Judged:
-    """Return the first of those held back that passes by itself, or what failed."""
+    """Return the first of those held back that passes by itself, or what failed.
+
+    Those that were reached are added to `tried`.
+    """
     for f in held:
+        tried.add(labels_of(f.candidates))
         rest = [r for r in ranked if r is not f]
         found = _judged(failed.bench, [f, *rest], base, progress)
         if found.gate.passed:
@@ -176,7 +180,7 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
         before = fit.cost
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
-        fit = finish(bench, problem, fit.x, progress)
+        fit = finish(problem, fit.x, progress)
         if abs(fit.cost - before) < AGREED:
             break
     return bench, fit

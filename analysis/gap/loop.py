@@ -35,7 +35,7 @@ HOPEFUL = 4.0
 """Excess of the cost over the best first's above which a first is given no second."""
 NOTHING = 0.01
 """Excess over dof that noise may make of nothing."""
-LOST = 2.0
+WRONG_VALLEY = 2.0
 """Chi2 over dof above which a base may have stopped in a wrong valley."""
 SECONDS = 4
 MIN_GAIN = 35.0
@@ -168,11 +168,11 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> Outcome | None:
     wrong valley (2 of 1,000 without an effect). An effect that leads it out looks as
     if it explained all that the base had missed.
     """
-    if not found.fits or base.chi2 < LOST * found.bench.blocks.dof:
+    if not found.fits or base.chi2 < WRONG_VALLEY * found.bench.blocks.dof:
         return None
     progress("base again")
     fit = minimise(make_problem(found.bench, ()), found.fits[0].base)
-    if fit.chi2 > LOST * found.bench.blocks.dof:
+    if fit.chi2 > WRONG_VALLEY * found.bench.blocks.dof:
         return None
     bench, fit = _settled_base(found.bench, fit)
     screening = screen(bench, fit, bench.candidates)
@@ -209,7 +209,7 @@ def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit
             continue
         coordinates = [t.coordinates for i, t in enumerate(best.terms) if i != k]
         start = np.concatenate([best.base, *coordinates])
-        found.append(finish(bench, make_problem(bench, kept), start, progress))
+        found.append(finish(make_problem(bench, kept), start, progress))
     return best_of_each(sorted(found, key=lambda f: score(bench, f)))
 
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from jointbench.analysis.gap.lumped import LumpedBench
 
 SETTLING_SEEN = 1e-5
-LOST = 0.3
+TELLS_NOTHING = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
 LEAST_FACTOR = 1e-3
 """Smallest share of a stiffness that a settling may leave."""
@@ -87,7 +87,7 @@ def refine_noise(
     scatter, groups = _scatter_of(at, coefficients, variances)
     noise = replace(noise, scatter=scatter, scatter_known=groups)
     refined = _with_noise(at, noise, columns, ways)
-    lost = np.linalg.norm(residual) > LOST * np.linalg.norm(model)
+    lost = np.linalg.norm(residual) > TELLS_NOTHING * np.linalg.norm(model)
     if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
         return settle(refined, None)
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])

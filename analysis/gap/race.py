@@ -125,13 +125,12 @@ def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fi
         best = min(best or np.inf, middle.cost)
     runners = _keep(done, FINALISTS)
     hopeful = [r for r in runners if r.cost < HOPELESS * runners[0].cost]
-    fits = [finish(bench, r.problem, r.x, progress) for r in hopeful]
+    fits = [finish(r.problem, r.x, progress) for r in hopeful]
     fits += [r.fit for r in runners if r not in hopeful and r.fit is not None]
     return sorted(fits, key=lambda f: score(bench, f))
 
 
 def finish(
-    bench: Bench,
     problem: Problem,
     x: FloatArray,
     progress: Progress,

@@ -29,7 +29,7 @@ def fits_of_a_stop(stiffness: float) -> tuple[Problem, Fit, Fit]:
     problem = make_problem(noisy, (stop.candidate,))
     start = np.concatenate([BASE, stop.coordinates])
     four = minimise(problem, start, iterations=8)
-    return problem, four, finish(noisy, problem, start, lambda line: None)
+    return problem, four, finish(problem, start, lambda line: None)
 
 
 def test_a_great_stop_is_marched_as_finely_as_it_needs() -> None:
@@ -53,7 +53,5 @@ def test_clipped_samples_do_not_scatter_with_the_force() -> None:
     clip = made.term_of(bench, "saturation", "channel:all", [1.0 / limit])
     noisy = refine_noise(bench, BASE, [clip])
     problem = make_problem(noisy, (clip.candidate,))
-    fit = finish(
-        noisy, problem, np.concatenate([BASE, clip.coordinates]), lambda line: None
-    )
+    fit = finish(problem, np.concatenate([BASE, clip.coordinates]), lambda line: None)
     assert fit.chi2 / noisy.blocks.dof - 1.0 < GLOBAL_SD * noise_sd(noisy)
