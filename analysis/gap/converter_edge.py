@@ -6,7 +6,7 @@ out of the linear part. The force of a nonlinear law is born inside the machine 
 meets the filter once. A stop that closes sounds up to the Nyquist frequency and
 beyond; a model that ends a hundredth of the sample rate too late is off there by
 thousands of times the noise of a quiet record. Data sheets give the pass band, not the
-shape of its end, so the shape is a nuisance: hats over frequency, by least squares.
+shape of its end, so the shape is a nuisance: splines over frequency, by least squares.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jointbench.analysis.gap.lumped import LumpedBench
 
 KNOTS = np.arange(0.37, 0.505, 0.01)
-"""Frequencies of the hats over the sample rate."""
+"""Middles of the splines over the sample rate."""
 PRIOR_SD = 0.5
 """Sd of the filter about its usual end: anything from open to shut."""
 AUDIBLE = 10.0
@@ -47,20 +47,22 @@ def with_converter_edge(
     if not any(a.entry.law is not None for a in bench.actions(terms)):
         return plain
     residual = plain.residual(base, terms, FULL)
-    hats = _hats(_frequency(bench))
-    mute = _with_taper(bench, usual * (1.0 - hats.sum(axis=0)))
+    splines = _splines(_frequency(bench))
+    mute = _with_taper(bench, usual * (1.0 - splines.sum(axis=0)))
     heard = residual - mute.residual(base, terms, FULL)
     if not heard @ heard > AUDIBLE:
         return plain
-    raised = [_with_taper(bench, usual + h).residual(base, terms, FULL) for h in hats]
+    raised = [
+        _with_taper(bench, usual + s).residual(base, terms, FULL) for s in splines
+    ]
     slopes = np.stack([r - residual for r in raised])
-    normal = slopes @ slopes.T + np.eye(len(hats)) / PRIOR_SD**2
+    normal = slopes @ slopes.T + np.eye(len(splines)) / PRIOR_SD**2
     left = plain.residual(base, terms, FINE)
     change = np.linalg.solve(normal, -slopes @ left)
     left = left + change @ slopes
     if not left @ left < EVERYDAY * bench.blocks.dof:
         return plain
-    return _with_taper(bench, usual + change @ hats)
+    return _with_taper(bench, usual + change @ splines)
 
 
 def _frequency(bench: "LumpedBench") -> FloatArray:
@@ -69,11 +71,16 @@ def _frequency(bench: "LumpedBench") -> FloatArray:
     return np.asarray(excitation.s.imag / (2 * np.pi * excitation.sample_rate))
 
 
-def _hats(frequency: FloatArray) -> FloatArray:
-    """Return a hat about each knot, shape (n_knots, n_lines)."""
+def _splines(frequency: FloatArray) -> FloatArray:
+    """Return a cubic B-spline about each knot, shape (n_knots, n_lines).
+
+    A corner would ring all through the record.
+    """
     width = KNOTS[1] - KNOTS[0]
-    away = np.abs(frequency[None, :] - KNOTS[:, None])
-    return np.asarray(np.maximum(1.0 - away / width, 0.0))
+    away = np.abs(frequency[None, :] - KNOTS[:, None]) / width
+    inner = 2.0 / 3.0 - away**2 + 0.5 * away**3
+    outer = np.maximum(2.0 - away, 0.0) ** 3 / 6.0
+    return np.asarray(np.where(away < 1.0, inner, outer))
 
 
 def _with_taper(bench: "LumpedBench", taper: FloatArray) -> "LumpedBench":

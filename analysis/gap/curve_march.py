@@ -47,17 +47,21 @@ def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
 
 
 @njit(cache=True, fastmath=True, inline="always")
-def curve_force(tables: FloatArray, p: FloatArray, r: float, v: float) -> float:
+def curve_force(
+    tables: FloatArray, row: int, travel: float, speed: float, r: float, v: float
+) -> float:
     """Return spring(r) + damping(r) v + drag(v) [N].
 
     Args:
-        tables: of the three curves, shape (3, POINTS).
-        p: finest distance [m] and finest speed [m/s].
+        tables: of curves, shape (n_rows, POINTS).
+        row: where the three of this law begin.
+        travel: finest distance [m].
+        speed: finest speed [m/s].
         r: motion across the link [m].
         v: its rate [m/s].
     """
-    force = look_up(tables, 0, p[0], r) + look_up(tables, 1, p[0], r) * v
-    return float(force + look_up(tables, 2, p[1], v))
+    force = look_up(tables, row, travel, r) + look_up(tables, row + 1, travel, r) * v
+    return float(force + look_up(tables, row + 2, speed, v))
 
 
 def tabulate(curve: Curve | None, reach: float) -> FloatArray:

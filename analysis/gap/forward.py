@@ -2,16 +2,19 @@
 """Response of lumped bodies to measured forces, from rest, over the whole record.
 
 The linear part is evaluated on a line to the right of the imaginary axis of the
-Laplace plane: multiply the force by exp(-a t), pad to twice the length, transform,
+Laplace plane: multiply the force by exp(-a t), pad to 1.5 times the length, transform,
 multiply by the transfer function at s = a + i omega, transform back, multiply by
 exp(a t). For a force that is band-limited between samples this is exact but for a
-wrap-around of exp(-18), with no step and no leakage.
+wrap-around of exp(-16), with no step and no leakage. The last fiftieth of the band
+fades out: noise of the force there, which no filter lets through, would ring ahead of
+the hit, that is at the end of the transform, where exp(a t) is greatest.
 
 Source:
     Wilcox 1978, Int. J. Elec. Eng. Educ. 15, 247 (numerical Laplace transform with
-    damping); the choice a = 18 / (2 n dt) follows from the wrap-around wanted.
+    damping); the choice a = 16 / (1.5 n dt) follows from the wrap-around wanted.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -24,15 +27,20 @@ from jointbench.analysis.gap.link_modes import link_modes
 from jointbench.analysis.gap.march import (
     COULOMB,
     CURVES,
+    LANES,
     QUADRATIC_DAMPING,
-    MarchLaw,
     march,
 )
 from jointbench.analysis.gap.model import LumpedModel
+from jointbench.analysis.gap.packed_laws import pack_laws
 from jointbench.analysis.gap.physics import Conditions, Law
 
-DAMPING_EXPONENT = 18.0
+DAMPING_EXPONENT = 16.0
+PADDED = 1.5
+"""Length of a transform over that of the record."""
 PASS_BAND = 0.42
+FADED = 0.01
+"""Last part of the band, over the sample rate, in which the force fades out."""
 MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
 """Laws that look at the velocity."""
 EXTRAPOLATED = 4
@@ -52,6 +60,7 @@ class Excitation:
         damping: a [1/s].
         conditions: of each record.
         taper: of the nonlinear part near the Nyquist frequency, shape (n_lines,).
+        padded: samples that the transforms go over, even.
     """
 
     spectrum: ComplexArray
@@ -62,6 +71,7 @@ class Excitation:
     damping: float
     conditions: Conditions
     taper: FloatArray
+    padded: int
 
 
 def prepare_excitation(
@@ -76,10 +86,12 @@ def prepare_excitation(
         conditions: of each record.
     """
     n = force.shape[1]
-    damping = DAMPING_EXPONENT * sample_rate / (2 * n)
+    padded = 2 * scipy.fft.next_fast_len(math.ceil(PADDED * n / 2), real=True)
+    damping = DAMPING_EXPONENT * sample_rate / padded
     time = np.arange(n) / sample_rate
-    spectrum = scipy.fft.rfft(force * np.exp(-damping * time), 2 * n, axis=1)
-    frequency = np.asarray(np.fft.rfftfreq(2 * n, 1 / sample_rate), dtype=float)
+    spectrum = scipy.fft.rfft(force * np.exp(-damping * time), padded, axis=1)
+    frequency = np.asarray(np.fft.rfftfreq(padded, 1 / sample_rate), dtype=float)
+    spectrum *= _end_of_band(frequency / sample_rate, FADED)
     return Excitation(
         spectrum=spectrum,
         s=damping + 2j * np.pi * frequency,
@@ -89,6 +101,7 @@ def prepare_excitation(
         damping=damping,
         conditions=conditions,
         taper=pass_band_end(frequency / sample_rate),
+        padded=padded,
     )
 
 
@@ -98,7 +111,12 @@ def pass_band_end(frequency: FloatArray) -> FloatArray:
     Args:
         frequency: over the sample rate [-].
     """
-    edge = (0.5 - frequency) / (0.5 - PASS_BAND)
+    return _end_of_band(frequency, 0.5 - PASS_BAND)
+
+
+def _end_of_band(frequency: FloatArray, width: float) -> FloatArray:
+    """Return half a cosine that falls from 1 to 0 over the end of the band."""
+    edge = (0.5 - frequency) / width
     return np.asarray(0.5 - 0.5 * np.cos(np.pi * np.clip(edge, 0, 1)))
 
 
@@ -130,8 +148,7 @@ def respond(
     power = s ** int(model.output) if model.output else np.ones_like(s)
     spectra = np.stack([x[c.body] * power for c in model.channels], axis=1)
     spectra = _channels(spectra, s, actions)
-    n = excitation.growth.size
-    response = scipy.fft.irfft(spectra, 2 * n, axis=-1)[..., :n] * excitation.growth
+    response = undamped(spectra, excitation)
     for action in actions:
         if action.entry.shape is not None:
             response = _shaped(response, measured, action, excitation.sample_rate)
@@ -150,13 +167,8 @@ def motion(
     z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, actions)
     h = invert(z)
     bodies = range(len(model.bodies))
-    linear = []
-    for i in bodies:
-        rows = [
-            h[i, hit, k if h.shape[2] > 1 else 0]
-            for k, hit in enumerate(excitation.hit)
-        ]
-        linear.append(np.stack(rows) * excitation.spectrum)
+    variant = np.arange(excitation.hit.size) if h.shape[2] > 1 else 0
+    linear = [h[i, excitation.hit, variant] * excitation.spectrum for i in bodies]
     bent = [a for a in actions if a.entry.law is not None]
     for link in sorted({a.index for a in bent}):
         laws = [a.entry.law(a.values) for a in bent if a.index == link if a.entry.law]
@@ -166,6 +178,13 @@ def motion(
         for i in bodies:
             linear[i] = linear[i] - _across(model, h, i, link) * pull
     return linear
+
+
+def undamped(spectra: ComplexArray, excitation: Excitation) -> FloatArray:
+    """Return what damped spectra mean in time, shape (..., n_samples)."""
+    n = excitation.growth.size
+    x = scipy.fft.irfft(spectra, excitation.padded, axis=-1)
+    return np.asarray(x[..., :n] * excitation.growth)
 
 
 def _across(model: LumpedModel, h: ComplexArray, body: int, link: int) -> ComplexArray:
@@ -197,41 +216,63 @@ def _link_force(
     if ends.first >= 0:
         x = x - linear[ends.first]
     modes = link_modes(model, theta, excitation.conditions, link, actions)
-    force = _marched(excitation, x, modes, laws, oversampling)
+    fine = _between_samples(excitation, x, laws, oversampling)
+    force = _marched(excitation, fine, modes, laws, oversampling)
     if oversampling >= EXTRAPOLATED and all(law.kind != COULOMB for law in laws):
-        half = _marched(excitation, x, modes, laws, oversampling // 2)
+        coarse = fine[:, ::2]
+        half = _marched(excitation, coarse, modes, laws, oversampling // 2)
         force = (4.0 * force - half) / 3.0
     return np.asarray(force * excitation.taper)
 
 
-def _marched(
+def _between_samples(
     excitation: Excitation,
     x: ComplexArray,
+    laws: Sequence[Law],
+    oversampling: int,
+) -> FloatArray:
+    """Return motion and speed across a link, shape (2, n_steps, n_columns).
+
+    The motion alone where no law looks at the speed. A column a record, and columns of
+    zeros to fill the lanes of the march.
+    """
+    count = excitation.growth.size * oversampling
+    moving = any(law.kind in MOVING for law in laws)
+    spectra = [x, x * excitation.s] if moving else [x]
+    long = excitation.padded * oversampling
+    gain = oversampling * _growth(excitation, oversampling)
+    records = len(x)
+    columns = -(-records // LANES) * LANES
+    motions = np.zeros((len(spectra), count, columns))
+    for motion_of, y in zip(motions, spectra, strict=True):
+        rows = scipy.fft.irfft(y, long, axis=1)[:, :count] * gain
+        motion_of[:, :records] = rows.T
+    return motions
+
+
+def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
+    """Return exp(a t) at so many steps a sample."""
+    count = excitation.growth.size * oversampling
+    dt = 1 / (excitation.sample_rate * oversampling)
+    return np.asarray(np.exp(excitation.damping * dt * np.arange(count)))
+
+
+def _marched(
+    excitation: Excitation,
+    motions: FloatArray,
     modes: tuple[ComplexArray, ComplexArray],
     laws: Sequence[Law],
     oversampling: int,
 ) -> ComplexArray:
     """Damped spectrum of the link force at one step size, up to Nyquist."""
-    n = excitation.growth.size
-    long = 2 * n * oversampling
+    motions = np.ascontiguousarray(motions)
     dt = 1 / (excitation.sample_rate * oversampling)
-    growth = np.exp(excitation.damping * dt * np.arange(n * oversampling))
-    gain = growth * oversampling
-    r = scipy.fft.irfft(x, long, axis=1)[:, : n * oversampling] * gain
-    r = np.ascontiguousarray(r.T)
-    v, moving = r, any(law.kind in MOVING for law in laws)
-    if moving:
-        v = scipy.fft.irfft(x * excitation.s, long, axis=1)[:, : n * oversampling]
-        v = np.ascontiguousarray((v * gain).T)
-    force = march(r, v, *modes, dt, tuple(_march_law(law) for law in laws), moving)
-    spectrum = scipy.fft.rfft(force.T / growth, long, axis=1)[:, : n + 1]
-    return np.asarray(spectrum / oversampling)
-
-
-def _march_law(law: Law) -> MarchLaw:
-    return MarchLaw(
-        law.kind, law.parameters, law.slips, law.weights, law.tables, law.tops
-    )
+    packed = pack_laws(laws)
+    force = march(motions[0], motions[-1], *modes, dt, packed, len(motions) > 1)
+    records = excitation.hit.size
+    damped = force.T[:records] / _growth(excitation, oversampling)
+    spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=1)
+    return np.asarray(spectrum[:, : excitation.taper.size] / oversampling)
 
 
 def _channels(

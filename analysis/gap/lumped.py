@@ -26,7 +26,7 @@ PEAKED = ("hum", "hidden_mode")
 """Effects whose second parameter is a frequency at which the residual peaks."""
 LEAST_RISE = -0.999
 """Smallest share that laws may add to a stiffness: less would be none at all."""
-WINDOW_REACH = 5.0
+WINDOW_REACH = 3.5
 """Decay times after which a windowed record is cut."""
 
 

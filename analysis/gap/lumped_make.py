@@ -10,7 +10,7 @@ from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
 from jointbench.analysis.gap.bench import Blocks
 from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE, candidates_of, check_names
-from jointbench.analysis.gap.forward import motion
+from jointbench.analysis.gap.forward import motion, undamped
 from jointbench.analysis.gap.lumped import LumpedBench, gated_excitation
 from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import LumpedEffect
@@ -111,9 +111,7 @@ def _scales(bench: LumpedBench) -> dict[str, float]:
     x = motion(model, theta, excitation, (), oversampling=1)
     ends = model.links[joint]
     r = x[ends.second] - (x[ends.first] if ends.first >= 0 else 0.0)
-    size = excitation.growth.size
-    travel = np.fft.irfft(r, 2 * size, axis=1)[:, :size] * excitation.growth
-    speed = np.fft.irfft(r * excitation.s, 2 * size, axis=1)[:, :size]
+    travel, speed = undamped(r, excitation), undamped(r * excitation.s, excitation)
     z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, ())
     peak = np.argmax(np.abs(invert(z)[ends.second, ends.second, 0]))
     frequency = max(float(excitation.s[peak].imag) / (2 * np.pi), 1.0)
@@ -125,7 +123,7 @@ def _scales(bench: LumpedBench) -> dict[str, float]:
         "damping": float(theta[n + links + joint]),
         "travel": float(np.abs(travel).max()),
         "force": stiffness * float(np.abs(travel).max()),
-        "speed": float(np.abs(speed * excitation.growth).max()),
+        "speed": float(np.abs(speed).max()),
         "frequency": frequency,
         "period": 1.0 / frequency,
         "sample": 1.0 / bench.campaign.sample_rate,

@@ -41,6 +41,7 @@ def slide(
     step: float,
     tables: FloatArray,
     tops: tuple[float, ...] | FloatArray,
+    row: int = 0,
 ) -> tuple[float, float]:
     """Move a slider along its loading and unloading curves.
 
@@ -50,9 +51,10 @@ def slide(
             unloading, when it is looked up at need.
         step: change of displacement over the slip displacement [-].
         tables: u of loading coordinate, its inverse, unloading coordinate of u, its
-            inverse; shape (4, n).
+            inverse; shape (n_rows, n).
         tops: points per unit of the four tables; the state below which all four are
             the identity; 1 where unloading is elastic; end of loading; shape (7,).
+        row: where the four tables of this slider begin.
 
     Returns:
         The new u and loading coordinate.
@@ -65,50 +67,79 @@ def slide(
     if forward >= 0.0:
         x = side * loading
         if loading == STALE:
-            x = _lookup(tables, 1, tops[1], size)
+            x = _lookup(tables, row + 1, tops[1], size)
         x = min(x + forward, tops[6])
-        return side * _lookup(tables, 0, tops[0], x), side * x
+        return side * _lookup(tables, row, tops[0], x), side * x
     elastic = tops[5] > 0.0
-    left = (size if elastic else _lookup(tables, 2, tops[2], size)) + forward
+    left = (size if elastic else _lookup(tables, row + 2, tops[2], size)) + forward
     if left < 0.0:
-        return -side * _lookup(tables, 0, tops[0], -left), side * left
-    return side * (left if elastic else _lookup(tables, 3, tops[3], left)), STALE
+        return -side * _lookup(tables, row, tops[0], -left), side * left
+    return side * (left if elastic else _lookup(tables, row + 3, tops[3], left)), STALE
 
 
 @njit(cache=True, fastmath=True, inline="always")
 def bank_forces(
-    r: FloatArray,
-    before: FloatArray,
+    a: int,
+    lanes: tuple[int, int, int, int],
+    w: FloatArray,
+    f: FloatArray,
     states: FloatArray,
     active: IntArray,
+    ends: IntArray,
     slips: FloatArray,
+    rates: FloatArray,
     weights: FloatArray,
     tables: FloatArray,
     tops: FloatArray,
-    force: FloatArray,
 ) -> None:
-    """Add the force of a bank of sliders, less that of the same bank held fast.
+    """Write the force of bank `a`, less that of the same bank held fast.
 
-    Sliders come in order of rising slip displacement. Those of a record that have
-    never left their elastic range follow the joint, and are passed over.
+    Sliders come in order of rising slip displacement. Those that have never left their
+    elastic range follow the joint, and are passed over.
+
+    Args:
+        a: which bank.
+        lanes: how many, and where in `w` their motion [m] and that of the step before
+            begin, and where in `f` their force [N].
+        w: motions of the lanes among other things.
+        f: forces of the lanes among other things; written.
+        states: displacement over slip displacement, and loading coordinate, shape
+            (n_lanes, n_sliders, 2); moved.
+        active: sliders that have left their elastic range, shape (n_banks, n_lanes).
+        ends: where the sliders of each bank begin, and end, shape (n_banks + 1,).
+        slips: [m], shape (n_sliders,).
+        rates: their inverse, same shape.
+        weights: [N/m], same shape.
+        tables: four rows a bank, shape (4 n_banks, n_points).
+        tops: what goes with them, shape (n_banks, 7).
     """
-    rates = 1.0 / slips
+    count, now, last, force = lanes
+    first, beyond = ends[a], ends[a + 1]
     # Numbers of their own: an array might change with `states`, and is read each time.
-    ends = (tops[0], tops[1], tops[2], tops[3], tops[4], tops[5], tops[6])
-    for k in range(r.size):
-        total, count = 0.0, active[k]
-        while count < slips.size and abs(r[k]) > ends[4] * slips[count]:
-            states[k, count, 0] = before[k] / slips[count]
-            states[k, count, 1] = states[k, count, 0]
-            count += 1
-        active[k] = count
-        step = r[k] - before[k]
-        for i in range(count):
+    own = (
+        tops[a, 0],
+        tops[a, 1],
+        tops[a, 2],
+        tops[a, 3],
+        tops[a, 4],
+        tops[a, 5],
+        tops[a, 6],
+    )
+    for k in range(count):
+        r, before = w[now + k], w[last + k]
+        total, end = 0.0, first + active[a, k]
+        while end < beyond and abs(r) > own[4] * slips[end]:
+            states[k, end, 0] = before / slips[end]
+            states[k, end, 1] = states[k, end, 0]
+            end += 1
+        active[a, k] = end - first
+        step = r - before
+        for i in range(first, end):
             u, loading = states[k, i, 0], states[k, i, 1]
-            u, loading = slide(u, loading, step * rates[i], tables, ends)
+            u, loading = slide(u, loading, step * rates[i], tables, own, 4 * a)
             states[k, i, 0], states[k, i, 1] = u, loading
-            total += weights[i] * (slips[i] * u - r[k])
-        force[k] += total
+            total += weights[i] * (slips[i] * u - r)
+        f[force + k] = total
 
 
 def slider_tables(

@@ -30,14 +30,13 @@ def anti_alias(signal: FloatArray, excitation: Excitation) -> FloatArray:
     Returns:
         The same, shape (..., n_fine).
     """
-    n = excitation.growth.size
     count = signal.shape[-1]
     rate = excitation.sample_rate * UPSAMPLING
     growth = np.exp(excitation.damping * np.arange(count) / rate)
-    long = 2 * n * UPSAMPLING
+    long, lines = excitation.padded * UPSAMPLING, excitation.taper.size
     spectrum = scipy.fft.rfft(signal / growth, long, axis=-1)
-    spectrum[..., : n + 1] *= excitation.taper
-    spectrum[..., n + 1 :] = 0.0
+    spectrum[..., :lines] *= excitation.taper
+    spectrum[..., lines:] = 0.0
     return np.asarray(scipy.fft.irfft(spectrum, long, axis=-1)[..., :count] * growth)
 
 

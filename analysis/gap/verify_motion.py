@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
-from jointbench.analysis.gap.forward import Excitation
+from jointbench.analysis.gap.forward import Excitation, undamped
 from jointbench.analysis.gap.verify_system import System
 
 UPSAMPLING = 16
@@ -48,8 +48,7 @@ def force_between_samples(excitation: Excitation, beyond: int) -> CubicSpline:
         Function of time [s] with values of shape (..., n_records).
     """
     n = excitation.growth.size
-    samples = scipy.fft.irfft(excitation.spectrum, 2 * n, axis=1)[:, :n]
-    samples = samples * excitation.growth
+    samples = undamped(excitation.spectrum, excitation)
     spectrum = scipy.fft.rfft(samples, 2 * n, axis=1)
     fine = scipy.fft.irfft(spectrum, 2 * n * UPSAMPLING, axis=1) * UPSAMPLING
     count = (n + beyond) * UPSAMPLING + 1
