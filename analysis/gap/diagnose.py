@@ -123,7 +123,7 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
                 "a channel is overloaded; lower its gain and hit again"
             )
         odd = _odd_record(outcome, bench)
-        return Finding.UNKNOWN, odd or f"no effect explains it: {outcome.gate.reason}"
+        return Finding.UNKNOWN, odd or _unexplained(outcome)
     names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) > MOST_RIVALS:
         return Finding.UNKNOWN, f"too many explanations fit alike: {names}"
@@ -133,6 +133,14 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
         Finding.NAMED,
         f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}",
     )
+
+
+def _unexplained(outcome: Outcome) -> str:
+    """Say why the best fit is no name, and whether more might have been tried."""
+    reason = f"no effect explains it: {outcome.gate.reason}"
+    if outcome.given_up:
+        reason += "; the search for a further one was ended for its length"
+    return reason
 
 
 def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:

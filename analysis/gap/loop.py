@@ -10,6 +10,12 @@ from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.crossing import crossed
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
 from jointbench.analysis.gap.effects import Candidate, labels_of, may_join
+from jointbench.analysis.gap.effort import (
+    Effort,
+    SearchExhausted,
+    counted,
+    limited,
+)
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.far_pairs import far_pairs
 from jointbench.analysis.gap.fit import Fit, make_problem
@@ -38,6 +44,9 @@ NOTHING = 0.01
 WRONG_VALLEY = 2.0
 """Chi2 over dof above which a base may have stopped in a wrong valley."""
 SECONDS = 4
+MOST_EFFORT = 3.45e9
+"""Samples predicted after which no further effect is looked for: 80 to 90 s of a core
+of 2.3 GHz."""
 MIN_GAIN = 35.0
 """Chi2 that a further effect must take, beyond its charge."""
 
@@ -55,6 +64,7 @@ class Outcome:
         gate: its judgement.
         ranked: rivals of the last round, best first.
         level: rivals that are not told apart, the winner first.
+        given_up: whether the search for a further effect was ended for its cost.
     """
 
     bench: Bench
@@ -65,10 +75,16 @@ class Outcome:
     gate: Gate
     ranked: tuple[Fit, ...]
     level: tuple[Fit, ...]
+    given_up: bool = False
 
 
 def investigate(bench: Bench, progress: Progress) -> Outcome:
     """Run the whole loop on a bench."""
+    with counted() as effort:
+        return _investigate(bench, progress, effort)
+
+
+def _investigate(bench: Bench, progress: Progress, effort: Effort) -> Outcome:
     progress("base")
     bench, base = fit_base(bench)
     screening = screen(bench, base, bench.candidates)
@@ -78,13 +94,19 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     fits = race(bench, base, screening, bench.candidates, progress)
     found = _Round(*judge(bench, fits, base, progress, screening))
     grown: set[frozenset[str]] = set()
+    given_up = False
     for count in range(1, MOST_EFFECTS):
         firsts = found.fits[: FIRSTS if count == 1 else 1]
         known = bool(firsts) and labels_of(firsts[0].candidates) in grown
         if known or not _worth_more(found, base):
             break
         grown |= {labels_of(f.candidates) for f in firsts}
-        after = _one_more(found, firsts, base, progress)
+        try:
+            with limited(effort, MOST_EFFORT):
+                after = _one_more(found, firsts, base, progress)
+        except SearchExhausted:
+            given_up = True
+            break
         if after is None:
             break
         found = after
@@ -94,7 +116,15 @@ def investigate(bench: Bench, progress: Progress) -> Outcome:
     best = fits[0] if fits else base
     level = tuple(rivals(found.bench, fits))
     return Outcome(
-        found.bench, base, first, screening, best, found.gate, tuple(fits), level
+        bench=found.bench,
+        base=base,
+        base_gate=first,
+        base_screening=screening,
+        best=best,
+        gate=found.gate,
+        ranked=tuple(fits),
+        level=level,
+        given_up=given_up,
     )
 
 

@@ -13,6 +13,7 @@ from jointbench.analysis.gap.bench import Blocks, Stage, values_of
 from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import site_index
 from jointbench.analysis.gap.effects import Candidate, Term
+from jointbench.analysis.gap.effort import spend
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.forward import Excitation, prepare_excitation, respond
 from jointbench.analysis.gap.lumped_noise import Settled, refine_noise, settle
@@ -109,11 +110,14 @@ class LumpedBench:
         self, base: FloatArray, terms: Sequence[Term], oversampling: int = 8
     ) -> FloatArray:
         """Predict the channels, shape (n_records, n_channels, n_samples)."""
+        actions = self.actions(terms)
+        marched = any(a.entry.law is not None for a in actions)
+        spend(self.campaign.response.size, oversampling if marched else 0)
         return respond(
             self.campaign.model,
             self.theta(base),
             self.excitation,
-            self.actions(terms),
+            actions,
             oversampling=oversampling,
             measured=self.campaign.response,
         )
