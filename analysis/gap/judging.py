@@ -6,9 +6,15 @@ from dataclasses import dataclass
 
 from jointbench.analysis.gap.bench import EVERYDAY, FULL, Bench
 from jointbench.analysis.gap.crossing import caught_up
+from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import PROBE_FAMILY, Candidate, labels_of
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.naming import Gate, gate
+from jointbench.analysis.gap.naming import (
+    AMPLITUDE_SD,
+    Gate,
+    gate,
+    weakest_amplitude,
+)
 from jointbench.analysis.gap.race import Progress, finish, score, started
 from jointbench.analysis.gap.screening import Screening, screen
 
@@ -64,6 +70,7 @@ def judge(
         ranked.sort(key=lambda f: score(bench, f))
         if ranked[0] is found.fit:
             break
+    base = _alike(bench, ranked[0], base)
     return bench, ranked, gate(bench, ranked[0], base, found.left, ranked)
 
 
@@ -115,7 +122,20 @@ def _judged(
     """Settle the first of some fits and judge it."""
     bench, fit = _settled(bench, ranked[0], progress)
     left = screen(bench, fit, [*_others(bench, fit), *bench.probes])
+    base = _alike(bench, fit, base)
     return _Judged(ranked[0], fit, bench, left, gate(bench, fit, base, left, ranked))
+
+
+def _alike(bench: Bench, fit: Fit, base: Fit) -> Fit:
+    """Return the base under the noise of a fit, where its effect may be worth nothing.
+
+    A trend over the records that is in no catalogue was taken for scatter once any
+    effect was in. The base of before, to which there was no scatter, then makes that
+    effect look needed, though its amplitude is none.
+    """
+    if len(fit.candidates) != 1 or weakest_amplitude(fit) > AMPLITUDE_SD:
+        return base
+    return minimise(make_problem(bench, ()), fit.base)
 
 
 def _own_settling(

@@ -44,8 +44,8 @@ NOTHING = 0.01
 WRONG_VALLEY = 2.0
 """Chi2 over dof above which a base may have stopped in a wrong valley."""
 SECONDS = 4
-MOST_EFFORT = 3.45e9
-"""Samples predicted after which no further effect is looked for: 80 to 90 s of a core
+MOST_EFFORT = 3.2e9
+"""Samples predicted after which no further effect is looked for: 75 to 87 s of a core
 of 2.3 GHz."""
 MIN_GAIN = 35.0
 """Chi2 that a further effect must take, beyond its charge."""
