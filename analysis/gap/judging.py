@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from jointbench.analysis.gap.bench import EVERYDAY, FULL, Bench
 from jointbench.analysis.gap.crossing import caught_up
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.effects import PROBE_FAMILY, Candidate, labels_of
+from jointbench.analysis.gap.effects import PROBE_FAMILY, labels_of
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.naming import (
     AMPLITUDE_SD,
@@ -70,8 +70,9 @@ def judge(
         ranked.sort(key=lambda f: score(bench, f))
         if ranked[0] is found.fit:
             break
-    base = _alike(bench, ranked[0], base)
-    return bench, ranked, gate(bench, ranked[0], base, found.left, ranked)
+    best, base = ranked[0], _alike(bench, ranked[0], base)
+    left = found.left if best is found.fit else _left_by(bench, best)
+    return bench, ranked, gate(bench, best, base, left, ranked)
 
 
 def far_off(bench: Bench, fit: Fit) -> bool:
@@ -121,7 +122,7 @@ def _judged(
 ) -> _Judged:
     """Settle the first of some fits and judge it."""
     bench, fit = _settled(bench, ranked[0], progress)
-    left = screen(bench, fit, [*_others(bench, fit), *bench.probes])
+    left = _left_by(bench, fit)
     base = _alike(bench, fit, base)
     return _Judged(ranked[0], fit, bench, left, gate(bench, fit, base, left, ranked))
 
@@ -206,5 +207,7 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     return bench, fit
 
 
-def _others(bench: Bench, fit: Fit) -> list[Candidate]:
-    return [c for c in bench.candidates if c not in fit.candidates]
+def _left_by(bench: Bench, fit: Fit) -> Screening:
+    """Test what a fit leaves for all other effects and the probes."""
+    others = [c for c in bench.candidates if c not in fit.candidates]
+    return screen(bench, fit, [*others, *bench.probes])

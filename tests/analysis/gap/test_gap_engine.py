@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap import judging
 from jointbench.analysis.gap.bench import Blocks, Stage
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.crossing import caught_up, crossed
@@ -209,3 +210,25 @@ def test_confidence_never_falls_with_more_evidence() -> None:
     sure = [confidence_of(evidence) for evidence in better]
     assert all(0.5 < confidence_of(poor) <= c < 1.0 for c in sure)
     assert max(sure) > confidence_of(poor) + 0.02
+
+
+def test_what_is_left_is_what_the_winner_leaves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A pair that overtakes in the last round is judged by its own directed tests."""
+    monkeypatch.setattr(judging, "OVERTAKEN", 1)
+    bench = curve(square=0.05, cube=0.1)
+    cube, square = effect("cube"), effect("square")
+    base = minimise(make_problem(bench, ()), np.zeros(1))
+    alone = minimise(make_problem(bench, (cube,)), np.zeros(2))
+    both = minimise(make_problem(bench, (cube, square)), np.zeros(3))
+    _, ranked, gate = judging.judge(bench, [alone, both], base, lambda line: None)
+    assert names_of(ranked[0]) == ["cube", "square"]
+    assert gate.left is not None
+    assert all(d.shift.shape == ranked[0].x.shape for d in gate.left.directions)
+    assert gate.passed
+
+
+def names_of(fit: Fit) -> list[str]:
+    """Return the names of a fit's effects."""
+    return sorted(c.effect.name for c in fit.candidates)
