@@ -28,6 +28,7 @@ class Stage:
     oversampling: int = 4
 
 
+MIDDLE = Stage(oversampling=2)
 FULL = Stage()
 FINE = Stage(oversampling=8)
 EVERYDAY = 30.0
@@ -100,8 +101,17 @@ class Bench(Protocol):
         """Return starts that a fit's own residual suggests, besides the grid's."""
         ...
 
-    def refine(self, base: FloatArray, terms: Sequence[Term]) -> "Bench":
-        """Return the bench with its noise estimated at a solution."""
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "Bench":
+        """Return the bench with its noise estimated at a solution.
+
+        Args:
+            base: of the solution, shape (n_base,).
+            terms: of the solution.
+            astray: take the scatter of the hits for what it seems even where the
+                solution is far off, because it may be far off on its account.
+        """
         ...
 
     def residual(

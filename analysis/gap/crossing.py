@@ -6,14 +6,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import Bench
+from jointbench.analysis.gap.bench import MIDDLE, Bench
 from jointbench.analysis.gap.descent import cost_at, minimise
-from jointbench.analysis.gap.effects import words_of
+from jointbench.analysis.gap.effects import Candidate, words_of
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.race import MIDDLE, MOST_STEPS, Progress, finish
+from jointbench.analysis.gap.race import MOST_STEPS, Progress, finish
 
 ASTRAY = 4.0
 """Sd off its sheet from which a base has lost its way."""
+SLIPS = (0.6, 1.0, 1.6)
+"""Factors between the slip displacements of two laws of friction."""
+LEVEL = 1000.0
+"""Cost above that of a law at which another in its place is fitted to the end."""
 BETTER = 0.5
 """Share of a fit's cost below which another start is worth a descent."""
 
@@ -34,6 +38,52 @@ def crossed(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
         The fits, each the better of what it was and what it became.
     """
     return [_again(bench, f, fits[0], progress) if k else f for k, f in enumerate(fits)]
+
+
+def other_sliders(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
+    """Put other slider laws in the place of a fit's own, from where that one ended.
+
+    Their costs have many valleys in stiffness and slip, so the right law may stop far
+    behind one that imitates it. What slides, and how far, they have in common but for
+    a factor: an Iwan element slips at a half to all of its largest slip.
+
+    Args:
+        bench: measurement and model.
+        fit: of one effect.
+        progress: told what is being tried.
+
+    Returns:
+        Fits that came as low as the one given, none where its effect does not slide.
+    """
+    own = fit.candidates[0]
+    if len(fit.candidates) > 1 or not own.effect.has_sliders:
+        return []
+    alike = [
+        c
+        for c in bench.candidates
+        if c.effect.has_sliders and c.site == own.site and c != own
+    ]
+    found = []
+    for candidate in alike:
+        progress(f"{candidate.label} (from {own.effect.name})")
+        problem = make_problem(bench, (candidate,))
+        costs = {}
+        for factor in SLIPS:
+            x = _slider_start(fit, candidate, factor)
+            x = np.clip(x, problem.lower, problem.upper)
+            costs[cost_at(problem, x, MIDDLE)] = x
+        x = costs[min(costs)]
+        middle = minimise(problem, x, MIDDLE, iterations=MOST_STEPS, rival=fit.cost)
+        if middle.cost < fit.cost + LEVEL:
+            found.append(finish(problem, middle.x, progress))
+    return found
+
+
+def _slider_start(fit: Fit, candidate: Candidate, factor: float) -> FloatArray:
+    """Return a fit's base, and its slider's stiffness and slip as another law's."""
+    stiffness, slip = fit.terms[0].coordinates[:2]
+    shape = [p.encode(p.starts[0]) for p in candidate.effect.parameters[2:]]
+    return np.array([*fit.base, stiffness, slip + np.log(factor), *shape])
 
 
 def caught_up(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:

@@ -32,6 +32,10 @@ from jointbench.analysis.gap.records import (
 )
 
 FAR = 1e12
+SEEN = 1.0
+"""Gap below which it does not count by what share it shrank."""
+UNFORETOLD = 0.5
+"""Share of the gap that a name may leave on held-out records before that is said."""
 MOST_RIVALS = 3
 """Explanations that fit alike beyond which nothing is told apart."""
 
@@ -80,12 +84,14 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
     elif finding is Finding.AMBIGUOUS:
         shown = outcome.level
     best = outcome.best if outcome.gate.passed else base
-    after = _gap(bench, best)
+    before, after = _gap(bench, base), _gap(bench, best)
+    if finding is Finding.NAMED:
+        reason += _unforetold(before, after)
     return Diagnosis(
         verdict=finding,
         effects=_effects(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
-        gap_before=_gap(bench, base),
+        gap_before=before,
         gap_after=after,
         pulls={
             name: (float(b), float(a))
@@ -135,6 +141,16 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
     )
 
 
+def _unforetold(before: Gap, after: Gap) -> str:
+    """Say so where a fit to the other conditions does not foretell the one held out."""
+    if before.value < SEEN or after.value < UNFORETOLD * before.value:
+        return ""
+    return (
+        "; held out, a condition is not foretold by the others: it shows the effect "
+        "alone, so add levels next to it"
+    )
+
+
 def _unexplained(outcome: Outcome) -> str:
     """Say why the best fit is no name, and whether more might have been tried."""
     reason = f"no effect explains it: {outcome.gate.reason}"
@@ -164,7 +180,7 @@ def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:
 
 
 def _gap(bench: LumpedBench, fit: Fit) -> Gap:
-    held = hold_out(fit, bench.blocks)
+    held = hold_out(fit, bench)
     return Gap(
         held.gap, held.chi2_per_dof, float(np.abs(fit.pulls).max()), bench.views(fit)
     )

@@ -18,7 +18,7 @@ from jointbench.analysis.gap.naming import (
 from jointbench.analysis.gap.race import Progress, finish, score, started
 from jointbench.analysis.gap.screening import Screening, screen
 
-REJUDGED = 12
+REJUDGED = 30
 AGREED = 2.0
 """Change of a winner's cost below which it agrees with the noise estimated at it."""
 OVERTAKEN = 2
@@ -196,13 +196,13 @@ def _part_of(fewer: Fit, more: Fit) -> bool:
 
 
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
-    """Bring a fit and the noise estimated at it to agree."""
+    """Bring a fit and the noise estimated at it to agree, unless it runs away."""
     for _ in range(REJUDGED):
         before = fit.cost
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
-        if abs(fit.cost - before) < AGREED:
+        if abs(fit.cost - before) < AGREED or far_off(bench, fit):
             break
     return bench, fit
 

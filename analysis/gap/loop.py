@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
-from jointbench.analysis.gap.crossing import crossed
+from jointbench.analysis.gap.crossing import crossed, other_sliders
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
 from jointbench.analysis.gap.effects import Candidate, labels_of, may_join
 from jointbench.analysis.gap.effort import (
@@ -43,10 +43,14 @@ NOTHING = 0.01
 """Excess over dof that noise may make of nothing."""
 WRONG_VALLEY = 2.0
 """Chi2 over dof above which a base may have stopped in a wrong valley."""
+MOSTLY_SCATTER = 0.5
+"""Share of a base's chi2 that settled hits must leave at most to be believed."""
 SECONDS = 4
 MOST_EFFORT = 3.2e9
 """Samples predicted after which no further effect is looked for: 75 to 87 s of a core
 of 2.3 GHz."""
+MOVED = 1000.0
+"""Gain of a winner by being settled after which one of its effects may be needless."""
 MIN_GAIN = 35.0
 """Chi2 that a further effect must take, beyond its charge."""
 
@@ -93,6 +97,7 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> Outcome:
         return Outcome(bench, base, first, screening, base, first, (), (base,))
     fits = race(bench, base, screening, bench.candidates, progress)
     found = _Round(*judge(bench, fits, base, progress, screening))
+    found = _other_sliders(found, base, progress)
     grown: set[frozenset[str]] = set()
     given_up = False
     for count in range(1, MOST_EFFECTS):
@@ -152,12 +157,45 @@ def _one_more(
     merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
     merged = take_back(bench, merged, progress)
     hopes = found.gate.left if alone else None
-    after = _Round(*judge(bench, merged, base, progress, hopes, firsts[0]))
+    after = _judged(bench, merged, base, progress, hopes, firsts[0])
     if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
         return None
     if after.gate.unexplained and len(after.fits[0].candidates) > 1:
         return _exchange(after, base, progress)
     return after
+
+
+def _judged(
+    bench: Bench,
+    fits: Sequence[Fit],
+    base: Fit,
+    progress: Progress,
+    hopes: Screening | None = None,
+    onto: Fit | None = None,
+) -> _Round:
+    """Judge, and take back what was needless only once the winner was settled.
+
+    A delay that led the base to where a relaxation is seen may end at nothing.
+    """
+    found = _Round(*judge(bench, fits, base, progress, hopes, onto))
+    best = found.fits[0]
+    if len(best.candidates) == 1 or fits[0].cost - best.cost < MOVED:
+        return found
+    merged = take_back(found.bench, found.fits, progress)
+    if merged[0] is best:
+        return found
+    return _Round(*judge(found.bench, merged, base, progress))
+
+
+def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
+    """Let other slider laws start where one ended that does not explain the records."""
+    if found.gate.passed or not found.fits or far_off(found.bench, found.fits[0]):
+        return found
+    more = other_sliders(found.bench, found.fits[0], progress)
+    merged = sorted([*more, *found.fits], key=lambda f: score(found.bench, f))
+    if merged[0] is found.fits[0]:
+        return found
+    return _Round(*judge(found.bench, best_of_each(merged), base, progress))
 
 
 def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
@@ -172,7 +210,7 @@ def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
     merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
     if merged[0] is found.fits[0]:
         return found
-    return _Round(*judge(found.bench, best_of_each(merged), base, progress))
+    return _judged(found.bench, best_of_each(merged), base, progress)
 
 
 def _worth_more(found: _Round, base: Fit) -> bool:
@@ -213,10 +251,25 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> Outcome | None:
 
 
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:
-    """Fit the base coarse to fine, estimate the noise there, and settle."""
+    """Fit the base coarse to fine, estimate the noise there, and settle.
+
+    The last stage still knows nothing of scatter. In a quiet campaign it may follow
+    the hits that settled and end so far off that no noise can be told there; then the
+    stage before, whose window forgives, is fitted with each hit as it seems to have
+    settled.
+    """
     problem = make_problem(bench, ())
-    fit = fit_stages(problem, np.zeros(problem.n_base), BASE_STAGES)
-    return _settled_base(bench, fit)
+    early = fit_stages(problem, np.zeros(problem.n_base), BASE_STAGES[:-1])
+    late = minimise(problem, early.x)
+    found = _settled_base(bench, late)
+    if not far_off(*found):
+        return found
+    expanded = bench.refine(early.base, (), astray=True)
+    again = minimise(make_problem(expanded, ()), early.x)
+    if again.chi2 > MOSTLY_SCATTER * found[1].chi2:
+        return found
+    settled = _settled_base(expanded, again)
+    return (expanded, again) if far_off(*settled) else settled
 
 
 def _settled_base(bench: Bench, fit: Fit) -> tuple[Bench, Fit]:

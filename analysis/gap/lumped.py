@@ -248,9 +248,11 @@ class LumpedBench:
             )
         return self.short[length]
 
-    def refine(self, base: FloatArray, terms: Sequence[Term]) -> "LumpedBench":
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
-        return refine_noise(self, base, terms)
+        return refine_noise(self, base, terms, astray=astray)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""

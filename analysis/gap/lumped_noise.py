@@ -61,9 +61,20 @@ class Settled:
 
 
 def refine_noise(
-    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
+    bench: "LumpedBench",
+    base: FloatArray,
+    terms: Sequence[Term],
+    *,
+    astray: bool = False,
 ) -> "LumpedBench":
-    """Return the bench with its noise estimated at a solution."""
+    """Return the bench with its noise estimated at a solution.
+
+    Args:
+        bench: to be changed.
+        base: of the solution, shape (n_base,).
+        terms: of the solution.
+        astray: expand about the hits even where that leaves the solution far off.
+    """
     at = with_converter_edge(_centred(bench, base, terms), base, terms)
     model = at.response(base, terms)
     residual = model - bench.campaign.response
@@ -96,7 +107,7 @@ def refine_noise(
     settling = np.log(np.maximum(np.exp(off) * (1.0 + rise) - rise, LEAST_FACTOR))
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)
-    if left @ left > EVERYDAY * bench.blocks.dof:
+    if left @ left > EVERYDAY * bench.blocks.dof and not astray:
         return settle(refined, None)
     return expanded
 

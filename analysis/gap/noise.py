@@ -13,9 +13,10 @@ from jointbench.acquisition.arrays import FloatArray, IntArray
 HIGH_BAND = (0.30, 0.497)
 """Band of pure noise, over the sample rate: above any response to a hammer."""
 SCATTER_MAX = 0.004
+SCATTER_TRIED = 2e-7
 SCATTER_MIN = 2e-5
 """No hand and no joint repeats to better than that: what seems to scatter by less is
-a small effect, or chance."""
+a small effect, or chance, and counts as no scatter."""
 UNLIKELY = 0.0025
 """Chance of repeats as close as those seen, below which a scatter is ruled out."""
 TREND_CHANCE = 3e-4
@@ -123,7 +124,7 @@ def gain_scatter(
     wide = float(grid[int(np.argmin(everywhere))])
     pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
     if not pairs:
-        return float(np.sqrt(wide))
+        return _believed(np.sqrt(wide))
     first, second = (np.array(x) for x in zip(*pairs, strict=True))
     steps = (gains[first] - gains[second]) / np.sqrt(2.0)
     spread = (variances[first] + variances[second]) / 2
@@ -131,7 +132,12 @@ def gain_scatter(
     pivot = np.sum(steps**2 / (spread + grid[:, None]), axis=1)
     allowed = grid[pivot > scipy.stats.chi2.ppf(UNLIKELY, steps.size)]
     high = max(float(allowed.max(initial=0.0)), low)
-    return float(np.sqrt(np.clip(wide, low, high)))
+    return _believed(np.sqrt(np.clip(wide, low, high)))
+
+
+def _believed(scatter: float) -> float:
+    """Return a scatter, 0 where neither hand nor joint repeats so well."""
+    return float(scatter) if scatter >= SCATTER_MIN else 0.0
 
 
 def without_trend(
@@ -194,7 +200,7 @@ def _trend(
 
 def _scatter_grid() -> FloatArray:
     """Return the scatters that are tried [-], the first none at all."""
-    return np.concatenate([[0.0], np.geomspace(SCATTER_MIN, SCATTER_MAX, 240)])
+    return np.concatenate([[0.0], np.geomspace(SCATTER_TRIED, SCATTER_MAX, 360)])
 
 
 def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:

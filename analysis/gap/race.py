@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import EVERYDAY, FINE, FULL, Bench, Stage
+from jointbench.analysis.gap.bench import EVERYDAY, FINE, FULL, MIDDLE, Bench, Stage
 from jointbench.analysis.gap.descent import BASE_STAGES, chi2_between, cost_at, minimise
 from jointbench.analysis.gap.effects import Candidate, Term, words_of
 from jointbench.analysis.gap.fit import Fit, Problem, make_problem
@@ -22,7 +22,6 @@ COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
     (Stage(0.005, 2), 5),
     (Stage(0.016, 2), 6),
 )
-MIDDLE = Stage(oversampling=2)
 SURVIVORS = (14, 8)
 FINALISTS = 5
 HOPELESS = 6.0
