@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointbench.analysis.gap.base_fit import fit_base, settled_base
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.crossing import crossed, other_sliders
-from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
+from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import Candidate, labels_of, may_join
 from jointbench.analysis.gap.effort import (
     Effort,
@@ -30,9 +31,6 @@ from jointbench.analysis.gap.naming import (
 from jointbench.analysis.gap.race import Progress, finish, race, race_on, score
 from jointbench.analysis.gap.screening import Screening, screen
 
-REFINEMENTS = 12
-SETTLED = 0.5
-"""Change of the cost below which noise, scatter and fit agree with each other."""
 MOST_EFFECTS = 3
 FIRSTS = 3
 THIRD_LEFT = 0.01
@@ -43,8 +41,6 @@ NOTHING = 0.01
 """Excess over dof that noise may make of nothing."""
 WRONG_VALLEY = 2.0
 """Chi2 over dof above which a base may have stopped in a wrong valley."""
-MOSTLY_SCATTER = 0.5
-"""Share of a base's chi2 that settled hits must leave at most to be believed."""
 SECONDS = 4
 MOST_EFFORT = 3.2e9
 """Samples predicted after which no further effect is looked for: 75 to 87 s of a core
@@ -157,7 +153,7 @@ def _one_more(
     merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
     merged = take_back(bench, merged, progress)
     hopes = found.gate.left if alone else None
-    after = _judged(bench, merged, base, progress, hopes, firsts[0])
+    after = judged(bench, merged, base, progress, hopes, firsts[0])
     if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
         return None
     if after.gate.unexplained and len(after.fits[0].candidates) > 1:
@@ -165,7 +161,7 @@ def _one_more(
     return after
 
 
-def _judged(
+def judged(
     bench: Bench,
     fits: Sequence[Fit],
     base: Fit,
@@ -210,7 +206,7 @@ def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
     merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
     if merged[0] is found.fits[0]:
         return found
-    return _judged(found.bench, best_of_each(merged), base, progress)
+    return judged(found.bench, best_of_each(merged), base, progress)
 
 
 def _worth_more(found: _Round, base: Fit) -> bool:
@@ -242,45 +238,12 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> Outcome | None:
     fit = minimise(make_problem(found.bench, ()), found.fits[0].base)
     if fit.chi2 > WRONG_VALLEY * found.bench.blocks.dof:
         return None
-    bench, fit = _settled_base(found.bench, fit)
+    bench, fit = settled_base(found.bench, fit)
     screening = screen(bench, fit, bench.candidates)
-    judged = gate(bench, fit, fit, screening)
-    if not judged.passed:
+    null = gate(bench, fit, fit, screening)
+    if not null.passed:
         return None
-    return Outcome(bench, fit, judged, screening, fit, judged, (), (fit,))
-
-
-def fit_base(bench: Bench) -> tuple[Bench, Fit]:
-    """Fit the base coarse to fine, estimate the noise there, and settle.
-
-    The last stage still knows nothing of scatter. In a quiet campaign it may follow
-    the hits that settled and end so far off that no noise can be told there; then the
-    stage before, whose window forgives, is fitted with each hit as it seems to have
-    settled.
-    """
-    problem = make_problem(bench, ())
-    early = fit_stages(problem, np.zeros(problem.n_base), BASE_STAGES[:-1])
-    late = minimise(problem, early.x)
-    found = _settled_base(bench, late)
-    if not far_off(*found):
-        return found
-    expanded = bench.refine(early.base, (), astray=True)
-    again = minimise(make_problem(expanded, ()), early.x)
-    if again.chi2 > MOSTLY_SCATTER * found[1].chi2:
-        return found
-    settled = _settled_base(expanded, again)
-    return (expanded, again) if far_off(*settled) else settled
-
-
-def _settled_base(bench: Bench, fit: Fit) -> tuple[Bench, Fit]:
-    """Bring a base and the noise estimated at it to agree."""
-    for _ in range(REFINEMENTS):
-        before = fit.cost
-        bench = bench.refine(fit.base, ())
-        fit = minimise(make_problem(bench, ()), fit.x)
-        if abs(fit.cost - before) < SETTLED:
-            break
-    return bench, fit
+    return Outcome(bench, fit, null, screening, fit, null, (), (fit,))
 
 
 def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:

@@ -32,11 +32,11 @@ from null_directions import (
 from null_page import QUANTILES, page
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.campaign import Campaign, read_campaign
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.forward import respond
-from jointbench.analysis.gap.loop import fit_base
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.model import LumpedModel

@@ -13,6 +13,7 @@ NOMINAL = {"m1": 8.0, "m2": 4.0, "k0": 2.4e7, "c0": 300.0, "kj": 6e7, "cj": 220.
 SPREAD = {"m1": 0.003, "m2": 0.003, "k0": 0.05, "c0": 0.2, "kj": 0.1, "cj": 0.3}
 RATE = 16384.0
 SAMPLES = 1024
+BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
 CONDITIONS = (
     (1, 30.0, 4000.0),
     (1, 300.0, 4000.0),
@@ -66,8 +67,7 @@ def made_campaign(
 ) -> Campaign:
     """Return a campaign with hidden effects, a base off its sheet, and noise."""
     bench = make_bench(quiet_campaign())
-    base = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
     terms = [term_of(bench, *effect) for effect in effects]
-    clean = bench.response(base, terms)
+    clean = bench.response(BASE, terms)
     rng = np.random.default_rng(seed)
     return quiet_campaign(clean + noise * rng.standard_normal(clean.shape))

@@ -5,9 +5,10 @@ from dataclasses import replace
 import gap_bench as made
 import numpy as np
 
+from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.loop import Outcome, fit_base
+from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.naming import gate

@@ -12,7 +12,7 @@ from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.records import Finding
 
 NOISE = 0.02
-BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
+BASE = made.BASE
 
 
 def softening_campaign(seed: int) -> Campaign:

@@ -24,7 +24,7 @@ from jointbench.simulators.campaign_response import simulate_records
 from jointbench.simulators.converter import AntiAlias
 from jointbench.simulators.hidden_effects import HiddenEffect
 
-BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
+BASE = made.BASE
 STOP = [3e7, 3e-6]
 EARLY = AntiAlias(oversampling=16, pass_band=0.395, stop_band=0.445, attenuation=90.0)
 NOISE = 0.02

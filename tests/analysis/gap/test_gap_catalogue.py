@@ -13,7 +13,7 @@ from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.screening import start_grid
 
 BENCH = make_bench(made.made_campaign([]))
-BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
+BASE = made.BASE
 FIXED = {"polarity", "saturation"}
 
 

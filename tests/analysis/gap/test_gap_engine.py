@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+import scipy.optimize
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap import judging
@@ -20,12 +21,13 @@ from jointbench.analysis.gap.effects import (
     Parameter,
     Site,
     Term,
+    Transform,
     labels_of,
 )
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
-from jointbench.analysis.gap.loop import Outcome, investigate
+from jointbench.analysis.gap.loop import Outcome, investigate, judged
 from jointbench.analysis.gap.screening import null_threshold
 
 ROWS, GROUPS = 4000, 8
@@ -198,6 +200,90 @@ def test_holding_out_agrees_with_a_refit_without_the_group() -> None:
     step = -np.linalg.solve(normal, keep.T @ start[~out] + fit.prior * fit.x)
     moved = start + fit.jacobian @ step
     assert held.chi2[2] == pytest.approx(float(moved[out] @ moved[out]), rel=1e-4)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kinked(Curve):
+    """A curve that bends beyond a load which only the last group passes by much."""
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01."""
+        y = FAR_LOAD * np.exp(base[0])
+        for term in terms:
+            y = y + term.coordinates[0] * np.maximum(
+                FAR_LOAD - np.exp(term.coordinates[1]), 0.0
+            )
+        return np.asarray((y - self.measured) / 0.01)
+
+
+FAR_LOAD = np.concatenate([LOAD[: -ROWS // GROUPS], 2.0 * LOAD[: ROWS // GROUPS]])
+KINK = Candidate(
+    Effect(
+        "kink",
+        "toy",
+        (
+            Parameter("a", "-", "one", -50.0, 50.0, off=0.0),
+            Parameter("s", "-", "one", 0.1, 5.0, (1.0,), Transform.LOG),
+        ),
+        "made up",
+    ),
+    Site("curve", "y"),
+)
+
+
+def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
+    """As far off as scipy's fit to the others; the first step alone is off by more."""
+    noise = 0.01 * np.random.default_rng(2).standard_normal(ROWS)
+    bend = 0.5 * np.maximum(FAR_LOAD - 0.97, 0.0)
+    bench = Kinked(1.05 * FAR_LOAD + bend + noise, (KINK,))
+    fit = minimise(make_problem(bench, (KINK,)), np.array([0.0, 0.4, 0.0]))
+    assert fit.chi2 == pytest.approx(ROWS, rel=0.1)
+    rows = bench.blocks.group == GROUPS - 1
+
+    def seen(x: FloatArray) -> FloatArray:
+        r = bench.residual(x[:1], (Term(KINK, x[1:]),), Stage())
+        return np.append(r[~rows], x[0] / 0.1)
+
+    other = scipy.optimize.least_squares(seen, fit.x).x
+    left = bench.residual(other[:1], (Term(KINK, other[1:]),), Stage())[rows]
+    held = hold_out(fit, bench).chi2[-1]
+    j, r = fit.jacobian[rows], fit.residual[rows]
+    hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
+    first = r + j @ np.linalg.solve(hessian - j.T @ j, j.T @ r)
+    assert held == pytest.approx(float(left @ left), rel=0.05)
+    assert not 0.5 < float(first @ first) / held < 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Unsure(Curve):
+    """A curve whose noise is thought a tenth of what it is until a fit is at hand."""
+
+    sure: bool = False
+
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "Unsure":
+        """Know the noise."""
+        return replace(self, sure=True)
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01, or / 0.001."""
+        return Curve.residual(self, base, terms, stage) * (1.0 if self.sure else 10.0)
+
+
+def test_what_is_needless_once_the_noise_is_known_is_taken_back() -> None:
+    """A square of no amplitude earned its place by noise alone."""
+    plain = curve(cube=0.2)
+    bench = Unsure(plain.measured, plain.candidates)
+    base = minimise(make_problem(bench, ()), np.zeros(1))
+    both = minimise(make_problem(bench, plain.candidates), np.zeros(3))
+    found = judged(bench, [both], base, lambda line: None)
+    assert [c.effect.name for c in found.fits[0].candidates] == ["cube"]
+    assert found.gate.passed
 
 
 def test_confidence_never_falls_with_more_evidence() -> None:

@@ -143,6 +143,15 @@ def test_scatter_is_found_when_repeats_differ_by_more_than_noise() -> None:
 PRELOADS = np.log([2e3, 2e3, 2e3, 2e3, 2e3, 2e3, 8e3, 8e3])
 
 
+def test_no_joint_repeats_better_than_a_scatter_that_counts() -> None:
+    """Three times the noise, but 3 parts in a million: a misfit, and no scatter."""
+    rng = np.random.default_rng(7)
+    noise = rng.standard_normal(16)
+    groups = [np.arange(8), np.arange(8, 16)]
+    assert gain_scatter(3e-6 * noise, np.full(16, 1e-12), groups) == 0.0
+    assert gain_scatter(3e-4 * noise, np.full(16, 1e-8), groups) > 1e-4
+
+
 def test_a_trend_is_seen_past_a_record_that_says_hardly_anything() -> None:
     """Seven sharp records make the law; the soft hit among them is no evidence."""
     sd = np.array([1e-4, 9e-6, 2e-6, 9e-6, 2e-5, 4e-6, 9e-6, 2e-5])

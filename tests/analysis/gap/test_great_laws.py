@@ -11,7 +11,7 @@ from jointbench.analysis.gap.lumped_noise import refine_noise
 from jointbench.analysis.gap.naming import GLOBAL_SD, noise_sd
 from jointbench.analysis.gap.race import finish
 
-BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
+BASE = made.BASE
 NOISE = 0.04
 QUIET = 0.002
 STEPS = 32

@@ -5,16 +5,17 @@ import gap_bench as made
 import numpy as np
 import pytest
 
+from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.campaign import Campaign
-from jointbench.analysis.gap.descent import minimise
+from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
 from jointbench.analysis.gap.fit import make_problem
-from jointbench.analysis.gap.loop import fit_base
+from jointbench.analysis.gap.judging import far_off
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.lumped_noise import settle
 
 SETTLING = 1.5e-3 * np.array([0.4, -1.1, 0.8, 1.3, -0.6, 0.2, -0.9, 0.1])
-BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
+BASE = made.BASE
 
 
 def settled_campaign(exponent: float) -> Campaign:
@@ -35,6 +36,24 @@ def fitted(exponent: float) -> tuple[LumpedBench, float, float, float]:
     fit = minimise(problem, np.concatenate([base.x, [0.0]]))
     sd = float(np.sqrt(fit.covariance[-1, -1]))
     return bench, float(fit.x[-1]), sd, base.cost - fit.cost
+
+
+@pytest.mark.parametrize(("seed", "noise"), [(4, 0.02), (2, 0.005)])
+def test_a_quiet_base_is_found_though_every_hit_settles(
+    seed: int, noise: float
+) -> None:
+    """Scatter of 0.2 %, hundreds of times the noise at a record's end, hides it."""
+    rng = np.random.default_rng(seed)
+    plain = make_bench(made.quiet_campaign(samples=2048))
+    settling = 2e-3 * rng.standard_normal(len(SETTLING))
+    clean = settle(plain, settling).response(BASE, [])
+    noisy = clean + noise * rng.standard_normal(clean.shape)
+    start = make_bench(made.quiet_campaign(noisy, samples=2048))
+    late = fit_stages(make_problem(start, ()), np.zeros(BASE.size), BASE_STAGES)
+    assert far_off(start.refine(late.base, ()), late)
+    bench, base = fit_base(start)
+    assert base.chi2 == pytest.approx(bench.blocks.dof, rel=0.05)
+    assert base.x == pytest.approx(BASE, abs=4e-3)
 
 
 @pytest.mark.parametrize("exponent", [0.0, 0.02, -0.02])
