@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from jointbench.analysis.gap.records import Diagnosis, Finding, diagnosis_json
+from jointbench.analysis.gap.side_by_side import side_by_side
 from jointbench.station.gap_output import show_diagnosis
 from jointbench.station.gap_sources import Wanted, examine
 from jointbench.station.output import console, table
@@ -54,7 +55,8 @@ def visit_for_gap(folder: Path, *, seed: int) -> DemoGap:
     url = f"sim:two-body-campaign?seed={seed}&hide={HIDDEN}&grid={GRID}"
     written = write_visit(url, folder / FILES[0], overwrite=True)
     wanted = Wanted(model=written.model)
-    done = examine([str(written.path)], wanted, progress=lambda line: None)
+    with side_by_side():
+        done = examine([str(written.path)], wanted, progress=lambda line: None)
     truth = json.loads((folder / FILES[2]).read_text(encoding="utf-8"))
     return DemoGap(done.found, truth, _compare(done.found, truth))
 

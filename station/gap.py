@@ -10,6 +10,7 @@ from rich.text import Text
 
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.records import Diagnosis, diagnosis_json
+from jointbench.analysis.gap.side_by_side import side_by_side
 from jointbench.station.effects_file import read_effects, with_own
 from jointbench.station.gap_output import show_diagnosis
 from jointbench.station.gap_scores import score_section, score_table, scores_json
@@ -56,7 +57,7 @@ def run_gap(
     own = [entry for path in effects for entry in read_effects(path)]
     wanted = replace(wanted, entries=with_own(CATALOGUE, own))
     screen = Console(stderr=True, highlight=False)
-    with screen.status(Text(f"reading {sources[0]}")) as status:
+    with side_by_side(), screen.status(Text(f"reading {sources[0]}")) as status:
         done = examine(sources, wanted, progress=lambda line: status.update(Text(line)))
     _show(done, json_target)
     if report is not None:

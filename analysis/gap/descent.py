@@ -8,6 +8,7 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import FULL, Stage
 from jointbench.analysis.gap.fit import Fit, Problem
+from jointbench.analysis.gap.side_by_side import each
 
 EXCESS_TOLERANCE = 1e-3
 """Stop below this share of the excess of chi2 over its degrees of freedom: a share
@@ -58,12 +59,15 @@ def jacobian_of(
     """
     columns = np.empty((x.size, residual.size))
     steps = steps_of(problem, x)
-    for i, h in enumerate(steps):
+
+    def difference(i: int) -> None:
         moved = x.copy()
-        moved[i] += h
+        moved[i] += steps[i]
         columns[i] = problem.residual(moved, stage)
         columns[i] -= residual
-        columns[i] /= h
+        columns[i] /= steps[i]
+
+    each(difference, x.size)
     return columns.T
 
 

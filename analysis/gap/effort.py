@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from threading import Lock
 
 import numpy as np
 
@@ -33,6 +34,7 @@ class Effort:
     limit: float = np.inf
 
 
+_ADDING = Lock()
 _CURRENT: ContextVar[Effort | None] = ContextVar("effort", default=None)
 
 
@@ -70,6 +72,7 @@ def spend(samples: int, oversampling: int) -> None:
     effort = _CURRENT.get()
     if effort is None:
         return
-    effort.spent += samples * (1.0 + MARCHED * oversampling)
+    with _ADDING:
+        effort.spent += samples * (1.0 + MARCHED * oversampling)
     if effort.spent > effort.limit:
         raise SearchExhausted

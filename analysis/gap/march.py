@@ -243,7 +243,7 @@ def _march_lanes(
                 w[at + IMAGINARY] -= w[at + END_I] * w[GUESS + k]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def march(
     displacement: FloatArray,
     velocity: FloatArray,

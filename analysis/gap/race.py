@@ -116,9 +116,10 @@ def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fi
         runners = _best_of_each(
             _keep(_heat(runners, iterations, progress), keep), alike
         )
-    best, done = None, []
+    best: float | None = None
+    done: list[Runner] = []
     for r in runners:
-        progress(r.label)
+        progress(_trying(r, done))
         middle = minimise(r.problem, r.x, MIDDLE, iterations=MOST_STEPS, rival=best)
         done.append(Runner(r.problem, middle.x, middle.cost, middle))
         best = min(best or np.inf, middle.cost)
@@ -156,9 +157,11 @@ def _heat(
     runners: Sequence[Runner], iterations: int, progress: Progress
 ) -> list[Runner]:
     """Let all take some steps, best first, so that the slow see whom to catch."""
-    best, done = None, []
+    best: float | None = None
+    done: list[Runner] = []
     for r in _keep(runners, len(runners)):
-        done.append(_run(r, MIDDLE, iterations, progress, rival=best))
+        progress(_trying(r, done))
+        done.append(_run(r, MIDDLE, iterations, rival=best))
         best = min(best or np.inf, done[-1].cost)
     return done
 
@@ -201,8 +204,11 @@ def _far(
             progress(f"{candidate.label} from the sheet")
             runners.append(_from_nominal(problem, fit, directions))
     for (stage, iterations), keep in zip(COARSE_ROUNDS, SURVIVORS, strict=True):
-        runners = [_run(r, stage, iterations, progress) for r in runners]
-        runners = _keep(runners, keep)
+        done: list[Runner] = []
+        for r in runners:
+            progress(_trying(r, done))
+            done.append(_run(r, stage, iterations))
+        runners = _keep(done, keep)
     return runners
 
 
@@ -290,14 +296,20 @@ def _from_nominal(
     return _runner(problem, x)
 
 
+def _trying(runner: Runner, done: Sequence[Runner]) -> str:
+    """Say what is tried, and what explains most so far."""
+    if not done:
+        return runner.label
+    best = min(done, key=lambda r: r.cost)
+    return f"{runner.label}; best so far: {best.label}"
+
+
 def _run(
     runner: Runner,
     stage: Stage,
     iterations: int,
-    progress: Progress,
     rival: float | None = None,
 ) -> Runner:
-    progress(runner.label)
     fit = minimise(
         runner.problem,
         runner.x,

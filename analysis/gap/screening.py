@@ -20,6 +20,7 @@ from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.bench import Bench, Stage
 from jointbench.analysis.gap.effects import Candidate, Term
 from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.side_by_side import each
 
 PROBE = 1e-6
 SEEN = 1e-10
@@ -105,7 +106,9 @@ def screen(
     left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
     taken = np.empty((len(starts), fit.x.size))
     norm = np.empty(len(starts))
-    for k, (candidate, u) in enumerate(starts):
+
+    def test(k: int) -> None:
+        candidate, u = starts[k]
         probe, unit = _probe(candidate, u)
         terms = (*fit.terms, Term(candidate, probe))
         row = np.zeros(tangent.q.shape[0])
@@ -113,6 +116,8 @@ def screen(
         taken[k] = tangent.q.T @ row
         norm[k] = row @ row
         left[k] = row - tangent.q @ taken[k]
+
+    each(test, len(starts))
     return _judge(bench, starts, tangent, _Tested(left, taken, norm, fixed), seed)
 
 
