@@ -4,6 +4,8 @@
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from jointbench.analysis.gap.bench import EVERYDAY, FULL, Bench
 from jointbench.analysis.gap.crossing import caught_up
 from jointbench.analysis.gap.descent import minimise
@@ -21,6 +23,8 @@ from jointbench.analysis.gap.screening import Screening, screen
 REJUDGED = 30
 AGREED = 2.0
 """Change of a winner's cost below which it agrees with the noise estimated at it."""
+REPEATED = 20.0
+"""Difference of a winner's cost from that of two rounds before, of a to and fro."""
 OVERTAKEN = 2
 CLOSE = 1000.0
 """Score behind the winner up to which a rival is fitted again with the new noise."""
@@ -196,14 +200,20 @@ def _part_of(fewer: Fit, more: Fit) -> bool:
 
 
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
-    """Bring a fit and the noise estimated at it to agree, unless it runs away."""
+    """Bring a fit and the noise estimated at it to agree, unless it runs away.
+
+    A trend that is scatter by one fit and none by the next goes to and fro for ever.
+    Then the fit that leaves more is taken: there the least is called scatter.
+    """
+    earlier, before = np.inf, fit.cost
     for _ in range(REJUDGED):
-        before = fit.cost
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
-        if abs(fit.cost - before) < AGREED or far_off(bench, fit):
+        to_and_fro = abs(fit.cost - earlier) < REPEATED and fit.cost > before
+        if abs(fit.cost - before) < AGREED or to_and_fro or far_off(bench, fit):
             break
+        earlier, before = before, fit.cost
     return bench, fit
 
 
