@@ -2,7 +2,7 @@
 """The engine on a bench without any dynamics: it must not know the difference."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -284,6 +284,39 @@ def test_what_is_needless_once_the_noise_is_known_is_taken_back() -> None:
     found = judged(bench, [both], base, lambda line: None)
     assert [c.effect.name for c in found.fits[0].candidates] == ["cube"]
     assert found.gate.passed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Torn(Curve):
+    """A curve that seems half as noisy from each fit to the next, and back."""
+
+    quiet: bool = False
+    rounds: list[bool] = field(default_factory=list)
+
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "Torn":
+        """Change the noise once more."""
+        self.rounds.append(not self.quiet)
+        return replace(self, quiet=not self.quiet)
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01, or / 0.005."""
+        return Curve.residual(self, base, terms, stage) * (2.0 if self.quiet else 1.0)
+
+
+def test_noise_that_goes_to_and_fro_ends_where_it_is_least() -> None:
+    """A few rounds show that it will never settle, and more would show no more."""
+    plain = curve(cube=0.2)
+    bench = Torn(plain.measured, plain.candidates)
+    base = minimise(make_problem(bench, ()), np.zeros(1))
+    fit = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
+    last, _, _ = judging.judge(bench, [fit], base, lambda line: None)
+    assert isinstance(last, Torn)
+    assert last.quiet
+    assert len(bench.rounds) <= 4
 
 
 def test_confidence_never_falls_with_more_evidence() -> None:
