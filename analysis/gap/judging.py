@@ -53,9 +53,11 @@ def judge(
     """
     if not fits:
         return bench, [], gate(bench, base, base, None)
-    if _hopeless(bench, fits[0]):
+    hopeful = _hopeful(bench, fits[0], progress)
+    if hopeful is None:
         return bench, list(fits), gate(bench, fits[0], base, None, fits)
-    ranked, tried = list(fits), set[frozenset[str]]()
+    bench, first = hopeful
+    ranked, tried = [first, *fits[1:]], set[frozenset[str]]()
     for _ in range(OVERTAKEN):
         found = _judged(bench, ranked, base, progress)
         if hopes is not None and not found.gate.passed:
@@ -84,16 +86,24 @@ def far_off(bench: Bench, fit: Fit) -> bool:
     return fit.chi2 > EVERYDAY * bench.blocks.dof
 
 
-def _hopeless(bench: Bench, fit: Fit) -> bool:
-    """Tell whether a fit is far off even under the noise estimated at it.
+def _hopeful(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit] | None:
+    """Return a fit on a bench where it is not far off, or None where it always is.
 
-    Nothing can be learnt of noise and scatter there, and rivals are no better.
+    Nothing can be learnt of noise and scatter there, and rivals are no better. In a
+    quiet campaign the scatter alone may lead it off; then it is fitted about the hits
+    as they settled.
     """
     if not far_off(bench, fit):
-        return False
+        return bench, fit
     there = bench.refine(fit.base, fit.terms)
     r = there.residual(fit.base, fit.terms, FULL)
-    return float(r @ r) > EVERYDAY * bench.blocks.dof
+    if float(r @ r) < EVERYDAY * bench.blocks.dof:
+        return bench, fit
+    there = bench.refine(fit.base, fit.terms, astray=True)
+    if not there.expanded:
+        return None
+    again = finish(make_problem(there, fit.candidates), fit.x, progress)
+    return None if far_off(there, again) else (there, again)
 
 
 def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:

@@ -33,8 +33,13 @@ TELLS_NOTHING = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
 LEAST_FACTOR = 1e-3
 """Smallest share of a stiffness that a settling may leave."""
-SETTLING_REACH = 10.0
-"""Scatter sd beyond which a settling is no scatter but a missing effect."""
+SETTLING_REACH = 40.0
+"""Scatter sd about which a model is expanded at most. A joint that loosens by 17 of
+them is no scatter, but each hit must be met at its own stiffness before its law can
+enter by the slope."""
+ASTRAY_REACH = 4.0
+"""Scatter sd beyond which nothing of it is believed where the solution is far off: of
+some dozens of hits none settles there, but what a trend has moved may lie anywhere."""
 SCATTER_STEP = 1e-6
 """Difference step of the ways to scatter: at 1e-4 the late record has already bent a
 hundredth away from its slope, and a trend hides in that hundredth."""
@@ -102,8 +107,10 @@ def refine_noise(
     if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
         return settle(refined, None)
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
-    reach = SETTLING_REACH * scatter[1]
-    off = np.clip(-coefficients[:, 1] * share, -reach, reach)
+    off = -coefficients[:, 1] * share / scatter[1]
+    if astray and np.abs(off).max() > ASTRAY_REACH:
+        return settle(refined, None)
+    off = np.clip(off, -SETTLING_REACH, SETTLING_REACH) * scatter[1]
     settling = np.log(np.maximum(np.exp(off) * (1.0 + rise) - rise, LEAST_FACTOR))
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)

@@ -8,6 +8,7 @@ import pytest
 from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
+from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.fit import make_problem
 from jointbench.analysis.gap.judging import far_off
 from jointbench.analysis.gap.lumped import LumpedBench
@@ -63,6 +64,20 @@ def test_a_preload_law_is_found_within_the_scatter_of_the_hits(exponent: float) 
     assert bench.expanded
     assert 1e-3 < sd < 6e-3
     assert found == pytest.approx(exponent, abs=4 * sd)
+
+
+@pytest.mark.parametrize("loosened", [0.045, 0.06])
+def test_a_joint_that_loosens_far_beyond_its_scatter_is_named(loosened: float) -> None:
+    """By 30 and 40 sd of a scatter of 0.15 %, in a campaign so quiet that it shows."""
+    bench = make_bench(made.quiet_campaign(samples=2048))
+    law = made.term_of(bench, "loosening", "link:joint", [loosened])
+    clean = settle(bench, SETTLING).response(BASE, [law])
+    rng = np.random.default_rng(4)
+    noisy = clean + 0.02 * rng.standard_normal(clean.shape)
+    found = diagnose(made.quiet_campaign(noisy, samples=2048))
+    assert [e.name for e in found.effects] == ["loosening"]
+    value = found.effects[0].parameters[0]
+    assert value.value == pytest.approx(loosened, abs=4 * value.sd)
 
 
 def test_a_trend_that_the_scatter_may_be_takes_no_more_chi2_than_it_is_worth() -> None:
