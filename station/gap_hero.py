@@ -21,6 +21,7 @@ from jointbench.station.gap_pictures import (
     spectrum,
     spectrum_axes,
 )
+from jointbench.station.gap_words import SHEET
 
 Pulls = Mapping[str, tuple[float, float]]
 NOISE = "rgba(42, 157, 143, 0.22)"
@@ -59,7 +60,7 @@ def hero(
     if view == "frequency":
         traces += spectrum(exhibit.spectra, tried, axes=("x4", "y4"))
         x4, y4 = spectrum_axes(exhibit.spectra)
-    elif view == "sheet":
+    elif view == SHEET:
         traces += _pull_bars(pulls, shown=after is not None)
         x4, y4 = axis("base parameter", type="category"), axis("pull [sd]")
     else:
@@ -186,7 +187,7 @@ def _headings(curves: Curves, view: str) -> list[dict[str, object]]:
     shared |= {"font": {"size": 13, "color": "#5b6b7b"}}
     left = f"record {curves.record}: {curves.channel}, {curves.condition}"
     right = "misfit over noise, by frequency"
-    if view == "sheet":
+    if view == SHEET:
         right = "how far the sheet is bent; up to 4 is fair"
     elif view != "frequency":
         right = f"chi2/dof by {view}, all records"

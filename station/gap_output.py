@@ -11,6 +11,7 @@ from rich.text import Text
 
 from jointbench.analysis.gap.records import Diagnosis, Finding
 from jointbench.station.gap_words import (
+    SHEET,
     SMALL_GAP,
     headline,
     next_step,
@@ -145,7 +146,7 @@ def _limit_words(found: Diagnosis) -> str:
 
 def _where(found: Diagnosis) -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
-    sheet = found.exhibit is not None and found.exhibit.view == "sheet"
+    sheet = found.exhibit is not None and found.exhibit.view == SHEET
     if found.verdict is Finding.NONE or sheet:
         return rows
     for view in found.gap_before.views:

@@ -12,7 +12,9 @@ NEARLY_SURE = 0.994
 MAINLY = 0.6
 SEEN = {"level": "at", "hit point": "from hits on", "preload": "at preload"}
 SMALL_GAP = 0.3
-"""Gap below which the records are met, and only the sheet sees what is missing."""
+"""Gap below which the records are nearly met: the sheet or a directed test tells."""
+SHEET = "sheet"
+"""View of a gap that only the priors see."""
 
 
 def place(site: str) -> str:
@@ -67,6 +69,13 @@ def _unknown(found: Diagnosis) -> str:
 def _explains(found: Diagnosis) -> str:
     several = found.verdict is Finding.NAMED and len(found.effects) > 1
     verb = "explain" if several else "explains"
+    sheet = found.exhibit is None or found.exhibit.view == SHEET
+    if found.gap_before.value < SMALL_GAP and not sheet:
+        largest, limit = found.null_statistic
+        return (
+            f"{verb} what little is missing: a directed test takes {largest:.0f} "
+            f"units of chi2, noise {limit:.0f} at most"
+        )
     if found.gap_before.value < SMALL_GAP:
         before = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
         verb = "bring" if several else "brings"

@@ -75,8 +75,10 @@ def make_exhibit(bench: LumpedBench, base: Fit, outcome: Outcome) -> Exhibit:
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
         where = locate(bench, residual, levels)
         look = describe(bench, residual, relative, levels, wishes, tests)
-    elif not outcome.base_gate.passed:
+    elif not outcome.base_gate.passed and np.abs(base.pulls).max() > PULL_LIMIT:
         where, view = pulled(bench, base), "sheet"
+    elif not outcome.base_gate.passed:
+        where = locate(bench, residual, levels)
     return Exhibit(
         tried=words_of(best.candidates),
         where=where,

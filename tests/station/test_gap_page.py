@@ -123,6 +123,19 @@ def test_an_effect_that_only_the_sheet_sees_is_told_by_its_pull() -> None:
     assert "shrinks by" not in labels
 
 
+def test_a_weak_effect_is_told_by_the_test_that_sees_it() -> None:
+    """A delay of 0.2 us leaves hardly a gap and the sheet in peace."""
+    outcome, bench = outcomes.outcome_of(
+        [("delay", "channel:a0", [2e-7])], ("delay", "channel:a0")
+    )
+    diagnosis = conclude(outcome, bench)
+    assert diagnosis.gap_before.value < 0.3
+    largest, limit = diagnosis.null_statistic
+    assert largest > limit
+    assert f"a directed test takes {largest:.0f} units" in headline(diagnosis)
+    assert "off its sheet" not in (diagnosis.exhibit.where if diagnosis.exhibit else "")
+
+
 def test_names_out_of_a_file_cannot_break_out_of_the_page() -> None:
     """A channel called like a script stays text."""
     diagnosis = replace(found("named"), reason="<script>alert(1)</script>")
