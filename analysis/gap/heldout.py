@@ -52,6 +52,8 @@ class HeldOut:
 def hold_out(fit: Fit, bench: Bench) -> HeldOut:
     """Hold out every condition in turn, its repeats with it.
 
+    Where there is but one condition, the sheet alone foretells it.
+
     Args:
         fit: a minimum.
         bench: on which it was found.
@@ -66,7 +68,7 @@ def hold_out(fit: Fit, bench: Bench) -> HeldOut:
         j, r = fit.jacobian[rows], fit.residual[rows]
         step = np.linalg.lstsq(hessian - j.T @ j, j.T @ r, rcond=1e-12)[0]
         left = r + j @ step
-        if left @ left > LONG_STEP * (r @ r):
+        if not rows.all() and left @ left > LONG_STEP * (r @ r):
             left = _fitted_without(fit, bench, rows)
         chi2.append(float(left @ left))
         dof.append(share * rows.sum())
