@@ -74,7 +74,7 @@ def _explains(found: Diagnosis) -> str:
         largest, limit = found.null_statistic
         return (
             f"{verb} what little is missing: a directed test takes {largest:.0f} "
-            f"units of chi2, noise {limit:.0f} at most"
+            f"units of chi2, noise alone seldom more than {limit:.0f}"
         )
     if found.gap_before.value < SMALL_GAP:
         before = max((abs(b) for b, _ in found.pulls.values()), default=0.0)

@@ -234,7 +234,7 @@ KINK = Candidate(
 
 
 def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
-    """As far off as scipy's fit to the others; the first step alone is off by more."""
+    """As far off as scipy's fit to the others; the linear step errs twofold."""
     noise = 0.01 * np.random.default_rng(2).standard_normal(ROWS)
     bend = 0.5 * np.maximum(FAR_LOAD - 0.97, 0.0)
     bench = Kinked(1.05 * FAR_LOAD + bend + noise, (KINK,))

@@ -43,7 +43,7 @@ def fitted(exponent: float) -> tuple[LumpedBench, float, float, float]:
 def test_a_quiet_base_is_found_though_every_hit_settles(
     seed: int, noise: float
 ) -> None:
-    """Scatter of 0.2 %, hundreds of times the noise at a record's end, hides it."""
+    """Scatter of 0.2 % hides it from a fit of the whole records."""
     rng = np.random.default_rng(seed)
     plain = make_bench(made.quiet_campaign(samples=2048))
     settling = 2e-3 * rng.standard_normal(len(SETTLING))

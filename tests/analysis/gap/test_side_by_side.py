@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A diagnosis is the same to the last bit, however many threads help."""
+"""Slopes are the same to the last bit, however many threads help."""
 
 import gap_bench as made
 import numpy as np
