@@ -3,9 +3,10 @@
 
 With the fit at its minimum, leaving a group out moves the parameters by one Newton
 step whose matrices are at hand; the residual of the group after that step is what a
-refit without it would leave, to first order. Where one group alone holds a parameter
-(the only hits that slip) that step is long and its foretelling is worth nothing, so
-there the fit is made again.
+refit without it would leave, to first order. Where that step is long its foretelling
+is worth nothing, so there the fit is made again. Of an effect that the other groups do
+not show at all (the only hits that slip, the only other preload) they foretell nothing,
+so there it is off: what the fit knows of it, it knows from the group held out.
 """
 
 from dataclasses import dataclass, fields
@@ -15,11 +16,16 @@ import numpy as np
 from jointbench.acquisition.arrays import BoolArray, FloatArray, IntArray, freeze
 from jointbench.analysis.gap.bench import FINE, MIDDLE, Bench, Blocks, Stage
 from jointbench.analysis.gap.descent import minimise
+from jointbench.analysis.gap.effects import Transform
 from jointbench.analysis.gap.fit import Fit, Problem, make_problem
 
 LONG_STEP = 1.5
 """Growth of a group's chi2 by being held out beyond which it is fitted again."""
 REFIT_STEPS = 8
+SHOWN = 4.0
+"""Size of a parameter, in sd by all groups, above which they show it."""
+UNSHOWN = 1.0
+"""Size of a parameter, in sd by the other groups, below which they do not."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,10 +72,12 @@ def hold_out(fit: Fit, bench: Bench) -> HeldOut:
     for c in range(int(condition.max()) + 1):
         rows = np.isin(blocks.group, np.flatnonzero(condition == c))
         j, r = fit.jacobian[rows], fit.residual[rows]
-        step = np.linalg.lstsq(hessian - j.T @ j, j.T @ r, rcond=1e-12)[0]
-        left = r + j @ step
-        if not rows.all() and left @ left > LONG_STEP * (r @ r):
-            left = _fitted_without(fit, bench, rows)
+        others = hessian - j.T @ j
+        left = r + j @ np.linalg.lstsq(others, j.T @ r, rcond=1e-12)[0]
+        if not rows.all():
+            lone = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
+            if lone.any() or left @ left > LONG_STEP * (r @ r):
+                left = _fitted_without(fit, bench, rows, lone)
         chi2.append(float(left @ left))
         dof.append(share * rows.sum())
     return HeldOut(np.array(chi2), np.array(dof))
@@ -88,14 +96,44 @@ class _Without(Problem):
         return seen
 
 
-def _fitted_without(fit: Fit, bench: Bench, rows: BoolArray) -> FloatArray:
-    """Return the residual of some rows at a fit to all others."""
-    whole = make_problem(bench, fit.candidates)
+def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolArray:
+    """Tell which effects hold a parameter that no other group shows.
+
+    Args:
+        fit: a minimum.
+        whole: curvature along each coordinate by all groups, shape (n,).
+        others: the same by all groups but one, shape (n,).
+    """
+    alone, at = [], fit.n_base
+    for term in fit.terms:
+        own = slice(at, at + term.coordinates.size)
+        logarithmic = [
+            p.transform is Transform.LOG for p in term.candidate.effect.parameters
+        ]
+        size = np.where(logarithmic, 1.0, np.abs(term.coordinates))
+        told = size * np.sqrt(np.maximum([whole[own], others[own]], 0.0))
+        alone.append(bool(np.any((told[0] > SHOWN) & (told[1] < UNSHOWN))))
+        at = own.stop
+    return np.array(alone, dtype=bool)
+
+
+def _fitted_without(
+    fit: Fit, bench: Bench, rows: BoolArray, off: BoolArray
+) -> FloatArray:
+    """Return the residual of some rows at a fit to all others.
+
+    Args:
+        fit: a minimum, to start from.
+        bench: on which it was found.
+        rows: those held out, shape (n_rows,).
+        off: effects to leave out, shape (n_candidates,).
+    """
+    kept = [t for t, o in zip(fit.terms, off, strict=True) if not o]
+    whole = make_problem(bench, [t.candidate for t in kept])
     known = {f.name: getattr(whole, f.name) for f in fields(whole)}
-    blind = _Without(**known, hidden=rows)
     moved = minimise(
-        blind,
-        fit.x,
+        _Without(**known, hidden=rows),
+        np.concatenate([fit.base, *(t.coordinates for t in kept)]),
         FINE,
         iterations=REFIT_STEPS,
         jacobian_stage=MIDDLE,

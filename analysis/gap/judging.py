@@ -36,13 +36,20 @@ MOST_STALE = 3
 MOST_HELD_BACK = 2
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Hopes:
+    """What directed tests of a fit foretold of one more effect on it."""
+
+    onto: Fit
+    screening: Screening
+
+
 def judge(
     bench: Bench,
     fits: Sequence[Fit],
     base: Fit,
     progress: Progress,
-    hopes: Screening | None = None,
-    onto: Fit | None = None,
+    hopes: Hopes | None = None,
 ) -> tuple[Bench, list[Fit], Gate]:
     """Estimate the noise at the winner, refit the leaders there and judge.
 
@@ -53,16 +60,15 @@ def judge(
     """
     if not fits:
         return bench, [], gate(bench, base, base, None)
-    hopeful = _hopeful(bench, fits[0], progress)
-    if hopeful is None:
+    met = _brought_near(bench, fits[0], progress)
+    if met is None:
         return bench, list(fits), gate(bench, fits[0], base, None, fits)
-    bench, first = hopeful
+    bench, first = met
     ranked, tried = [first, *fits[1:]], set[frozenset[str]]()
     for _ in range(OVERTAKEN):
         found = _judged(bench, ranked, base, progress)
         if hopes is not None and not found.gate.passed:
-            onto = onto or base
-            held = _held_back(found, ranked, onto, hopes, tried)
+            held = _held_back(found, ranked, hopes, tried)
             found = _own_settling(found, held, ranked, base, progress, tried)
         bench = found.bench
         rest = [f for f in ranked if f is not found.first]
@@ -76,8 +82,10 @@ def judge(
         ranked.sort(key=lambda f: score(bench, f))
         if ranked[0] is found.fit:
             break
-    best, base = ranked[0], _alike(bench, ranked[0], base)
-    left = found.left if best is found.fit else _left_by(bench, best)
+    best = ranked[0]
+    if best is found.fit:
+        return bench, ranked, gate(bench, best, found.base, found.left, ranked)
+    base, left = _alike(bench, best, base), _left_by(bench, best)
     return bench, ranked, gate(bench, best, base, left, ranked)
 
 
@@ -86,7 +94,9 @@ def far_off(bench: Bench, fit: Fit) -> bool:
     return fit.chi2 > EVERYDAY * bench.blocks.dof
 
 
-def _hopeful(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit] | None:
+def _brought_near(
+    bench: Bench, fit: Fit, progress: Progress
+) -> tuple[Bench, Fit] | None:
     """Return a fit on a bench where it is not far off, or None where it always is.
 
     Nothing can be learnt of noise and scatter there, and rivals are no better. In a
@@ -122,11 +132,21 @@ def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Judged:
-    """A fit before and after it was settled, its bench, directed tests and gate."""
+    """A fit before and after it was settled, with all that it was judged by.
+
+    Attributes:
+        first: the fit before.
+        fit: the fit after.
+        bench: with the noise estimated at it.
+        base: fit without effects that it is held against.
+        left: directed tests of what it leaves.
+        gate: its judgement.
+    """
 
     first: Fit
     fit: Fit
     bench: Bench
+    base: Fit
     left: Screening
     gate: Gate
 
@@ -138,7 +158,8 @@ def _judged(
     bench, fit = _settled(bench, ranked[0], progress)
     left = _left_by(bench, fit)
     base = _alike(bench, fit, base)
-    return _Judged(ranked[0], fit, bench, left, gate(bench, fit, base, left, ranked))
+    judgement = gate(bench, fit, base, left, ranked)
+    return _Judged(ranked[0], fit, bench, base, left, judgement)
 
 
 def _alike(bench: Bench, fit: Fit, base: Fit) -> Fit:
@@ -177,8 +198,7 @@ def _own_settling(
 def _held_back(
     failed: _Judged,
     ranked: Sequence[Fit],
-    onto: Fit,
-    hopes: Screening,
+    hopes: Hopes,
     tried: Collection[frozenset[str]],
 ) -> list[Fit]:
     """Return the fits of which their directed tests foretold more than was gained.
@@ -189,10 +209,10 @@ def _held_back(
     """
     if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
         return []
-    gained = onto.cost - failed.first.cost
+    onto, gained = hopes.onto, hopes.onto.cost - failed.first.cost
     fits = {labels_of(f.candidates): f for f in ranked}
     held: dict[frozenset[str], Fit] = {}
-    for d in hopes.directions:
+    for d in hopes.screening.directions:
         both = labels_of((*onto.candidates, d.candidate))
         fair = not d.suggested and d.candidate.effect.family != PROBE_FAMILY
         if fair and d.drop > gained and both not in held and both not in tried:

@@ -20,7 +20,7 @@ from jointbench.analysis.gap.effort import (
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.far_pairs import far_pairs
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.judging import far_off, judge
+from jointbench.analysis.gap.judging import Hopes, far_off, judge
 from jointbench.analysis.gap.naming import (
     CROWDED_WITHIN,
     Gate,
@@ -92,7 +92,7 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> Outcome:
     if first.passed:
         return Outcome(bench, base, first, screening, base, first, (), (base,))
     fits = race(bench, base, screening, bench.candidates, progress)
-    found = _Round(*judge(bench, fits, base, progress, screening))
+    found = _Round(*judge(bench, fits, base, progress, Hopes(base, screening)))
     found = _other_sliders(found, base, progress)
     grown: set[frozenset[str]] = set()
     given_up = False
@@ -152,8 +152,9 @@ def _one_more(
     more = crossed(bench, more, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
     merged = take_back(bench, merged, progress)
-    hopes = found.gate.left if alone else None
-    after = judged(bench, merged, base, progress, hopes, firsts[0])
+    left = found.gate.left
+    hopes = Hopes(firsts[0], left) if alone and left is not None else None
+    after = judged(bench, merged, base, progress, hopes)
     if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
         return None
     if after.gate.unexplained and len(after.fits[0].candidates) > 1:
@@ -166,14 +167,13 @@ def judged(
     fits: Sequence[Fit],
     base: Fit,
     progress: Progress,
-    hopes: Screening | None = None,
-    onto: Fit | None = None,
+    hopes: Hopes | None = None,
 ) -> _Round:
     """Judge, and take back what was needless only once the winner was settled.
 
     A delay that led the base to where a relaxation is seen may end at nothing.
     """
-    found = _Round(*judge(bench, fits, base, progress, hopes, onto))
+    found = _Round(*judge(bench, fits, base, progress, hopes))
     best = found.fits[0]
     if len(best.candidates) == 1 or fits[0].cost - best.cost < MOVED:
         return found

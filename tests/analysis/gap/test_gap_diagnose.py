@@ -39,6 +39,27 @@ def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap() -> None:
     assert found.shrink > 0.9
 
 
+def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
+    """Hits at 4 kN say nothing of the one at 8 kN: held out, it misses as before."""
+    found = diagnose(
+        made.made_campaign([("preload_stiffness", "link:joint", [0.3])]),
+        entries=LINEAR,
+    )
+    assert [e.name for e in found.effects] == ["preload_stiffness"]
+    assert found.gap_before.value > 100.0
+    assert found.gap_after.value > 0.5 * found.gap_before.value
+    assert "not foretold by the others" in found.reason
+
+
+def test_what_all_conditions_show_is_foretold() -> None:
+    """The reason is silent of what it would say of a lone condition."""
+    found = diagnose(
+        made.made_campaign([("delay", "channel:a1", [4e-5])]), entries=LINEAR
+    )
+    assert found.gap_after.value < 0.1 * found.gap_before.value
+    assert "foretold" not in found.reason
+
+
 def test_a_delay_outside_the_catalogue_is_not_called_by_another_name() -> None:
     """With delay taken out, nothing else explains it."""
     campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
