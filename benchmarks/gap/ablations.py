@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Diagnose the same campaigns with one part of the engine switched off at a time.
 
-Usage: python benchmarks/gap/ablations.py FOLDER RUNS.jsonl --count 100 [--jobs 2]
+Usage: OMP_NUM_THREADS=1 python benchmarks/gap/ablations.py FOLDER RUNS.jsonl [--jobs 2]
        python benchmarks/gap/ablations.py --page RUNS.jsonl > docs/gap-ablations.md
 
 Half of the campaigns hide one effect, half nothing; RUNS.jsonl goes on where it was.
@@ -10,7 +10,6 @@ Half of the campaigns hide one effect, half nothing; RUNS.jsonl goes on where it
 import argparse
 import json
 import multiprocessing
-import os
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -19,9 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from judge import judge_one
 from outcomes import NAMEABLE, Run, word_of
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 ONE_TEST = 7.88
 """99.5 % of chi2 with one degree of freedom: what a single test would ask for."""
@@ -97,15 +95,11 @@ VARIANTS: Mapping[str, Callable[[], None]] = {
 }
 
 
-def judge_variant(job: tuple[str, Path]) -> Run:
-    """Diagnose one campaign by one variant, in a process of its own."""
-    from judge import judge_one
-
+def switch_off(variant: str) -> None:
+    """Switch one part of the engine off in this process, for good."""
     from jointbench.analysis.gap import diagnose  # noqa: F401 - all modules loaded
 
-    variant, path = job
     VARIANTS[variant]()
-    return judge_one(path, whole=False) | {"variant": variant}
 
 
 def chosen(folder: Path, count: int) -> list[Path]:
@@ -121,20 +115,19 @@ def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
         for line in runs.read_text(encoding="utf-8").splitlines():
             run = json.loads(line)
             done.add((run["variant"], run["kind"], run["seed"]))
-    waiting = [
-        (variant, path)
-        for path in chosen(folder, count)
-        for variant in VARIANTS
-        if (variant, *_key(path)) not in done
-    ]
-    with (
-        multiprocessing.Pool(jobs, maxtasksperchild=1) as pool,
-        runs.open("a", encoding="utf-8") as out,
-    ):
-        for k, run in enumerate(pool.imap_unordered(partial(judge_variant), waiting)):
-            out.write(json.dumps(run) + "\n")
-            out.flush()
-            sys.stderr.write(f"\r{k + 1}/{len(waiting)} {run['variant']}   ")
+    with runs.open("a", encoding="utf-8") as out:
+        for variant in VARIANTS:
+            waiting = [
+                path
+                for path in chosen(folder, count)
+                if (variant, *_key(path)) not in done
+            ]
+            with multiprocessing.Pool(jobs, switch_off, (variant,)) as pool:
+                judge = partial(judge_one, whole=False)
+                for k, run in enumerate(pool.imap_unordered(judge, waiting)):
+                    out.write(json.dumps(run | {"variant": variant}) + "\n")
+                    out.flush()
+                    sys.stderr.write(f"\r{k + 1}/{len(waiting)} {variant}   ")
 
 
 def _key(path: Path) -> tuple[str, int]:
