@@ -137,9 +137,13 @@ def _limit_words(found: Diagnosis) -> str:
         limits = found.exhibit.limits
         words += (
             f"; at the end chi2/dof {limits.chi2_per_dof:.4g} of "
-            f"{limits.chi2_allowed:.4g}, largest test left "
-            f"{short(limits.remaining)} of {short(limits.remaining_allowed)}"
+            f"{limits.chi2_allowed:.4g}"
         )
+        if limits.remaining is not None:
+            words += (
+                f", directed test left {short(limits.remaining)} of "
+                f"{short(limits.remaining_allowed)}"
+            )
     scatter = found.noise.get("scatter_gain", 0.0)
     return f"{words}; hits repeat to {100 * scatter:.2g} %"
 

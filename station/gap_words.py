@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A diagnosis in words: the headline, and why each rival lost."""
 
-from jointbench.analysis.gap.naming import RIVAL_WITHIN
 from jointbench.analysis.gap.records import Diagnosis, Finding, Ranked
 
 PREPOSITIONS = {"link": "in", "body": "on body", "channel": "on channel"}
@@ -50,17 +49,25 @@ def headline(found: Diagnosis) -> str:
         return "Nothing is missing: the model explains every record to its noise"
     if found.verdict is Finding.UNKNOWN:
         return _unknown(found)
-    joined = " or " if found.verdict is Finding.AMBIGUOUS else " and "
-    names = joined.join(
-        effect_words(f"{e.name}@{e.site}") for e in dict.fromkeys(found.effects)
-    )
+    names = _names(found)
     text = f"{names[:1].upper()}{names[1:]} {_explains(found)}"
     if found.verdict is Finding.AMBIGUOUS:
         text += "; these records do not tell which"
     return text
 
 
+def _names(found: Diagnosis) -> str:
+    """Return the explanations in words, those of several effects set off by commas."""
+    sets = [effect_words(" + ".join(labels)) for labels in found.explanations]
+    several = any(len(labels) > 1 for labels in found.explanations)
+    return (", or " if several else " or ").join(sets)
+
+
 def _unknown(found: Diagnosis) -> str:
+    if len(found.explanations) > 1:
+        return "Several explanations fit alike, and these records do not tell which"
+    if found.explanations:
+        return "These records cannot show what is missing, if anything is"
     if found.gap_before.value < SMALL_GAP:
         return "The sheet and the records disagree, and no effect says why"
     return "Something is missing that no effect of the catalogue explains"
@@ -70,6 +77,8 @@ def _explains(found: Diagnosis) -> str:
     several = found.verdict is Finding.NAMED and len(found.effects) > 1
     verb = "explain" if several else "explains"
     sheet = found.exhibit is None or found.exhibit.view == SHEET
+    if not found.foretold:
+        return f"{verb} the records, but one condition alone shows it"
     if found.gap_before.value < SMALL_GAP and not sheet:
         largest, limit = found.null_statistic
         return (
@@ -158,12 +167,21 @@ def why_lost(one: Ranked, found: Diagnosis) -> str:
     if faults:
         return faults
     if found.verdict is Finding.UNKNOWN:
-        return "the closest try, refused" if one is best else "behind the closest try"
-    if one.behind < RIVAL_WITHIN:
+        return _not_told(one, found)
+    if one.effects in found.explanations:
         return "not told apart from the best"
     if set(best.effects) < set(one.effects):
         return "the best and one more that earns nothing"
     return "fits, but less well"
+
+
+def _not_told(one: Ranked, found: Diagnosis) -> str:
+    if one.effects in found.explanations:
+        return "fits, but these records cannot show it"
+    if found.explanations:
+        return "fits less well"
+    closest = one is found.candidates[0]
+    return "the closest try, refused" if closest else "behind the closest try"
 
 
 def _faults(one: Ranked, found: Diagnosis) -> str:

@@ -65,7 +65,9 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
 def _lead(found: Diagnosis, title: str) -> str:
     text = f"Campaign {title}. Verdict: {found.verdict.value}."
     if found.exhibit is not None and found.exhibit.where:
-        text += f" Without the effect, {found.exhibit.where}."
+        where = found.exhibit.where
+        shown = found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)
+        text += f" Without the effect, {where}." if shown else f" Base: {where}."
     return text
 
 
@@ -246,7 +248,8 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
     columns = ("explanation", "behind", "chi2/dof", "pull [sd]", "reason")
     caption = (
         "Best first. The score is chi2 with the priors' pull and a charge of 10 for "
-        "each parameter; one that is 15 behind is told apart."
+        "each parameter; one that is 15 behind is told apart (60 where one place "
+        "bears two effects)."
     )
     items: list[Item] = [DataTable(caption, columns, rows)]
     if found.exhibit is not None and found.verdict is not Finding.NONE:
@@ -271,25 +274,29 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
             "null test of the base",
             short(largest),
             short(limit),
-            "largest directed drop of chi2; noise exceeds the limit once in 200",
+            "largest directed drop of chi2; linearised noise exceeds the limit once "
+            "in 200, an effect is looked for beyond 1.3 times it",
         )
     ]
     if found.exhibit is not None:
         limits = found.exhibit.limits
-        rows += [
+        rows.append(
             (
                 "chi2/dof at the end",
                 f"{limits.chi2_per_dof:.5g}",
                 f"{limits.chi2_allowed:.5g}",
                 "noise, and a small share for the model's own error",
-            ),
-            (
-                "largest directed test left",
-                f"{limits.remaining:.4g}",
-                f"{limits.remaining_allowed:.4g}",
-                "what one more effect would take of chi2",
-            ),
-        ]
+            )
+        )
+        if limits.remaining is not None:
+            rows.append(
+                (
+                    "directed test left",
+                    f"{limits.remaining:.4g}",
+                    f"{limits.remaining_allowed:.4g}",
+                    "chi2 that one more effect would take; the one nearest its limit",
+                )
+            )
     table = DataTable(
         "Tests and their limits.", ("test", "value", "limit", "detail"), tuple(rows)
     )

@@ -3,12 +3,19 @@
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.noise import repeat_groups
 
 LEVEL_SPAN = 1.5
 FLAT_SAMPLES = 6
+"""Pairs of neighbours at the common maximum from which a record counts as clipped."""
+AT_TOP_SD = 5.0
+NEAR_TOP_SD = 20.0
+SHARPER = 1.5
+"""Growth of what lies near the maximum, from one to the other of these distances, below
+which it is an edge; the crest of an oscillation doubles."""
+LOUD_SD = 50.0
 MIN_RECORDS = 4
 
 
@@ -46,8 +53,14 @@ def flat_tops(response: FloatArray, sigma: FloatArray) -> list[int]:
     """
     size = np.abs(response)
     top = size.max(axis=(0, 2))
-    near = size > (top[None, :] - 5 * sigma)[:, :, None]
-    run = near[:, :, 1:] & near[:, :, :-1]
-    loud = top[None, :] > 50 * sigma
-    hits = (run.sum(axis=2) >= FLAT_SAMPLES // 2) & loud
-    return [int(i) for i in np.flatnonzero(hits.any(axis=1))]
+    at_top = _pairs_above(size, top - AT_TOP_SD * sigma)
+    near_top = _pairs_above(size, top - NEAR_TOP_SD * sigma)
+    flat = (at_top >= FLAT_SAMPLES) & (near_top < SHARPER * at_top)
+    loud = top > LOUD_SD * sigma
+    return [int(i) for i in np.flatnonzero((flat & loud).any(axis=1))]
+
+
+def _pairs_above(size: FloatArray, limit: FloatArray) -> IntArray:
+    """Count neighbours that are both above a limit, shape (n_records, n_channels)."""
+    near = size > limit[:, :, None]
+    return np.asarray(np.sum(near[:, :, 1:] & near[:, :, :-1], axis=2))

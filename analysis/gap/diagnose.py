@@ -2,6 +2,7 @@
 """Diagnose a campaign: the loop's outcome, put into a verdict with its evidence."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import Candidate, Reported, Term, words_of
 from jointbench.analysis.gap.exhibit import make_exhibit
+from jointbench.analysis.gap.exhibit_where import counted_samples
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
@@ -32,10 +34,12 @@ from jointbench.analysis.gap.records import (
 )
 
 FAR = 1e12
-SEEN = 1.0
-"""Gap below which it does not count by what share it shrank."""
-UNFORETOLD = 0.5
-"""Share of the gap that a name may leave on held-out records before that is said."""
+MOSTLY = 0.8
+"""Share of the misfit from which one record is suspected by itself."""
+UNFORETOLD_WORDS = (
+    "; held out, a condition is not foretold by the others: it shows the effect "
+    "alone, so add conditions next to it"
+)
 MOST_RIVALS = 3
 """Explanations that fit alike beyond which nothing is told apart."""
 
@@ -77,6 +81,7 @@ def diagnose(
 def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagnosis:
     """Put an outcome into words and numbers."""
     base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
+    outcome = replace(outcome, base=base)
     finding, reason = _verdict(outcome, bench, limits)
     shown: Sequence[Fit] = ()
     if finding is Finding.NAMED:
@@ -84,15 +89,12 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
     elif finding is Finding.AMBIGUOUS:
         shown = outcome.level
     best = outcome.best if outcome.gate.passed else base
-    before, after = _gap(bench, base), _gap(bench, best)
-    if finding is Finding.NAMED:
-        reason += _unforetold(before, after)
-    return Diagnosis(
+    found = Diagnosis(
         verdict=finding,
         effects=_effects(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
-        gap_before=before,
-        gap_after=after,
+        gap_before=_gap(bench, base),
+        gap_after=_gap(bench, best),
         pulls={
             name: (float(b), float(a))
             for name, b, a in zip(bench.base_names, base.pulls, best.pulls, strict=True)
@@ -112,7 +114,15 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
         experiment=_experiment(outcome, finding),
         reason=reason,
         exhibit=make_exhibit(bench, base, outcome),
+        explanations=tuple(_labels(f) for f in outcome.level if outcome.gate.passed),
     )
+    if finding is Finding.NAMED and not found.foretold:
+        return replace(found, reason=reason + UNFORETOLD_WORDS)
+    return found
+
+
+def _labels(fit: Fit) -> tuple[str, ...]:
+    return tuple(c.label for c in fit.candidates) or ("none",)
 
 
 def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding, str]:
@@ -141,16 +151,6 @@ def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding
     )
 
 
-def _unforetold(before: Gap, after: Gap) -> str:
-    """Say so where a fit to the other conditions does not foretell the one held out."""
-    if before.value < SEEN or after.value < UNFORETOLD * before.value:
-        return ""
-    return (
-        "; held out, a condition is not foretold by the others: it shows the effect "
-        "alone, so add levels next to it"
-    )
-
-
 def _unexplained(outcome: Outcome) -> str:
     """Say why the best fit is no name, and whether more might have been tried."""
     reason = f"no effect explains it: {outcome.gate.reason}"
@@ -164,13 +164,13 @@ def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:
 
     Its excess must be more than that of noise, or some record always holds most.
     """
-    excess = outcome.best.residual**2 - 1.0
     groups = bench.blocks.group
-    share = np.bincount(groups, weights=excess)
+    counted = counted_samples(bench) * bench.blocks.shape[1]
+    share = np.bincount(groups, weights=outcome.best.residual**2) - counted
     worst = int(np.argmax(share))
     total = float(np.clip(share, 0, None).sum())
     noise = noise_sd(bench) * np.sqrt(share.size) * np.mean(np.bincount(groups))
-    if share[worst] < max(0.8 * total, GLOBAL_SD * noise):
+    if share[worst] < max(MOSTLY * total, GLOBAL_SD * noise):
         return ""
     labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
     return (
@@ -191,7 +191,7 @@ def _ranked(outcome: Outcome, bench: Bench) -> tuple[Ranked, ...]:
     first = score(bench, rows[0])
     return tuple(
         Ranked(
-            tuple(c.label for c in f.candidates) or ("none",),
+            _labels(f),
             score(bench, f),
             score(bench, f) - first,
             f.chi2 / bench.blocks.dof,
@@ -220,20 +220,26 @@ def evidence_of(outcome: Outcome, bench: Bench, fit: Fit) -> Evidence:
 def _effects(
     outcome: Outcome, bench: LumpedBench, fits: Sequence[Fit]
 ) -> tuple[NamedEffect, ...]:
+    """Return the effects of some explanations, each as in the first that holds it.
+
+    What all rivals hold is as sure as all of them together.
+    """
     found: dict[str, NamedEffect] = {}
     for fit in fits:
         evidence = evidence_of(outcome, bench, fit)
         sure = confidence_of(evidence) / len(fits)
-        for k, term in enumerate(fit.terms):
-            label = term.candidate.label
-            if label not in found:
-                found[label] = NamedEffect(
-                    term.candidate.effect.name,
-                    str(term.candidate.site),
-                    estimates_of(bench, fit, k),
-                    sure,
-                    evidence,
-                )
+        for k, (label, term) in enumerate(zip(_labels(fit), fit.terms, strict=True)):
+            if label in found:
+                one = found[label]
+                found[label] = replace(one, confidence=one.confidence + sure)
+                continue
+            found[label] = NamedEffect(
+                term.candidate.effect.name,
+                str(term.candidate.site),
+                estimates_of(bench, fit, k),
+                sure,
+                evidence,
+            )
     return tuple(found.values())
 
 
@@ -293,11 +299,14 @@ def _experiment(outcome: Outcome, finding: Finding) -> str:
 
 
 def _separates(first: Fit, second: Fit) -> str:
-    for a in first.candidates:
-        for b in second.candidates:
+    """Return the experiment that tells two fits apart by what one alone holds."""
+    own = [c for c in first.candidates if c not in second.candidates]
+    other = [c for c in second.candidates if c not in first.candidates]
+    for a in own:
+        for b in other:
             for left, right in ((a, b), (b, a)):
                 advice = left.effect.separates.get(right.effect.name)
-                if advice and left != right:
+                if advice:
                     return f"{left.label} or {right.label}: {advice}"
     return "repeat at more levels, points and preloads to tell the first two apart"
 

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
-from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.effects import words_of
 from jointbench.analysis.gap.exhibit_level import recurrences
 from jointbench.analysis.gap.exhibit_records import (
@@ -19,6 +18,7 @@ from jointbench.analysis.gap.exhibit_records import (
     Wishes,
 )
 from jointbench.analysis.gap.exhibit_where import (
+    counted_samples,
     locate,
     pulled,
     relative_misfits,
@@ -29,7 +29,7 @@ from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.model import Output
-from jointbench.analysis.gap.naming import PULL_LIMIT, WIDENED, forgiven
+from jointbench.analysis.gap.naming import PULL_LIMIT
 
 UNITS = {
     Output.DISPLACEMENT: "m",
@@ -68,7 +68,7 @@ def make_exhibit(bench: LumpedBench, base: Fit, outcome: Outcome) -> Exhibit:
     )
     curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
     levels = recurrences(bench, bench.campaign.response - models[0])
-    limits = _limits(bench, base, outcome)
+    limits = _limits(outcome)
     view = telling_view(bench, residual, levels)
     where = ""
     look: tuple[str, ...] = ()
@@ -90,7 +90,7 @@ def make_exhibit(bench: LumpedBench, base: Fit, outcome: Outcome) -> Exhibit:
         spectra=spectra,
         wishes=wishes,
         limits=limits,
-        tests=tests,
+        tests=tests[:MOST_TESTS],
     )
 
 
@@ -99,14 +99,13 @@ def _cube(bench: LumpedBench, fit: Fit) -> FloatArray:
     return fit.residual.reshape(bench.campaign.response.shape)
 
 
-def _limits(bench: LumpedBench, base: Fit, outcome: Outcome) -> Limits:
-    """Repeat the limits of the gate, whose threshold hardly moves with the fit."""
-    room = forgiven(outcome.best, (base, *outcome.ranked), bench.blocks.dof)
+def _limits(outcome: Outcome) -> Limits:
+    """Repeat the limits of the gate."""
     return Limits(
         chi2_per_dof=1.0 + outcome.gate.excess,
         chi2_allowed=1.0 + outcome.gate.allowed,
         remaining=outcome.gate.remaining,
-        remaining_allowed=WIDENED * outcome.base_screening.threshold + room,
+        remaining_allowed=outcome.gate.remaining_allowed,
         pull_allowed=PULL_LIMIT,
     )
 
@@ -118,7 +117,7 @@ def _tests(bench: LumpedBench, base: Fit, outcome: Outcome) -> tuple[DirectedTes
     excess = max(base.chi2 - bench.blocks.dof, 1e-300)
     return tuple(
         DirectedTest(label, drop, min(drop / excess, 1.0))
-        for label, drop in list(largest.items())[:MOST_TESTS]
+        for label, drop in largest.items()
     )
 
 
@@ -128,7 +127,7 @@ def _telling(
     models: tuple[FloatArray, FloatArray],
 ) -> tuple[Curves, Spectra]:
     """Draw the channel of the record that holds the largest share of the excess."""
-    counted = whitened[0].shape[2] - TAIL - bench.campaign.lead
+    counted = counted_samples(bench)
     excess = np.maximum(np.sum(whitened[0] ** 2, axis=2) - counted, 0.0)
     if not excess.any():
         excess = np.abs(bench.campaign.response).max(axis=2)
@@ -149,10 +148,9 @@ def _curves(
     first, last = _window(bench, whitened[0][record, channel])
     cut = slice(first, last)
     sigma = float(bench.noise.sigma[record, channel])
-    labels = bench.blocks.labels[record]
     return Curves(
         record=record,
-        condition=_condition(labels),
+        condition=_condition(bench, record),
         channel=bench.campaign.model.channels[channel].name,
         unit=UNITS[bench.campaign.model.output],
         share=share,
@@ -166,7 +164,10 @@ def _curves(
     )
 
 
-def _condition(labels: dict[str, str]) -> str:
+def _condition(bench: LumpedBench, record: int) -> str:
+    labels = bench.blocks.labels[record]
+    if bench.campaign.continuous:
+        return f"shaken at {labels['hit point']}, rms level {labels['level']}"
     return (
         f"hit on {labels['hit point']}, {labels['level']}, preload "
         + (labels["preload"])
@@ -205,7 +206,7 @@ def _spectra(
     kept = np.flatnonzero(power > FORCE_FLOOR**2 * power.max())
     frequency = np.fft.rfftfreq(campaign.force.shape[1], 1 / campaign.sample_rate)
     kept = kept[frequency[kept] > 0.0][: 4 * LINES]
-    centres, misfits = _misfit_spectra(whitened, campaign.sample_rate)
+    centres, misfits = _misfit_spectra(bench, whitened)
 
     def ratio(response: FloatArray) -> FloatArray:
         y = np.fft.rfft(response[rows, channel], axis=1)
@@ -215,7 +216,7 @@ def _spectra(
         )
 
     return Spectra(
-        condition=_condition(bench.blocks.labels[record]),
+        condition=_condition(bench, record),
         channel=campaign.model.channels[channel].name,
         unit=f"{UNITS[campaign.model.output]}/N",
         frequency=centres,
@@ -228,19 +229,19 @@ def _spectra(
 
 
 def _misfit_spectra(
-    whitened: tuple[FloatArray, FloatArray], rate: float
+    bench: LumpedBench, whitened: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, list[FloatArray]]:
     """Return band centres [Hz] and the rms of whitened residuals in each band."""
     n = whitened[0].shape[2]
-    frequency = np.fft.rfftfreq(n, 1 / rate)
+    frequency = np.fft.rfftfreq(n, 1 / bench.campaign.sample_rate)
     bands = _bands(frequency)
     starts = np.flatnonzero(np.diff(bands, prepend=-1))
     counts = np.diff(np.append(starts, bands.size))
     found = []
     for residual in whitened:
-        # The tail carries no weight: what is left of the record sets the floor to 1.
+        # Lead and tail carry no weight: what is left of a record sets the floor to 1.
         power = np.mean(np.abs(np.fft.rfft(residual, axis=2)) ** 2, axis=(0, 1))
-        power /= max(n - TAIL, 1)
+        power /= max(counted_samples(bench), 1)
         found.append(np.sqrt(np.add.reduceat(power[1:], starts) / counts))
     return np.add.reduceat(frequency[1:], starts) / counts, found
 

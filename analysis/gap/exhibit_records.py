@@ -118,14 +118,15 @@ class Limits:
     Attributes:
         chi2_per_dof: of the fit shown as after [-].
         chi2_allowed: largest that still counts as explained [-].
-        remaining: largest directed test that is left, in units of chi2.
+        remaining: directed test that comes closest to its limit, or exceeds it most,
+            in units of chi2; None where none was made.
         remaining_allowed: its limit, in units of chi2.
         pull_allowed: largest distance of a base parameter from its sheet [sigma].
     """
 
     chi2_per_dof: float
     chi2_allowed: float
-    remaining: float
+    remaining: float | None
     remaining_allowed: float
     pull_allowed: float
 

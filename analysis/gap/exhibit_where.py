@@ -83,7 +83,7 @@ def locate(
         parts.append(f"mainly on {name} ({100 * channels[top]:.0f} %)")
     elif several:
         parts.append("on all channels")
-    low, high = _band(residual, bench.campaign.sample_rate)
+    low, high = _band(bench, residual)
     parts.append(f"at {low:.3g} to {high:.3g} Hz")
     signed = np.sum(residual**2, axis=2) - counted
     parts += [
@@ -139,10 +139,10 @@ def _matched(bench: LumpedBench, names: Sequence[str]) -> list[list[int]]:
     return list(_rows_of(keys).values())
 
 
-def _band(residual: FloatArray, rate: float) -> tuple[float, float]:
+def _band(bench: LumpedBench, residual: FloatArray) -> tuple[float, float]:
     """Return the narrowest band that holds most of the excess [Hz]."""
-    n = residual.shape[2]
-    power = np.abs(np.fft.rfft(residual, axis=2)) ** 2 / n
+    n, rate = residual.shape[2], bench.campaign.sample_rate
+    power = np.abs(np.fft.rfft(residual, axis=2)) ** 2 / max(counted_samples(bench), 1)
     excess = np.maximum(np.sum(power - 1.0, axis=(0, 1)), 0.0)
     excess[0] = 0.0
     total = np.cumsum(excess)

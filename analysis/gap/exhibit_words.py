@@ -41,7 +41,7 @@ def describe(
         _level_line(levels, several=np.unique(bench.campaign.level).size > 1),
         _channel_line(relative["output"]),
         _phase_line(bench, residual),
-        "" if is_linear(levels) else _parity_line(tests),
+        "" if is_linear(levels) else symmetry(tests),
     ]
     if wishes is not None:
         lines += _wish_lines(wishes)
@@ -107,14 +107,15 @@ def _phase_line(bench: LumpedBench, residual: FloatArray) -> str:
     return f"time: {100 * during:.0f} % while the force acts, the rest in the ringing"
 
 
-def _parity_line(tests: Sequence[DirectedTest]) -> str:
-    """Compare an odd with an even law in the joint, where both were tested."""
-    best = dict.fromkeys((ODD, EVEN), 0.0)
+def symmetry(tests: Sequence[DirectedTest]) -> str:
+    """Compare an odd with an even law in the joint; empty unless both were tested."""
+    shares: dict[str, float] = {}
     for test in tests:
         name = test.label.partition("@")[0]
-        if name in best:
-            best[name] = max(best[name], test.share)
-    odd, even = best[ODD], best[EVEN]
+        shares[name] = max(shares.get(name, 0.0), test.share)
+    if not {ODD, EVEN} <= shares.keys():
+        return ""
+    odd, even = shares[ODD], shares[EVEN]
     if max(odd, even) < 0.1:
         return ""
     kind = "odd (alike in push and pull)" if odd > even else "even (push unlike pull)"

@@ -28,7 +28,8 @@ UNLIKE_CHANCE = 3e-4
 UNLIKE_BASE_CHANCE = 3e-5
 """The same before anything is named: a base that is complete must stay so."""
 NOISE_SHARE = 0.2
-"""Share of the spectrum from which the noise is estimated."""
+"""Share of the samples that the noise estimate is worth: 0.39 of the spectrum, halved
+by the taper."""
 WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
 MODEL_ERROR = {
@@ -42,7 +43,8 @@ MODEL_ERROR = {
 }
 """Share of the base's excess chi2 that a right law may leave, by its name or family:
 an Iwan element has as many sliders as its maker gave it, a stop closes between steps,
-a smooth law is as exact as its march; scatter carries samples over the edge of a clip,
+a smooth law is as exact as its march, and linear damping has the share of its family;
+scatter carries samples over the edge of a clip,
 which its slope does not tell."""
 EXACT = 1e-9
 """The same for what is linear or acts on a channel: it is as exact as the base, and
@@ -64,7 +66,9 @@ class Gate:
         reason: the first rule that was not, or empty.
         excess: chi2/dof - 1 [-].
         allowed: what noise and model error allow of it [-].
-        remaining: largest directed drop that is left.
+        remaining: drop of the directed test that comes closest to its limit, or
+            exceeds it most; None where there is none.
+        remaining_allowed: limit of that test; 0 where there is none.
         unexplained: records or sheet hold more than the fit explains, so that a
             further effect may help.
         left: directed tests of what the fit leaves, None where there are none.
@@ -74,7 +78,8 @@ class Gate:
     reason: str
     excess: float
     allowed: float
-    remaining: float
+    remaining: float | None
+    remaining_allowed: float
     unexplained: bool
     left: Screening | None
 
@@ -103,7 +108,6 @@ def gate(
     if left is not None and bench.blocks.white:
         elsewhere = min(model, ELSEWHERE * max(base.chi2 - dof, 0.0))
         worst, beyond = _worst(fit, left, model, elsewhere)
-    remaining = worst.drop if worst else 0.0
     reason = ""
     if excess > allowed:
         reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
@@ -115,7 +119,16 @@ def gate(
         reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
     unexplained = bool(reason)
     reason = reason or _doubt(fit, (base, *others))
-    return Gate(not reason, reason, excess, allowed, remaining, unexplained, left)
+    return Gate(
+        passed=not reason,
+        reason=reason,
+        excess=excess,
+        allowed=allowed,
+        remaining=worst.drop if worst else None,
+        remaining_allowed=worst.drop - beyond if worst else 0.0,
+        unexplained=unexplained,
+        left=left,
+    )
 
 
 def _doubt(fit: Fit, others: Sequence[Fit]) -> str:

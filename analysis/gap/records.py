@@ -9,6 +9,11 @@ from typing import Any
 from jointbench.analysis.gap.confidence import Evidence
 from jointbench.analysis.gap.exhibit_records import Exhibit, exhibit_json
 
+SEEN = 1.0
+"""Gap below which it does not count by what share it shrank."""
+UNFORETOLD = 0.5
+"""Share of the gap that a name may leave on held-out records before that is said."""
+
 
 class Finding(StrEnum):
     """The four verdicts."""
@@ -116,6 +121,8 @@ class Diagnosis:
         experiment: what to do next.
         reason: why the verdict is not a name, or what the name rests on.
         exhibit: the evidence as curves and sentences; None where none was made.
+        explanations: labels of the effects of each explanation that passed and is not
+            told apart from the best, that first; ("none",) is the base alone.
     """
 
     verdict: Finding
@@ -130,6 +137,13 @@ class Diagnosis:
     experiment: str
     reason: str
     exhibit: Exhibit | None = None
+    explanations: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def foretold(self) -> bool:
+        """Whether the conditions foretell each that was held out, or need not."""
+        left = UNFORETOLD * self.gap_before.value
+        return self.gap_before.value < SEEN or self.gap_after.value < left
 
     @property
     def shrink(self) -> float:
@@ -154,6 +168,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
             }
             for e in d.effects
         ],
+        "explanations": [list(labels) for labels in d.explanations],
         "candidates": [
             {
                 "effects": list(c.effects),

@@ -62,6 +62,43 @@ def test_rivals_that_are_not_told_apart_are_both_in_the_title() -> None:
     assert "do not tell which" in title
 
 
+def test_an_unknown_for_what_the_campaign_cannot_show_blames_no_effect() -> None:
+    """One level only: the delay fits, but no headline says that nothing does."""
+    outcome, bench = outcomes.outcome_of([LATE], DELAY, LOWPASS)
+    diagnosis = conclude(outcome, bench, limits="all hits have one level")
+    assert diagnosis.verdict is Finding.UNKNOWN
+    assert headline(diagnosis).startswith("These records cannot show what is missing")
+    assert why_lost(diagnosis.candidates[0], diagnosis).startswith("fits, but")
+
+
+def test_an_unknown_among_many_rivals_says_that_they_fit_alike() -> None:
+    """Four or more explanations are no answer, and none of them was refused."""
+    labels = tuple((f"{name}@channel:a1",) for name in ("a", "b", "c", "d"))
+    diagnosis = replace(found("unknown"), explanations=labels)
+    assert headline(diagnosis).startswith("Several explanations fit alike")
+
+
+def test_rival_pairs_are_joined_by_or_and_their_effects_by_and() -> None:
+    """What both hold is in both, and nothing is an alternative to itself."""
+    pairs = (
+        ("delay@channel:a1", "iwan@link:joint"),
+        ("delay@channel:a1", "jenkins@link:joint"),
+    )
+    title = headline(replace(found("ambiguous"), explanations=pairs))
+    assert title.startswith(
+        "Delay on channel a1 and iwan in the joint, or delay on channel a1 and "
+        "jenkins in the joint explains"
+    )
+
+
+def test_what_one_condition_alone_shows_is_not_told_by_a_shrink() -> None:
+    """A gap that stays when held out is no share of a gap explained."""
+    named = found("named")
+    diagnosis = replace(named, gap_before=named.gap_before, gap_after=named.gap_before)
+    assert "one condition alone shows it" in headline(diagnosis)
+    assert "%" not in headline(diagnosis)
+
+
 def test_an_unknown_says_what_it_looks_like_and_what_to_do() -> None:
     """Level, channel and time; the refused try is called refused."""
     report = gap_report(found("unknown"), title="made")

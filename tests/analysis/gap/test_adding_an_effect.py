@@ -8,8 +8,10 @@ import pytest
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.analysis.gap.catalogue import CATALOGUE
+from jointbench.analysis.gap.catalogue_linear import CROSS_TALK
 from jointbench.analysis.gap.curve_law import curve_law
 from jointbench.analysis.gap.curve_march import REACH, finest_of, look_up, tabulate
+from jointbench.analysis.gap.naming import EXACT, MODEL_ERROR
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.simulators.campaign import make_campaign
 from jointbench.simulators.campaign_file import write_campaign
@@ -126,6 +128,111 @@ def test_an_effect_that_bears_a_built_in_name_is_refused(tmp_path: Path) -> None
     own = read_effects(written(tmp_path, text.replace("quintic_", "cubic_")))
     with pytest.raises(UsageError, match="cubic_stiffness"):
         with_own(CATALOGUE, own)
+
+
+@pytest.mark.parametrize("name", ["lag", "relaxation"])
+def test_an_effect_that_bears_the_name_of_a_probe_is_refused(
+    tmp_path: Path, name: str
+) -> None:
+    """The engine would put its own probe in the place of the effect."""
+    text = example(tmp_path).read_text("utf-8")
+    own = read_effects(written(tmp_path, text.replace("quintic_stiffness", name)))
+    with pytest.raises(UsageError, match=f"may not be called '{name}'.*another"):
+        with_own(CATALOGUE, own)
+
+
+def test_every_built_in_effect_would_pass_as_an_own_one(tmp_path: Path) -> None:
+    """Hooks on their sites, and silent at amplitude 0: no rule is stricter."""
+    text = "from jointbench.analysis.gap.catalogue import CATALOGUE as EFFECTS"
+    assert read_effects(written(tmp_path, text)) == CATALOGUE
+
+
+HOOKS = {
+    "stiffness": "lambda state, v: v[0] * state.s[None, :]",
+    "law": "lambda v: curve_law(spring=lambda r: v[0] * r**2)",
+    "transfer": "lambda s, v: 1.0 + v[0] * s",
+    "mixing": "lambda v: v[0]",
+    "shape": "lambda model, measured, v, rate: model + v[0] * model**2",
+}
+STIFFER = "stiffness=lambda state, v: 0.0 * state.s[None, :] "
+
+
+def own_effect(folder: Path, sites: tuple[str, ...], hooks: str) -> Path:
+    """Write an effect of one amplitude at some sites, with its hooks as given."""
+    head = """
+import numpy as np
+from jointbench.analysis.gap.curve_law import curve_law
+from jointbench.analysis.gap.effects import Effect, Parameter
+from jointbench.analysis.gap.physics import LumpedEffect
+EFFECT = Effect("own", "own", (Parameter("a", "-", off=0.0),), "nowhere")
+"""
+    tail = f"EFFECTS = (LumpedEffect(EFFECT, {sites!r}, {hooks}),)"
+    return written(folder, head + tail)
+
+
+@pytest.mark.parametrize(
+    ("hook", "right", "wrong"),
+    [
+        ("stiffness", ("link", "body"), ("channel",)),
+        ("law", ("link",), ("body", "channel")),
+        ("transfer", ("channel",), ("link", "body")),
+        ("mixing", ("channel",), ("link", "body")),
+        ("shape", ("channel",), ("link", "body")),
+    ],
+)
+def test_a_hook_is_refused_at_a_site_where_it_would_act_on_something_else(
+    tmp_path: Path, hook: str, right: tuple[str, ...], wrong: tuple[str, ...]
+) -> None:
+    """A law at body 0 would bend link 0; all the right sites together are taken."""
+    given = f"{hook}={HOOKS[hook]}"
+    assert len(read_effects(own_effect(tmp_path, right, given))) == 1
+    for site in wrong:
+        message = f"its hook {hook} sits on {' or '.join(right)}, not on {site}$"
+        with pytest.raises(UsageError, match=message):
+            read_effects(own_effect(tmp_path, (*right, site), given))
+
+
+def test_a_rise_is_refused_at_a_body(tmp_path: Path) -> None:
+    """It would change the joint whose index is that of the body."""
+    hooks = STIFFER + ", rise=lambda conditions, v: v[0] * conditions.preload"
+    assert len(read_effects(own_effect(tmp_path, ("link",), hooks))) == 1
+    with pytest.raises(UsageError, match="its hook rise sits on link, not on body"):
+        read_effects(own_effect(tmp_path, ("link", "body"), hooks))
+
+
+def test_a_mixing_of_every_channel_is_refused(tmp_path: Path) -> None:
+    """The index of all channels is -1: it would mix into the last one alone."""
+    hooks = f"mixing={HOOKS['mixing']}, every_channel=True"
+    with pytest.raises(UsageError, match="leave every_channel out"):
+        read_effects(own_effect(tmp_path, ("channel",), hooks))
+    assert not CROSS_TALK.every_channel
+
+
+@pytest.mark.parametrize(
+    ("site", "hooks"),
+    [
+        ("link", STIFFER + "+ (state.conditions.preload**0.5 - 1.0)[:, None]"),
+        ("link", STIFFER + ", rise=lambda c, v: c.preload ** (v[0] + 0.5) - 1.0"),
+        ("body", STIFFER + "+ (state.conditions.progress == 0.5)[:, None]"),
+        ("channel", "shape=lambda model, measured, v, rate: model + 1e-9 * model**3"),
+        ("channel", "shape=lambda model, measured, v, rate: measured"),
+    ],
+)
+def test_what_only_some_records_or_signals_show_is_loud_at_amplitude_0(
+    tmp_path: Path, site: str, hooks: str
+) -> None:
+    """Every power of the preload is silent at 1, so that others are tried as well."""
+    with pytest.raises(UsageError, match="last bit"):
+        read_effects(own_effect(tmp_path, (site,), hooks))
+
+
+def test_the_page_tells_how_much_model_error_a_family_is_excused() -> None:
+    """Its numbers are those of the engine, which knows two laws by their names."""
+    page = PAGE.read_text("utf-8")
+    told = {name: float(x) for name, x in re.findall(r"`(\w+)` (\de-\d)", page)}
+    names = {entry.effect.name for entry in CATALOGUE}
+    assert told == {k: v for k, v in MODEL_ERROR.items() if k not in names}
+    assert f"Any other family gets {EXACT:.0e}".replace("e-0", "e-") in page
 
 
 def test_an_effects_file_leaves_nothing_behind(tmp_path: Path) -> None:

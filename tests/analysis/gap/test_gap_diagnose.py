@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import gap_bench as made
+import gap_outcomes as outcomes
 import h5py
 import numpy as np
 import pytest
@@ -14,9 +15,14 @@ import pytest
 from jointbench.acquisition.errors import BadData, FormatError
 from jointbench.analysis.gap.campaign import Campaign, read_campaign
 from jointbench.analysis.gap.catalogue_linear import LINEAR
-from jointbench.analysis.gap.checks import campaign_limits
-from jointbench.analysis.gap.diagnose import diagnose
+from jointbench.analysis.gap.checks import campaign_limits, flat_tops
+from jointbench.analysis.gap.descent import minimise
+from jointbench.analysis.gap.diagnose import conclude, diagnose
+from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.records import Finding, diagnosis_json
+
+LATE = ("delay", "channel:a1", [4e-5])
 
 
 def test_a_campaign_with_nothing_missing_is_told_so() -> None:
@@ -82,6 +88,40 @@ def test_the_json_holds_the_keys_of_the_contract() -> None:
         "shrink",
         "experiment",
     }
+
+
+def test_what_all_rivals_hold_is_as_sure_as_all_of_them() -> None:
+    """Two pairs that share a delay: it is twice as sure as what they do not share."""
+    outcome, bench = outcomes.outcome_of([LATE], ("delay", "channel:a1"))
+    delay = outcome.best
+    pairs = [pair_with(bench, delay, name) for name in ("extra_damping", "maxwell")]
+    both = replace(outcome, ranked=tuple(pairs), best=pairs[0], level=tuple(pairs))
+    found = conclude(both, bench)
+    assert found.verdict is Finding.AMBIGUOUS
+    sure = {e.name: e.confidence for e in found.effects}
+    assert sure["delay"] == pytest.approx(sure["extra_damping"] + sure["maxwell"])
+    assert len(found.explanations) == 2
+    assert found.experiment.startswith(("extra_damping", "maxwell"))
+    assert "delay" not in found.experiment
+
+
+def pair_with(bench: LumpedBench, first: Fit, name: str) -> Fit:
+    """Return a fit with one more effect at its smallest start."""
+    more = next(c for c in bench.candidates if c.effect.name == name)
+    start = [p.encode(p.starts[0]) if p.starts else 0.0 for p in more.effect.parameters]
+    problem = make_problem(bench, (*first.candidates, more))
+    return minimise(problem, np.concatenate([first.x, start]))
+
+
+@pytest.mark.parametrize("clipped", [False, True])
+def test_flat_tops_are_those_of_a_clipped_channel_only(clipped: bool) -> None:
+    """The crest of a slow ringing lies as near its top, yet it is round."""
+    time = np.arange(2048) / 16384.0
+    ring = np.sin(2 * np.pi * 50.0 * time) * np.exp(-20.0 * time)
+    noise = 0.002 * np.random.default_rng(4).standard_normal(time.size)
+    record = np.clip(ring, -0.6, 0.6) if clipped else ring
+    found = flat_tops((record + noise)[None, None], np.array([[0.002]]))
+    assert found == ([0] if clipped else [])
 
 
 def test_one_level_only_is_a_reason_not_to_name() -> None:

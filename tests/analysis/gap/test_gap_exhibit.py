@@ -9,7 +9,12 @@ import pytest
 
 from jointbench.analysis.gap.exhibit import make_exhibit
 from jointbench.analysis.gap.exhibit_level import is_linear, recurrences
-from jointbench.analysis.gap.exhibit_records import Exhibit, exhibit_json
+from jointbench.analysis.gap.exhibit_records import (
+    DirectedTest,
+    Exhibit,
+    exhibit_json,
+)
+from jointbench.analysis.gap.exhibit_words import EVEN, ODD, symmetry
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 
@@ -118,10 +123,31 @@ def test_a_mass_that_the_base_takes_in_is_told_by_its_sheet() -> None:
 
 
 def test_the_limits_are_those_that_the_fit_was_judged_by() -> None:
-    """Chi2 per dof and its limit are the gate's."""
+    """No directed test of a sound base is beyond the limit that is shown with it."""
+    outcome, _, exhibit = case("none")
+    assert outcome.gate.passed
+    assert exhibit.limits.chi2_per_dof < exhibit.limits.chi2_allowed
+    assert exhibit.limits.remaining is not None
+    assert 0.0 < exhibit.limits.remaining < exhibit.limits.remaining_allowed
+    threshold = outcome.base_screening.threshold
+    assert exhibit.limits.remaining_allowed == pytest.approx(1.3 * threshold)
+
+
+def test_a_fit_without_directed_tests_shows_no_limit_of_them() -> None:
+    """The outcome made by hand tests nothing of its winner."""
     outcome, _, exhibit = case("delay")
-    assert exhibit.limits.chi2_per_dof == 1.0 + outcome.gate.excess
-    assert exhibit.limits.chi2_allowed == 1.0 + outcome.gate.allowed
+    assert outcome.gate.left is None
+    assert exhibit.limits.remaining is None
+
+
+@pytest.mark.parametrize("known", [{ODD}, {EVEN}, {ODD, EVEN}])
+def test_symmetry_is_told_only_where_both_laws_were_tested(known: set[str]) -> None:
+    """What is taken out of the catalogue takes no 0 %."""
+    shares = {ODD: 0.9, EVEN: 0.2}
+    tests = [DirectedTest(f"{n}@link:joint", 10.0, shares[n]) for n in sorted(known)]
+    line = symmetry(tests)
+    assert bool(line) == (len(known) == 2)
+    assert "0 %:" not in line or "20 %:" in line
 
 
 def test_the_directed_tests_put_the_truth_first() -> None:
