@@ -19,7 +19,7 @@ from jointbench.acquisition.errors import UsageError
 POINTS = 8193
 GRADE = 16.0
 REACH = 0.01
-"""Largest motion across a link that a table holds [m]; beyond, its slope goes on."""
+"""Largest motion across a link that a table holds [m]; beyond, the value stays."""
 FASTEST = 100.0
 """Largest speed across a link that a table holds [m/s]."""
 
@@ -28,7 +28,10 @@ Curve = Callable[[FloatArray], FloatArray]
 
 @njit(cache=True, fastmath=True, inline="always")
 def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
-    """Interpolate a row of a table at x by a cubic through four points.
+    """Interpolate a row of a table at x by cubics of continuous slope.
+
+    Each goes through two points, with the slopes that their neighbours give
+    (Catmull and Rom 1974, A class of local interpolating splines).
 
     Args:
         tables: shape (n_rows, POINTS).

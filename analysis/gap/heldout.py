@@ -150,8 +150,3 @@ def conditions_of(blocks: Blocks) -> IntArray:
     ]
     index = {key: i for i, key in enumerate(dict.fromkeys(keys))}
     return np.array([index[key] for key in keys])
-
-
-def groups_won(before: HeldOut, after: HeldOut) -> float:
-    """Return the share of the groups in which chi2 fell [-]."""
-    return float(np.mean(after.chi2 < before.chi2))

@@ -229,7 +229,7 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> Outcome | None:
     """Return that nothing is missing, if the base alone fits from where it was led.
 
     In a quiet campaign whose joint settles from hit to hit the base may stop in a
-    wrong valley (2 of 1,000 without an effect). An effect that leads it out looks as
+    wrong valley (3 of 1,500 without an effect). An effect that leads it out looks as
     if it explained all that the base had missed.
     """
     if not found.fits or base.chi2 < WRONG_VALLEY * found.bench.blocks.dof:

@@ -81,7 +81,7 @@ class LumpedBench:
         return self.settled is not None
 
     def scale(self, word: str) -> float:
-        """Return the scale of a word [SI]; ``a/b^2`` and products are understood."""
+        """Return the scale of a word [SI]; ``a/b^2`` is understood."""
         if word not in self.scales:
             top, _, bottom = word.partition("/")
             base, _, power = bottom.partition("^")

@@ -54,7 +54,7 @@ def make_bench(
         probes=candidates_of(PROBES, campaign.model),
         excitation=excitation,
         gate=gate,
-        noise=Noise(sigma, force_sigma, (), scatter_known=False),
+        noise=Noise(sigma, force_sigma, ()),
         basis=np.zeros((records, 1, channels * samples)),
         shrink=np.zeros((records, 1, 1)),
         scales={},

@@ -28,7 +28,6 @@ from jointbench.analysis.gap.physics import Conditions
 if TYPE_CHECKING:
     from jointbench.analysis.gap.lumped import LumpedBench
 
-SETTLING_SEEN = 1e-5
 TELLS_NOTHING = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
 LEAST_FACTOR = 1e-3
@@ -100,11 +99,11 @@ def refine_noise(
     known = at.excitation.conditions.settling
     if known is not None:
         coefficients[:, 1] -= np.log((np.exp(known) + rise) / (1.0 + rise))
-    scatter, groups = _scatter_of(at, coefficients, variances)
-    noise = replace(noise, scatter=scatter, scatter_known=groups)
+    scatter = _scatter_of(at, coefficients, variances)
+    noise = replace(noise, scatter=scatter)
     refined = _with_noise(at, noise, columns, ways)
     lost = np.linalg.norm(residual) > TELLS_NOTHING * np.linalg.norm(model)
-    if len(scatter) < 2 or scatter[1] < SETTLING_SEEN or lost:
+    if len(scatter) < 2 or scatter[1] == 0.0 or lost:
         return settle(refined, None)
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
     off = -coefficients[:, 1] * share / scatter[1]
@@ -147,15 +146,15 @@ def _channel_noise(
 
 def _scatter_of(
     bench: "LumpedBench", coefficients: FloatArray, variances: FloatArray
-) -> tuple[tuple[float, ...], bool]:
-    """Return the scatter along each way, and whether repeats bound it."""
+) -> tuple[float, ...]:
+    """Return the scatter along each way."""
     campaign = bench.campaign
-    groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
-    count = coefficients.shape[1]
+    count = len(coefficients.T)
     if campaign.repeatability is not None:
-        return (0.0,) * count, bool(groups)
+        return (0.0,) * count
+    groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
     patterns = _patterns(bench.excitation.conditions)
-    scatter = tuple(
+    return tuple(
         gain_scatter(
             without_trend(coefficients[:, i], variances[:, i], patterns),
             variances[:, i],
@@ -163,7 +162,6 @@ def _scatter_of(
         )
         for i in range(count)
     )
-    return scatter, bool(groups)
 
 
 def _expanded(

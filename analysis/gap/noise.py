@@ -33,13 +33,11 @@ class Noise:
         sigma: white noise of each record and channel, shape (n_records, n_channels).
         force_sigma: white noise of the force [N].
         scatter: relative sd from hit to hit, of gain and of joint stiffness [-].
-        scatter_known: True where repeats bound the scatter.
     """
 
     sigma: FloatArray
     force_sigma: float
     scatter: tuple[float, ...]
-    scatter_known: bool
 
 
 def high_band_sigma(residual: FloatArray) -> FloatArray:

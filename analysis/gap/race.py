@@ -275,11 +275,11 @@ def swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
     moved = bench.residual(fit.base, (*fit.terms, Term(candidate, tail)), MIDDLE)
     d = (moved - plain) / SWAP_PROBE
     hessian = fit.jacobian.T @ fit.jacobian + 1e-6 * np.diag(fit.prior)
-    along = -np.linalg.solve(hessian, fit.jacobian.T @ d)
+    way = -np.linalg.solve(hessian, fit.jacobian.T @ d)
     off = fit.x - fit.centre
-    amplitude = -float(off @ (fit.prior * along)) / float(along @ (fit.prior * along))
+    amplitude = -float(off @ (fit.prior * way)) / float(way @ (fit.prior * way))
     amplitude = float(np.clip(amplitude, *first.bounds))
-    step = np.clip(along * amplitude, -0.5, 0.5)
+    step = np.clip(way * amplitude, -0.5, 0.5)
     return np.concatenate([fit.x + step, [amplitude]])
 
 

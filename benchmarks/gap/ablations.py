@@ -62,7 +62,7 @@ def no_pulls() -> None:
 
 
 def one_start() -> None:
-    """Give each candidate one start, on the way its directed test foretells."""
+    """Give a candidate one start of its own, as its directed test foretells it."""
     from jointbench.analysis.gap import race
 
     race.STARTS = 1
@@ -71,7 +71,7 @@ def one_start() -> None:
 
 
 def no_groups() -> None:
-    """Score all records as one, and ask no part of them."""
+    """Ask no part of the records whether it wants parameters of its own."""
     from jointbench.analysis.gap import naming
 
     naming.UNLIKE_CHANCE = naming.UNLIKE_BASE_CHANCE = -1.0

@@ -43,7 +43,7 @@ def fixed_starts(bench: LumpedBench) -> list[tuple[Candidate, FloatArray]]:
 def directions(bench: LumpedBench, fit: Fit) -> Directions:
     """Project the directions off base and priors by least squares.
 
-    The engine works in single precision and by normal equations; this is its check.
+    The engine keeps what is left in single precision; this is its check in double.
     """
     plain = bench.residual(fit.base, (), SCREEN)
     prior = np.diag(np.sqrt(fit.prior))

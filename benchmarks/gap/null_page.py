@@ -43,7 +43,7 @@ GLOBAL = """
 ## The global gate
 
 | seed | chi2/dof, mean | its sd | sd the gate reckons with | largest distance [sd] | \
-refused by the null test |
+refused by the gate |
 |---|---|---|---|---|---|
 """
 

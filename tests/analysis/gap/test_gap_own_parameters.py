@@ -50,7 +50,7 @@ def test_white_noise_wants_no_parameters_of_its_own() -> None:
     ],
 )
 def test_a_part_that_answers_otherwise_is_named(rows: np.ndarray, view: str) -> None:
-    """A part that answers 2 % more is found in the view that cuts it off."""
+    """Two sd along a slope, in one part only, are found in a view that cuts it."""
     slopes, noise = shaken()
     part = np.broadcast_to(rows, SHAPE).reshape(-1)
     unlike = worst(slopes, noise + 2.0 * part * slopes[:, 0])

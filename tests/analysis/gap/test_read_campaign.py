@@ -10,7 +10,13 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.errors import BadData, FormatError, HostileFile
-from jointbench.analysis.gap.campaign import DEFAULT_PRELOAD, Campaign, read_campaign
+from jointbench.analysis.gap.campaign import (
+    DEFAULT_PRELOAD,
+    MAX_RECORDS,
+    MAX_SAMPLES,
+    Campaign,
+    read_campaign,
+)
 
 NOMINAL = {"m1": 8.0, "m2": 4.0, "k0": 2.4e7, "c0": 300.0, "kj": 6e7, "cj": 220.0}
 SPREAD = dict.fromkeys(NOMINAL, 0.05)
@@ -18,8 +24,13 @@ RATE = 16384.0
 SAMPLES = 512
 LEVELS = (30.0, 300.0, 1000.0)
 PRELOADS = (4000.0, 4000.0, 8000.0)
-NUMBERS = (("/", "fs_hz"), ("/", "preload_ref_N"))
-RECORD_NUMBERS = (("records/r01", "level_N"), ("records/r01", "preload_N"))
+ABOVE_ZERO = (
+    ("/", "fs_hz"),
+    ("/", "preload_ref_N"),
+    ("records/r01", "level_N"),
+    ("records/r01", "preload_N"),
+)
+NUMBERS = (*ABOVE_ZERO, ("records/r01", "order"), ("records/r01", "hit_dof"))
 
 Change = Callable[[h5py.File], None]
 
@@ -135,6 +146,26 @@ def huge_accelerations(file: h5py.File) -> None:
     file["records/r01"].create_dataset("accel", shape=(2, 10**12), dtype="f4")
 
 
+def too_long(file: h5py.File) -> None:
+    """Claim a sample more than a record can have, and store none."""
+    for record in file["records"].values():
+        del record["force"], record["accel"]
+        record.create_dataset("force", shape=(MAX_SAMPLES + 1,), dtype="f4")
+        record.create_dataset("accel", shape=(2, MAX_SAMPLES + 1), dtype="f4")
+
+
+def too_many(file: h5py.File) -> None:
+    """Claim a record more than a campaign can have."""
+    for i in range(MAX_RECORDS - len(LEVELS) + 1):
+        file.create_group(f"records/x{i:04d}")
+
+
+def longer_record(file: h5py.File) -> None:
+    """Make one record a sample longer than the others, in force and response."""
+    dataset("force", np.zeros(SAMPLES + 1))(file)
+    dataset("accel", np.zeros((2, SAMPLES + 1)))(file)
+
+
 def bytes_no_text(file: h5py.File) -> None:
     """Store a sheet that is no text in any encoding of texts."""
     file.attrs["nominal"] = np.bytes_(b"\xff\xfe{")
@@ -149,7 +180,8 @@ WRONG_SHAPES = [
     (dataset("force", 1.0), "r01.*force"),
     (everywhere("force", 1.0), "force"),
     (everywhere("force", np.zeros((2, SAMPLES))), "force.*2, 512"),
-    (dataset("force", np.zeros(SAMPLES + 1)), "512, 513"),
+    (dataset("force", np.zeros(SAMPLES + 1)), r"r01.*accel.*\(2, 513\)"),
+    (longer_record, "512, 513"),
 ]
 WRONG_KINDS = [
     (dataset("force", np.full(SAMPLES, b"x")), "r01.*force.*numbers"),
@@ -165,22 +197,20 @@ WRONG_KINDS = [
 WRONG_ATTRIBUTES = [
     *[
         (attribute(where, name, value), f"{name}.*number")
-        for where, name in (
-            *NUMBERS,
-            *RECORD_NUMBERS,
-            ("records/r01", "order"),
-            ("records/r01", "hit_dof"),
-        )
+        for where, name in NUMBERS
         for value in ("x", "", "4 kN", np.zeros(2), h5py.Empty("f8"))
     ],
     *[
         (attribute(where, name, value), f"{name}.*above zero")
-        for where, name in (*NUMBERS, *RECORD_NUMBERS)
-        for value in (0.0, -1.0, np.nan, np.inf, "nan")
+        for where, name in ABOVE_ZERO
+        for value in (0.0, -1.0)
     ],
-    *[(attribute("records/r01", "order", v), "order") for v in (np.nan, np.inf)],
-    *[(attribute("records/r01", "hit_dof", v), "hit_dof") for v in (2, -1, 0.5)],
-    (attribute("records/r01", "hit_dof", np.nan), "hit_dof"),
+    *[
+        (attribute(where, name, value), f"{name}.*finite")
+        for where, name in NUMBERS
+        for value in (np.nan, np.inf, "nan")
+    ],
+    *[(attribute("records/r01", "hit_dof", v), "r01.*0 or 1") for v in (2, -1, 0.5)],
     (attribute("/", "schema", np.zeros(3)), "schema"),
     (without_attribute("/", "schema"), "schema"),
     (without_attribute("/", "fs_hz"), "fs_hz"),
@@ -240,12 +270,20 @@ def test_a_sheet_with_a_value_that_no_body_has_is_refused(
         read_changed(tmp_path, change)
 
 
-@pytest.mark.parametrize("change", [huge_accelerations, no_records])
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        (huge_accelerations, "r01/accel"),
+        (too_long, "1048577 samples"),
+        (too_many, "1025 records"),
+        (no_records, "0 records"),
+    ],
+)
 def test_a_campaign_that_claims_more_or_less_than_any_is_refused_unread(
-    tmp_path: Path, change: Change
+    tmp_path: Path, change: Change, word: str
 ) -> None:
     """Eight terabytes of accelerations are not asked for; no record is no campaign."""
-    with pytest.raises(HostileFile):
+    with pytest.raises(HostileFile, match=word):
         read_changed(tmp_path, change)
 
 
@@ -259,7 +297,7 @@ def test_accelerations_of_a_wrong_shape_are_refused_before_a_sample_is_read(
 
     monkeypatch.setattr(h5py.Dataset, "__getitem__", unwanted)
     monkeypatch.setattr(h5py.Dataset, "__array__", unwanted)
-    with pytest.raises(FormatError, match="accel"):
+    with pytest.raises(FormatError, match="'accel' of shape"):
         read_changed(tmp_path, dataset("accel", np.zeros((3, SAMPLES))))
 
 
