@@ -172,13 +172,14 @@ def response_function(spectra: Spectra, *, tried: str) -> Figure:
     )
 
 
-def wish_figure(wishes: Wishes, *, against: str, tried: str) -> Figure:
+def wish_figure(wishes: Wishes, *, against: str, tried: str, unit: str) -> Figure:
     """Return the joint stiffness and damping each record would choose by itself.
 
     Args:
         wishes: of the records.
         against: `level` or `preload`.
         tried: legend of the model with the effects; empty where there is none.
+        unit: of level and preload.
     """
     x = wishes.level if against == "level" else wishes.preload
     met = [float(value) for value in np.unique(x)]
@@ -190,10 +191,10 @@ def wish_figure(wishes: Wishes, *, against: str, tried: str) -> Figure:
             traces += _wish_points(wishes, x * shift, column, name, color)
     return figure(
         traces,
-        axis(f"{against} [N]", log=True, domain=[0.0, 0.45], **ticks),
+        axis(f"{against} [{unit}]", log=True, domain=[0.0, 0.45], **ticks),
         axis("change of stiffness [%]"),
         xaxis2=axis(
-            f"{against} [N]", log=True, domain=[0.56, 1.0], anchor="y2", **ticks
+            f"{against} [{unit}]", log=True, domain=[0.56, 1.0], anchor="y2", **ticks
         ),
         yaxis2=axis("change of damping [%]", anchor="x2"),
     )

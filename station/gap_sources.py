@@ -12,7 +12,7 @@ from jointbench.acquisition.netcdf_read import read_attribute
 from jointbench.acquisition.records import Recording
 from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_file import SESSION_SCHEMA, read_session
-from jointbench.analysis.gap.campaign import read_campaign
+from jointbench.analysis.gap.campaign_file import read_campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.physics import LumpedEffect

@@ -143,7 +143,7 @@ def _mechanical(name: str, entry: Any, units: tuple[str, str, int]) -> Any:
         if kind not in _STAND_INS or match is None:
             continue
         power, si = _STAND_INS[kind]
-        wanted = _unit_text(*units[:2], power - units[2])
+        wanted = unit_text(*units[:2], power - units[2])
         if _bare(match[2]) != _bare(wanted):
             raise ValueError(
                 f"{key} of {name!r} is {value!r}; the record's units make it "
@@ -153,7 +153,7 @@ def _mechanical(name: str, entry: Any, units: tuple[str, str, int]) -> Any:
     return changed
 
 
-def _unit_text(source: str, sink: str, power: int) -> str:
+def unit_text(source: str, sink: str, power: int) -> str:
     """Return ``V s^2/V`` and the like."""
     below = f"({sink})" if "/" in sink else sink
     if power < 0:

@@ -210,7 +210,12 @@ def _spectra(exhibit: Exhibit, tried: str) -> list[Item]:
                 "wishes",
                 "The stiffness and damping of the joint that each record would choose "
                 "by itself, as a change from the model; a right model leaves 0.",
-                wish_figure(exhibit.wishes, against=against, tried=tried),
+                wish_figure(
+                    exhibit.wishes,
+                    against=against,
+                    tried=tried,
+                    unit=exhibit.force_unit,
+                ),
                 320,
             )
         )
@@ -269,6 +274,7 @@ def _tests(exhibit: Exhibit) -> DataTable:
 def _limits(found: Diagnosis) -> tuple[Item, ...]:
     largest, limit = found.null_statistic
     noise = found.noise
+    force_unit = found.exhibit.force_unit if found.exhibit is not None else "N"
     rows = [
         (
             "null test of the base",
@@ -302,7 +308,7 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
     )
     floor = (
         f"Noise floor: {noise['sigma_min']:.3g} to {noise['sigma_max']:.3g} of the "
-        f"response's unit, {noise['force_sigma_N']:.3g} N of the force. "
+        f"response's unit, {noise['force_sigma_N']:.3g} {force_unit} of the force. "
         f"Repeatability: hits scatter by {100 * noise['scatter_gain']:.2g} % in "
         f"strength, the joint by {100 * noise['scatter_joint']:.2g} % in stiffness; "
         "an effect that does no more than that cannot be seen."

@@ -163,6 +163,7 @@ class Exhibit:
         wishes: of the records for the joint; None where the model has no joint.
         limits: what a right model may leave.
         tests: directed tests of the base, largest first.
+        force_unit: of force and level.
     """
 
     tried: str
@@ -176,6 +177,7 @@ class Exhibit:
     wishes: Wishes | None
     limits: Limits
     tests: tuple[DirectedTest, ...]
+    force_unit: str = "N"
 
 
 def exhibit_json(exhibit: Exhibit) -> dict[str, Any]:

@@ -29,7 +29,7 @@ def judged_as(name: str, whole: bool) -> str:
 
 def judge_one(truth_path: Path, *, whole: bool) -> dict[str, Any]:
     """Return the truth and the diagnosis of one campaign."""
-    from jointbench.analysis.gap.campaign import read_campaign
+    from jointbench.analysis.gap.campaign_file import read_campaign
     from jointbench.analysis.gap.diagnose import diagnose
     from jointbench.analysis.gap.records import diagnosis_json
 

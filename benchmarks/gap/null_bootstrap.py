@@ -33,7 +33,8 @@ from null_page import QUANTILES, page
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.base_fit import fit_base
-from jointbench.analysis.gap.campaign import Campaign, read_campaign
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.campaign_file import read_campaign
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.forward import respond

@@ -15,7 +15,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from jointbench.analysis.gap.campaign import read_campaign
+from jointbench.analysis.gap.campaign_file import read_campaign
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.records import Diagnosis
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from jointbench.analysis.gap.campaign import read_campaign
+from jointbench.analysis.gap.campaign_file import read_campaign
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.records import Diagnosis, Finding
 from jointbench.simulators.campaign import Campaign, make_campaign, quick_campaign

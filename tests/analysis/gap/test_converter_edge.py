@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.campaign import read_campaign
+from jointbench.analysis.gap.campaign_file import read_campaign
 from jointbench.analysis.gap.converter_edge import with_converter_edge
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.forward import pass_band_end

@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.errors import BadData, FormatError
-from jointbench.analysis.gap.campaign import Campaign, read_campaign
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.campaign_file import read_campaign
 from jointbench.analysis.gap.catalogue_linear import LINEAR
 from jointbench.analysis.gap.checks import campaign_limits, flat_tops
 from jointbench.analysis.gap.descent import minimise

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.errors import BadData, FormatError, HostileFile
-from jointbench.analysis.gap.campaign import (
+from jointbench.analysis.gap.campaign import Campaign
+from jointbench.analysis.gap.campaign_file import (
     DEFAULT_PRELOAD,
     MAX_RECORDS,
     MAX_SAMPLES,
-    Campaign,
     read_campaign,
 )
 
