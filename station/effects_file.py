@@ -17,7 +17,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.gap.effects import Parameter
+from jointbench.analysis.gap.effects import PROBE_FAMILY, Parameter
 from jointbench.analysis.gap.march import CURVES
 from jointbench.analysis.gap.physics import Conditions, ElementState, LumpedEffect
 from jointbench.analysis.gap.probes import PROBES
@@ -138,6 +138,8 @@ def _fault(entry: LumpedEffect) -> str:
         return "the name must be words in small letters joined by _"
     if not parameters:
         return "it has no parameter; the first is its amplitude"
+    if entry.effect.family == PROBE_FAMILY:
+        return "its family is that of what is never named; give it another"
     if parameters[0].off != 0.0:
         return "its first parameter must be an amplitude with off=0.0"
     if not entry.sites or not set(entry.sites) <= set(SITES):

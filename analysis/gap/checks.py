@@ -7,7 +7,8 @@ from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.noise import repeat_groups
 
-LEVEL_SPAN = 1.5
+ONE_LEVEL = 1.5
+"""Ratio of the hardest hit to the softest below which all have one level."""
 FLAT_SAMPLES = 6
 """Pairs of neighbours at the common maximum from which a record counts as clipped."""
 AT_TOP_SD = 5.0
@@ -29,7 +30,7 @@ def campaign_limits(campaign: Campaign) -> str:
             "are needed: hit each point at three levels, twice"
         )
     level = np.abs(campaign.force).max(axis=1)
-    if level.max() < LEVEL_SPAN * level.min():
+    if level.max() < ONE_LEVEL * level.min():
         return (
             f"all hits have one level ({level.min():.0f} to {level.max():.0f} N): "
             "nothing that depends on it can be told apart; hit over 30x in level"

@@ -38,7 +38,12 @@ MOST_HELD_BACK = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Hopes:
-    """What directed tests of a fit foretold of one more effect on it."""
+    """What directed tests of a fit foretold of one more effect on it.
+
+    Attributes:
+        onto: the fit.
+        screening: its directed tests.
+    """
 
     onto: Fit
     screening: Screening

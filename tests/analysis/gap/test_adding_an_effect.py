@@ -106,6 +106,7 @@ def test_an_effects_file_that_is_unsound_is_refused(
     [
         ("quintic_stiffness", "Quintic", "small letters"),
         ("off=0.0", "off=None", "amplitude"),
+        ('"stiffness"', '"probe"', "never named"),
         ('("link",)', '("joint",)', "sites"),
         ("law=quintic,", "", "hook"),
         ("k5 * r**5", "(k5 + 1.0) * r**5", "last bit"),
