@@ -17,7 +17,7 @@ from jointbench.analysis.gap.effects import Candidate, Reported, Term, words_of
 from jointbench.analysis.gap.exhibit import make_exhibit
 from jointbench.analysis.gap.exhibit_where import counted_samples
 from jointbench.analysis.gap.fit import Fit, make_problem
-from jointbench.analysis.gap.heldout import hold_out
+from jointbench.analysis.gap.heldout import HeldOut, hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
@@ -89,12 +89,13 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
     elif finding is Finding.AMBIGUOUS:
         shown = outcome.level
     best = outcome.best if outcome.gate.passed else base
+    held = hold_out(base, bench)
     found = Diagnosis(
         verdict=finding,
         effects=_effects(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
-        gap_before=_gap(bench, base),
-        gap_after=_gap(bench, best),
+        gap_before=_gap(bench, base, held),
+        gap_after=_gap(bench, best, hold_out(best, bench, held)),
         pulls={
             name: (float(b), float(a))
             for name, b, a in zip(bench.base_names, base.pulls, best.pulls, strict=True)
@@ -179,8 +180,7 @@ def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:
     )
 
 
-def _gap(bench: LumpedBench, fit: Fit) -> Gap:
-    held = hold_out(fit, bench)
+def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
     return Gap(
         held.gap, held.chi2_per_dof, float(np.abs(fit.pulls).max()), bench.views(fit)
     )

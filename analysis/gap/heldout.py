@@ -55,7 +55,7 @@ class HeldOut:
         return float(np.sqrt(max(0.0, self.chi2_per_dof - 1.0)))
 
 
-def hold_out(fit: Fit, bench: Bench) -> HeldOut:
+def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
     """Hold out every condition in turn, its repeats with it.
 
     Where there is but one condition, the sheet alone foretells it.
@@ -63,6 +63,8 @@ def hold_out(fit: Fit, bench: Bench) -> HeldOut:
     Args:
         fit: a minimum.
         bench: on which it was found.
+        bare: of the fit without effects, which foretells what is left where all
+            effects are off.
     """
     blocks = bench.blocks
     condition = conditions_of(blocks)
@@ -73,13 +75,17 @@ def hold_out(fit: Fit, bench: Bench) -> HeldOut:
         rows = np.isin(blocks.group, np.flatnonzero(condition == c))
         j, r = fit.jacobian[rows], fit.residual[rows]
         others = hessian - j.T @ j
-        left = r + j @ np.linalg.lstsq(others, j.T @ r, rcond=1e-12)[0]
-        if not rows.all():
-            lone = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
-            if lone.any() or left @ left > LONG_STEP * (r @ r):
-                left = _fitted_without(fit, bench, rows, lone)
-        chi2.append(float(left @ left))
         dof.append(share * rows.sum())
+        left = r + j @ np.linalg.lstsq(others, j.T @ r, rcond=1e-12)[0]
+        chi2.append(float(left @ left))
+        if rows.all():
+            continue
+        lone = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
+        if bare is not None and lone.size and lone.all():
+            chi2[c] = float(bare.chi2[c])
+        elif lone.any() or chi2[c] > LONG_STEP * (r @ r):
+            left = _fitted_without(fit, bench, rows, lone)
+            chi2[c] = float(left @ left)
     return HeldOut(np.array(chi2), np.array(dof))
 
 
