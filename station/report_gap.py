@@ -91,6 +91,8 @@ def _tiles(found: Diagnosis) -> tuple[Tile, ...]:
 def _sure(found: Diagnosis) -> str:
     if not found.effects:
         return ""
+    if found.verdict is Finding.AMBIGUOUS:
+        return f"{len(found.explanations)} explanations fit alike"
     return f"confidence {sure(max(e.confidence for e in found.effects))}"
 
 

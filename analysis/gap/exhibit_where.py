@@ -74,7 +74,7 @@ def locate(
     counted = counted_samples(bench)
     excess = np.maximum(np.sum(residual**2, axis=2) - counted, 0.0)
     total = max(float(excess.sum()), 1e-300)
-    parts = [_level_words(bench, excess, levels)]
+    parts = [] if bench.campaign.continuous else [_level_words(bench, excess, levels)]
     channels = excess.sum(axis=0) / total
     top = int(np.argmax(channels))
     name = bench.campaign.model.channels[top].name
@@ -89,7 +89,7 @@ def locate(
     parts += [
         words for view in CONTROLLED if (words := _uneven_words(bench, signed, view))
     ]
-    return "the misfit " + ", ".join(parts)
+    return f"the misfit {'is ' if bench.campaign.continuous else ''}{', '.join(parts)}"
 
 
 def pulled(bench: LumpedBench, base: Fit) -> str:

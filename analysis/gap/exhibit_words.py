@@ -38,7 +38,7 @@ def describe(
         tests: directed tests of the base.
     """
     lines = [
-        _level_line(levels, several=np.unique(bench.campaign.level).size > 1),
+        _level_line(bench, levels),
         _channel_line(relative["output"]),
         _phase_line(bench, residual),
         "" if is_linear(levels) else symmetry(tests),
@@ -56,6 +56,8 @@ def advise(bench: LumpedBench, relative: Relative, levels: Sequence[Recurrence])
         relative: misfit over response by view and slice [-].
         levels: recurrence at softer hits.
     """
+    if bench.campaign.continuous:
+        return "shake at levels over a factor of 10; then try a law of your own"
     if np.unique(bench.campaign.level).size < 2:
         return "hit at four levels over a factor of 30: one level cannot tell causes"
     if not levels:
@@ -71,8 +73,10 @@ def advise(bench: LumpedBench, relative: Relative, levels: Sequence[Recurrence])
     return "hit at more points and preloads; look for a part that the model leaves out"
 
 
-def _level_line(levels: Sequence[Recurrence], *, several: bool) -> str:
-    if not several:
+def _level_line(bench: LumpedBench, levels: Sequence[Recurrence]) -> str:
+    if bench.campaign.continuous:
+        return ""
+    if np.unique(bench.campaign.level).size < 2:
         return "level: seen at one level only; hit harder and softer"
     if not levels:
         return "level: the noise hides whether softer hits show it; hit harder"
@@ -128,11 +132,11 @@ def symmetry(tests: Sequence[DirectedTest]) -> str:
 def _wish_lines(wishes: Wishes) -> list[str]:
     if wishes.share < TAKEN:
         return [
-            "joint: a stiffness and damping of its own for each hit would take only "
+            "joint: a stiffness and damping of its own for each record would take only "
             f"{100 * wishes.share:.0f} % of the misfit, so more than those is at work"
         ]
     lines = [
-        "joint: a stiffness and damping of its own for each hit would take "
+        "joint: a stiffness and damping of its own for each record would take "
         f"{100 * wishes.share:.0f} % of the misfit"
     ]
     for word, values, sd in (

@@ -169,5 +169,8 @@ def test_a_shaken_bench_without_hits_has_its_exhibit_too() -> None:
     outcome, bench = outcomes.outcome_of([LATE], continuous=True)
     exhibit = make_exhibit(bench, outcome.base, outcome)
     assert "a1" in exhibit.where
+    assert exhibit.where.startswith("the misfit is ")
+    assert not any("level" in line or "hit" in line for line in exhibit.look)
+    assert "hit" not in exhibit.curves.condition
     assert not any(line.startswith("time:") for line in exhibit.look)
     assert exhibit.curves.time.size > 100
