@@ -104,8 +104,12 @@ def switch_off(variant: str) -> None:
 
 def chosen(folder: Path, count: int) -> list[Path]:
     """Return as many campaigns of each kind."""
-    each = count // len(KINDS)
-    return [p for kind in KINDS for p in sorted(folder.glob(f"{kind}-*.json"))[:each]]
+    chosen: list[Path] = []
+    for kind in KINDS:
+        paths = folder.glob(f"{kind}-*.json")
+        found = sorted(p for p in paths if "truth" not in p.name)
+        chosen += found[: count // len(KINDS)]
+    return chosen
 
 
 def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
