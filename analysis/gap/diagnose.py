@@ -13,7 +13,13 @@ from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.checks import campaign_limits, flat_tops
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.effects import Candidate, Reported, Term, words_of
+from jointbench.analysis.gap.effects import (
+    Candidate,
+    Reported,
+    Term,
+    labels_of,
+    words_of,
+)
 from jointbench.analysis.gap.exhibit import make_exhibit
 from jointbench.analysis.gap.exhibit_where import counted_samples
 from jointbench.analysis.gap.fit import Fit, make_problem
@@ -291,11 +297,20 @@ def _experiment(outcome: Outcome, finding: Finding) -> str:
     """Return the experiment that separates what is left."""
     if finding is Finding.NONE:
         return "none needed; to look deeper, hit at more levels and preloads"
-    if finding is Finding.NAMED and len(outcome.ranked) > 1:
-        return _separates(outcome.ranked[0], outcome.ranked[1])
+    if finding is Finding.NAMED and (rivals := _otherwise(outcome)):
+        return _separates(outcome.ranked[0], rivals[0])
     if finding is Finding.AMBIGUOUS:
         return _separates(outcome.level[0], outcome.level[1])
     return "look at the views of the gap; widen levels, points and preloads"
+
+
+def _otherwise(outcome: Outcome) -> list[Fit]:
+    """Return the fits that hold neither all effects of the best nor only such."""
+    if not outcome.ranked:
+        return []
+    own = labels_of(outcome.ranked[0].candidates)
+    others = [(labels_of(f.candidates), f) for f in outcome.ranked]
+    return [f for labels, f in others if not (labels <= own or own <= labels)]
 
 
 def _separates(first: Fit, second: Fit) -> str:
