@@ -150,7 +150,9 @@ def page(runs: list[Run], engine: str) -> str:
         "off at a time. Right: the very name, or none where nothing is missing. Wrong: "
         "another name, or any where nothing is missing. The rest is doubt: ambiguous, "
         "unknown, or none where an effect is hidden. Margins are log-uniform from 1 to "
-        "10,000, so that a part of the effects cannot be named by anyone.",
+        "10,000, so that a part of the effects cannot be named by anyone. Without "
+        "multi-start a candidate has one start of its own; without group scoring no "
+        "part of the records is asked whether it wants parameters of its own.",
         f"Engine: {engine}." if engine else "",
         "",
         "| engine | nothing missing: right, wrong, of | margin >= 50: right, wrong, of "
