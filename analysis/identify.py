@@ -24,6 +24,7 @@ from jointbench.analysis.joint_search import Optimum, find_optima
 from jointbench.analysis.lumped import LumpedModel, incidence
 from jointbench.analysis.lumped_modes import solve_modes
 from jointbench.analysis.measured_modes import MeasuredModes
+from jointbench.signal.blas_threads import one_blas_thread
 
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
@@ -42,6 +43,7 @@ _NO_SD = 1e3
 _LISTED = 7
 
 
+@one_blas_thread
 def identify_links(
     model: LumpedModel,
     measured: MeasuredModes,

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray
+from jointbench.signal.blas_threads import one_blas_thread
 from jointbench.signal.fractal_bands import FEWEST_LAGS, find_band
 from jointbench.signal.fractal_choice import Choice, choose, spans_decade
 from jointbench.signal.fractal_judgement import Judgement, judge
@@ -77,6 +78,7 @@ def fractal_from_line(
     return FractalLine(dimension, float(10 ** (level / (2 * (dimension - 1)))))
 
 
+@one_blas_thread
 def fit_fractal(
     estimate: StructureFunction,
     *,

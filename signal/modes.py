@@ -9,6 +9,7 @@ from jointbench.acquisition.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.errors import NoModeFound, UsageError
 from jointbench.acquisition.records import Step, step
 from jointbench.signal.band import choose_band
+from jointbench.signal.blas_threads import one_blas_thread
 from jointbench.signal.choices import Choices, overrule
 from jointbench.signal.frf import Frf
 from jointbench.signal.kalman import stage_gain_of
@@ -82,6 +83,7 @@ class ModalResult:
         freeze(self, "synthesis_error")
 
 
+@one_blas_thread
 def identify_modes(
     frf: Frf,
     settings: ModalSettings | None = None,
