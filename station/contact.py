@@ -242,6 +242,7 @@ def _point_json(point: ContactPoint) -> dict[str, object]:
         if damping
         else None,
         "largest_area": state.largest_area,
+        # null beyond the largest double, near the lower end of the dimension
         "critical_area": state.critical_area,
         "real_area": state.real_area,
         "stiffness_parts": dict(state.stiffness_parts),
