@@ -69,6 +69,7 @@ def parse_surfcom(lines: Sequence[str], path: Path, origin: Step, name: str) -> 
     heights = np.array(
         [parse_cell(text, i + 1 + _HEADER_LINES, path) for i, text in enumerate(cells)]
     )
+    _require_whole_last_height(cells, path)
     missing = np.isnan(heights)
     if np.any(np.isinf(heights)):
         raise FormatError(f"{named(path)} holds an infinite height")
@@ -103,6 +104,16 @@ def parse_surfcom(lines: Sequence[str], path: Path, origin: Step, name: str) -> 
         return profile
     reached = range_caution(profile, known.reach)
     return replace(profile, provenance=(*profile.provenance, *reached))
+
+
+def _require_whole_last_height(cells: Sequence[str], path: Path) -> None:
+    """Refuse a last height with fewer decimals than any other: it is cut off."""
+    decimals = [len(cell.partition(".")[2]) for cell in cells]
+    if len(decimals) > 1 and decimals[-1] < min(decimals[:-1]):
+        raise FormatError(
+            f"{named(path)} ends within its last height, {shown(cells[-1])}; it is cut "
+            "short, export it again"
+        )
 
 
 def _spacing(

@@ -173,8 +173,11 @@ def surface_of(
         faces = found if len(found) == FACES else found * FACES
         chains = [analyse_surface(s) for _, s in faces]
         said = [one for chain in chains for one in chain_cautions(chain)]
-        found_one = equivalent_surface([chain.structure for chain in chains])
-        return replace(found_one, cautions=tuple(dict.fromkeys(said)))
+        try:
+            whole = equivalent_surface([chain.structure for chain in chains])
+        except BadData as error:  # what is odd about the heights may be the cause
+            raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
+        return replace(whole, cautions=tuple(dict.fromkeys(said)))
     if dimension is None or roughness is None or files:
         raise UsageError(
             "give either --dimension and --roughness, or --surface for one face (both "

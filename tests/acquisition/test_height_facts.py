@@ -120,6 +120,14 @@ def test_a_trace_that_ends_at_the_limit_of_its_range_is_said_to(tmp_path):
     assert "1 heights lie at the limit of the range" in said(read_surface(path))
 
 
+def test_a_surfcom_trace_cut_within_its_last_height_is_refused(tmp_path):
+    """As many heights as declared, the last one of fewer decimals."""
+    path = surfcom(tmp_path / "a.tx1")
+    path.write_bytes(path.read_bytes()[:-4])
+    with pytest.raises(FormatError, match="ends within its last height"):
+        read_surface(path)
+
+
 # --- Dektak, Gwyddion, Keyence ------------------------------------------------------
 
 

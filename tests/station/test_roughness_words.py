@@ -5,13 +5,18 @@ import json
 import numpy as np
 import pytest
 
+from jointbench.acquisition.import_surfaces import read_surface
+from jointbench.acquisition.session import new_session
 from jointbench.simulators.rough_surface import rough_profile
 from jointbench.simulators.surface_files import write_surfcom
 from jointbench.station.contact import surface_of
 from jointbench.station.main import app, exit_code
+from jointbench.station.process_session import process_session
+from jointbench.station.recipe import Recipe
 from jointbench.station.report_page import DataTable
 from jointbench.station.report_surface import surface_section
 from jointbench.station.roughness_words import contact_surface_words
+from jointbench.station.stage_store import StageStore
 from jointbench.station.surface import run_surface
 
 MATERIAL = ["--modulus=29.3 GPa", "--hardness=1.5 GPa", "--load=4 kN", "--model=ke_2d"]
@@ -121,6 +126,8 @@ def test_cautions_of_the_heights_reach_screen_json_report_and_import(
     assert "12 equal heights" in found["cautions"][0]
     texts = [getattr(item, "text", "") for item in surface_section(chains).items]
     assert any("12 equal heights" in text for text in texts)
+    assert run(monkeypatch, "contact", "--surface", path, *MATERIAL) == 3
+    assert "; flat: caution: the trace ends in 12 equal" in capsys.readouterr().err
     session = tmp_path / "session.h5"
     assert run(monkeypatch, "import", path, "--out", session) == 0
     assert "12 equal heights" in capsys.readouterr().out
@@ -138,3 +145,14 @@ def test_cautions_of_a_face_stand_beside_the_contact_prediction(
     assert "face: caution: no TX3 file" in capsys.readouterr().out
     found = json.loads(target.read_text(encoding="utf-8"))
     assert len(found["cautions"]) == 1
+
+
+def test_cautions_of_a_session_stand_among_the_remarks_of_its_results(tmp_path):
+    """What a recipe makes of a face says what is odd about its heights."""
+    trace = rough_profile(400, dimension=1.5, roughness=1e-10, spacing=5e-7, seed=3)
+    write_surfcom(trace, tmp_path / "face.tx1")
+    face = read_surface(tmp_path / "face.tx1")
+    session = new_session(source="test", simulated=True, surfaces=[face])
+    stages = StageStore(tmp_path / "stages")
+    found = process_session(session, "0" * 64, Recipe(), stages)
+    assert any("Surface face: caution: no TX3" in said for said in found.remarks)
