@@ -7,8 +7,10 @@ from pathlib import Path
 
 from jointbench.acquisition.errors import FormatError, UnitError
 from jointbench.acquisition.grids import length_of, masked, rows_of
+from jointbench.acquisition.height_facts import caution, half_digit
 from jointbench.acquisition.records import Step, step
 from jointbench.acquisition.surfaces import Areal
+from jointbench.acquisition.tables import NUMBER
 from jointbench.acquisition.text_files import named
 from jointbench.acquisition.units import to_si
 
@@ -34,7 +36,8 @@ def parse_gwyddion(lines: Sequence[str], path: Path, origin: Step, name: str) ->
         name: of the map.
 
     Returns:
-        The heights [m]; pixels are width / columns by height / rows.
+        The heights [m]; pixels are width / columns by height / rows, with a caution
+        where they are not square.
 
     Raises:
         UnitError: width, height or the values have no unit of length.
@@ -56,10 +59,12 @@ def parse_gwyddion(lines: Sequence[str], path: Path, origin: Step, name: str) ->
         raise FormatError(f"{named(path)} ends after its header; export it again")
     shape = (len(body), len(body[0][1]))
     heights, valid = masked(rows_of(iter(body), shape, path) * unit, path)
+    pixel = (height / shape[0], width / shape[1])
+    rounding = sum(_rounding(values[i]) for i in (1, 2))
     return Areal(
         name=name,
         heights=heights,
-        spacing=(height / shape[0], width / shape[1]),
+        spacing=pixel,
         valid=valid,
         provenance=(
             origin,
@@ -70,5 +75,38 @@ def parse_gwyddion(lines: Sequence[str], path: Path, origin: Step, name: str) ->
                 channel=values[0],
                 missing_points=int((~valid).sum()),
             ),
+            *_square_or_said(pixel, shape, rounding),
         ),
     )
+
+
+def _rounding(cell: str) -> float:
+    """Return the share of a printed length that its rounding leaves open [-]."""
+    match = NUMBER.match(cell)
+    value = float(match[0]) if match else 0.0
+    return half_digit(match[0]) / value if match and value > 0 else 0.0
+
+
+def _square_or_said(
+    pixel: tuple[float, float], shape: tuple[int, int], rounding: float
+) -> tuple[Step, ...]:
+    """Say where pixels are not square: some scans are so, and every cut file is.
+
+    The header has the size of the map and no number of rows: a file that lost rows
+    reads as a whole one of longer pixels.
+    """
+    if abs(pixel[0] / pixel[1] - 1) <= rounding + 0.5 / shape[0]:
+        return ()
+    wanted = shape[0] * pixel[0] / pixel[1]
+    lost = (
+        f" If the map was scanned with square pixels the file has lost "
+        f"{wanted - shape[0]:.0f} of {wanted:.0f} rows"
+        if wanted > shape[0]
+        else " If the map was scanned with square pixels it holds rows too many"
+    )
+    said = (
+        f"pixels are {1e6 * pixel[1]:.4g} um along the rows and {1e6 * pixel[0]:.4g} "
+        f"um across them.{lost}, and the pitch across the rows is wrong; the pitch "
+        "along them holds"
+    )
+    return (caution(said),)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from jointbench.acquisition.dektak import is_dektak, parse_dektak
 from jointbench.acquisition.gwyddion_text import is_gwyddion, parse_gwyddion
+from jointbench.acquisition.height_facts import LONGEST, LONGEST_TABLE, checked
 from jointbench.acquisition.height_tables import (
     header_columns,
     surface_columns,
@@ -63,7 +64,7 @@ def read_surface(
 
     Returns:
         Heights in metres with a mask of the points that are there. Provenance tells
-        what the file was taken for and why.
+        what the file was taken for and why, and holds `cautions`.
 
     Raises:
         BadData: the file cannot be opened, or is none of these; the subclass and the
@@ -71,32 +72,38 @@ def read_surface(
         UsageError: `columns` names something unknown.
     """
     path = Path(path)
+    surface, is_table = _read(path, columns, name)
+    return checked(surface, path, longest=LONGEST_TABLE if is_table else LONGEST)
+
+
+def _read(path: Path, columns: str | None, name: str | None) -> tuple[Surface, bool]:
+    """Return the surface as its reader makes it, and whether that was a table."""
     wanted = None if columns is None else surface_columns(columns)
     label = path.stem if name is None else name
     array = is_array_file(path)
     origin = step("import", file=path.name, sha256=file_digest(path))
     if array:
         table = load_table(path, columns=None if wanted is None else len(wanted))
-        return surface_from_table(table, wanted, origin, label)
+        return surface_from_table(table, wanted, origin, label), True
     if wanted is None and is_vendor_name(path) and not _is_plain(path):
-        return read_vendor(path, origin, label)
+        return read_vendor(path, origin, label), False
     data = read_bytes(path)
     if wanted is None and is_keyence(data):
-        return parse_keyence(data, path, origin, label)
+        return parse_keyence(data, path, origin, label), False
     text, encoding = decode(data, path)
     lines = text_lines(text, path)
     if wanted is None:
         for recognise, parse in _TEXTS:
             if recognise(lines):
-                return parse(lines, path, origin, label)
+                return parse(lines, path, origin, label), False
         if is_surfcom(lines, path):
-            return parse_surfcom(lines, path, origin, label)
+            return parse_surfcom(lines, path, origin, label), False
     if is_stylus_list(lines) and (wanted is None or len(wanted) == 1):
         column = None if wanted is None else wanted[0]
-        return parse_stylus_list(lines, path, origin, label, column)
+        return parse_stylus_list(lines, path, origin, label, column), False
     table = parse_table(lines, path, encoding)
     found = header_columns(table) if wanted is None else wanted
-    return surface_from_table(table, found, origin, label)
+    return surface_from_table(table, found, origin, label), True
 
 
 def _is_plain(path: Path) -> bool:

@@ -18,6 +18,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import FormatError, HostileFile, UnitError
+from jointbench.acquisition.height_facts import caution
 from jointbench.acquisition.keyence_words import (
     MARK,
     UNIT_WORDS,
@@ -72,7 +73,7 @@ def parse_keyence(data: bytes, path: Path, origin: Step, name: str) -> Areal:
 
     Returns:
         The heights [m]; empty cells are marked as missing. The header may declare
-        more rows than the file holds: provenance tells both numbers.
+        more rows than the file holds: a caution and provenance tell both numbers.
 
     Raises:
         FormatError: no known language, not a height image, decimal commas, rows cut
@@ -92,8 +93,23 @@ def parse_keyence(data: bytes, path: Path, origin: Step, name: str) -> Areal:
         spacing=(pitch, pitch),
         valid=~missing,
         instrument=SurfaceInstrument(name=header.text("model")),
-        provenance=(origin, _describe(header, heights, height, encoding)),
+        provenance=(
+            origin,
+            _describe(header, heights, height, encoding),
+            *_short_of_rows(heights.shape[0], height),
+        ),
     )
+
+
+def _short_of_rows(rows: int, declared: int) -> tuple[Step, ...]:
+    """Say that rows are missing; those that are there have their pitch all the same."""
+    if rows == declared:
+        return ()
+    said = (
+        f"the header declares {declared} rows and the file holds {rows}: it is cut "
+        "short, or was exported so; the rows that are there are read"
+    )
+    return (caution(said),)
 
 
 def _csv_rows(

@@ -1,28 +1,34 @@
 # SPDX-License-Identifier: MIT
 """Stylus profiles that Surfcom instruments export: TX1 (primary), TX2 (roughness).
 
-Line 1 is the traced length [mm], line 2 the number of points, then one height [um] a
-line. The units are part of the format.
+Line 1 is the nominal length [mm], line 2 the number of points, then one height [um] a
+line. The units are part of the format. The length that was traced stands in the TX3
+file beside it.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.errors import FormatError, UnitError
+from jointbench.acquisition.errors import FormatError
+from jointbench.acquisition.height_facts import (
+    StatedLength,
+    caution,
+    half_digit,
+    range_caution,
+)
 from jointbench.acquisition.records import Step, step
 from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
+from jointbench.acquisition.surfcom_settings import SurfcomSettings, read_settings
 from jointbench.acquisition.tables import NUMBER, parse_cell
 from jointbench.acquisition.text_files import named, shown
-from jointbench.acquisition.units import parse_value
 
 SUFFIXES = {".tx1": "primary profile", ".tx2": "roughness profile (filtered)"}
 _MILLIMETRE = 1e-3
 _MICROMETRE = 1e-6
 _HEADER_LINES = 2
-_MOST_SETTINGS = 2**16
-_CUTOFF_WORDS = ("onda de corte", "cutoff", "cut-off", "cut off", "grenzwellen")
 
 
 def is_surfcom(lines: Sequence[str], path: Path) -> bool:
@@ -45,12 +51,15 @@ def parse_surfcom(lines: Sequence[str], path: Path, origin: Step, name: str) -> 
         name: of the profile.
 
     Returns:
-        The heights [m] at a spacing of length / (points - 1) [m].
+        The heights [m] at a spacing of length / (points - 1) [m]; of the nominal
+        length, or of the evaluated one where the TX3 file shows that the trace ended
+        early. A caution says so, and where heights lie at the limit of the range.
 
     Raises:
-        FormatError: the header is none, or the number of heights is not the declared.
+        FormatError: the header is none, the number of heights is not the declared, or
+            the TX3 file is that of another trace.
     """
-    length, count = _header(lines, path)
+    cell, count = _header(lines, path)
     cells = _cells(lines)
     if len(cells) != count:
         raise FormatError(
@@ -58,65 +67,107 @@ def parse_surfcom(lines: Sequence[str], path: Path, origin: Step, name: str) -> 
             "is cut short or mixed, export it again"
         )
     heights = np.array(
-        [parse_cell(cell, i + 1 + _HEADER_LINES, path) for i, cell in enumerate(cells)]
+        [parse_cell(text, i + 1 + _HEADER_LINES, path) for i, text in enumerate(cells)]
     )
+    _require_whole_last_height(cells, path)
     missing = np.isnan(heights)
     if np.any(np.isinf(heights)):
         raise FormatError(f"{named(path)} holds an infinite height")
+    settings = read_settings(path)
+    spacing, said = _spacing(cell, count, settings, path)
+    known = settings or SurfcomSettings()
     what = SUFFIXES.get(path.suffix.lower(), "profile")
-    cutoffs, settings = _settings(path)
-    return Profile(
+    recognised = step(
+        "recognise",
+        format="Surfcom text",
+        reason="nominal length [mm], number of points, one height [um] a line",
+        exported=what,
+        length_mm=float(cell),
+        points=count,
+        missing_points=int(missing.sum()),
+        settings=known.source,
+    )
+    profile = Profile(
         name=name,
         heights=np.where(missing, 0.0, heights) * _MICROMETRE,
-        spacing=length * _MILLIMETRE / (count - 1),
+        spacing=spacing,
         valid=~missing,
         instrument=SurfaceInstrument(
             name=f"Surfcom, {what}",
-            cutoff_short=cutoffs.get("short"),
-            cutoff_long=cutoffs.get("long"),
+            cutoff_short=known.cutoff_short,
+            cutoff_long=known.cutoff_long,
         ),
-        provenance=(
-            origin,
-            step(
-                "recognise",
-                format="Surfcom text",
-                reason="traced length [mm], number of points, one height [um] a line",
-                exported=what,
-                length_mm=length,
-                points=count,
-                missing_points=int(missing.sum()),
-                settings=settings,
-            ),
-        ),
+        provenance=(origin, recognised, *said),
+    )
+    # A roughness profile has lost the waves that reach the limit.
+    if known.reach is None or path.suffix.lower() == ".tx2":
+        return profile
+    reached = range_caution(profile, known.reach)
+    return replace(profile, provenance=(*profile.provenance, *reached))
+
+
+def _require_whole_last_height(cells: Sequence[str], path: Path) -> None:
+    """Refuse a last height with fewer decimals than any other: it is cut off."""
+    decimals = [len(cell.partition(".")[2]) for cell in cells]
+    if len(decimals) > 1 and decimals[-1] < min(decimals[:-1]):
+        raise FormatError(
+            f"{named(path)} ends within its last height, {shown(cells[-1])}; it is cut "
+            "short, export it again"
+        )
+
+
+def _spacing(
+    cell: str, count: int, settings: SurfcomSettings | None, path: Path
+) -> tuple[float, tuple[Step, ...]]:
+    """Return the distance of the heights [m], and what to keep in mind about it.
+
+    Line 1 is the length that was to be traced. A trace that ended early has fewer
+    heights over the length that the TX3 file calls evaluated.
+    """
+    unit = _MILLIMETRE
+    nominal = StatedLength(float(cell) * unit, half_digit(cell) * unit)
+    evaluated = None if settings is None else settings.evaluated
+    if settings is None or evaluated is None:
+        lacks = "no TX3 file with an evaluation length stands beside it"
+        said = (
+            f"{lacks}: the pitch rests on line 1, the nominal length of {cell} mm, and "
+            "is too large if the trace ended early"
+        )
+        return nominal.value / (count - 1), (caution(said),)
+    if nominal.agrees(evaluated):
+        return nominal.value / (count - 1), ()
+    _require_of_this_trace(cell, nominal, evaluated, settings, path)
+    doubt = 100 * evaluated.half_digit / evaluated.value
+    said = (
+        f"the trace ended early: {count} heights over the {1e3 * evaluated.value:g} mm "
+        f"that {settings.source} states as evaluated, of {cell} mm nominal; the pitch "
+        f"rests on the evaluated length, which is printed to {doubt:.1g} %"
+    )
+    return evaluated.value / (count - 1), (caution(said),)
+
+
+def _require_of_this_trace(
+    cell: str,
+    nominal: StatedLength,
+    evaluated: StatedLength,
+    settings: SurfcomSettings,
+    path: Path,
+) -> None:
+    """Refuse settings beside a trace that cannot be its own."""
+    measured = settings.measured
+    other = measured is not None and not nominal.agrees(measured)
+    if not other and evaluated.value < nominal.value:
+        return
+    more = f" and {1e3 * measured.value:g} mm measured" if measured else ""
+    raise FormatError(
+        f"{named(path)}: line 1 states {cell} mm, {settings.source} beside it "
+        f"{1e3 * evaluated.value:g} mm evaluated{more}; these are the settings of "
+        "another trace: put the right TX3 beside it, or take this one away"
     )
 
 
-def _settings(path: Path) -> tuple[dict[str, float], str]:
-    """Read the filter cut-offs [m] from the TX3 file beside a profile, if there is one.
-
-    Its keys are in the language of the instrument; that of lambda_s holds "Ls".
-    """
-    beside = [path.with_suffix(ending) for ending in (".tx3", ".TX3")]
-    found = next((file for file in beside if file.is_file() and file != path), None)
-    if found is None:
-        return {}, "no TX3 beside it"
-    lines = found.read_bytes()[:_MOST_SETTINGS].decode("latin-1").splitlines()
-    pairs = [line.partition("\t")[::2] for line in lines]
-    cutoffs: dict[str, float] = {}
-    for key, cell in pairs:
-        words = key.casefold()
-        if " ls" not in words and not any(word in words for word in _CUTOFF_WORDS):
-            continue
-        try:
-            value = parse_value(cell, "length")
-        except UnitError:
-            continue
-        if 0 < value < 1:
-            cutoffs.setdefault("short" if " ls" in words else "long", value)
-    return cutoffs, found.name
-
-
-def _header(lines: Sequence[str], path: Path) -> tuple[float, int]:
+def _header(lines: Sequence[str], path: Path) -> tuple[str, int]:
+    """Return length [mm] as printed, and number of points."""
     head = [line.strip() for line in lines[:_HEADER_LINES]] + ["", ""]
     if not NUMBER.fullmatch(head[0]) or not 0 < float(head[0]) < float("inf"):
         raise FormatError(
@@ -128,7 +179,7 @@ def _header(lines: Sequence[str], path: Path) -> tuple[float, int]:
             f"{named(path)}: line 2 is {shown(head[1])}, a Surfcom profile has its "
             "number of points there"
         )
-    return float(head[0]), int(head[1])
+    return head[0], int(head[1])
 
 
 def _cells(lines: Sequence[str]) -> list[str]:

@@ -15,6 +15,7 @@ from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.acquisition.errors import FormatError, HostileFile, UnitError
 from jointbench.acquisition.even_steps import fit_even_steps
 from jointbench.acquisition.grids import masked
+from jointbench.acquisition.height_facts import LONGEST
 from jointbench.acquisition.records import Step, step
 from jointbench.acquisition.surfaces import Areal, Profile, Surface
 from jointbench.acquisition.tables import MAX_CELLS
@@ -22,8 +23,6 @@ from jointbench.acquisition.text_files import named, shown
 from jointbench.acquisition.units import to_si
 
 MOST_BYTES = 512 * 2**20
-WIDEST = 1.0
-"""No profilometer scans a metre: a larger map has a wrong scale [m]."""
 SUFFIXES = frozenset(
     ".vk3 .vk4 .vk6 .vk7 .zon .zag .plu .plux .sur .pro .opd .opdx .x3p .sdf .al3d"
     " .dat .datx .nms .nmm .mnt .os3d .lext .oir .poir .frt .gwy .xlsx".split()
@@ -65,10 +64,10 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
     heights = np.ma.filled(np.ma.asarray(topography.heights(), float), np.nan) * scale
     plain, valid = masked(heights, path)
     sizes = [float(size) * scale for size in topography.physical_sizes]
-    if not all(0 < size < WIDEST for size in sizes):
+    if not all(0 < size < LONGEST for size in sizes):
         raise FormatError(
             f"{named(path)}: {reader} gives a size of {max(sizes):.3g} m, beyond "
-            f"{WIDEST:g} m: its scale is wrong for this file; export it as X3P or text"
+            f"{LONGEST:g} m: its scale is wrong for this file; export it as X3P or text"
         )
     said = step(
         "recognise",

@@ -13,6 +13,7 @@ from jointbench.signal.self_affine import InstrumentModel
 from jointbench.signal.structure_constant import ConstantForm, log_roughness
 from jointbench.signal.structure_function import StructureFunction
 from jointbench.signal.surface_verdict import (
+    NORMAL_97_5,
     FittedCurve,
     FractalFit,
     InstrumentParameter,
@@ -20,9 +21,6 @@ from jointbench.signal.surface_verdict import (
     Scaling,
     SurfaceVerdict,
 )
-
-NORMAL_97_5 = 1.959963984540054
-"""97.5 % point of the normal distribution [-]."""
 
 
 def rejected_fit(

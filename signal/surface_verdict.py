@@ -4,6 +4,8 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+import numpy as np
+
 from jointbench.acquisition.arrays import (
     FloatArray,
     freeze,
@@ -11,6 +13,11 @@ from jointbench.acquisition.arrays import (
     require_shape,
 )
 from jointbench.acquisition.records import Provenance
+
+NORMAL_97_5 = 1.959963984540054
+"""97.5 % point of the normal distribution [-]."""
+WIDEST_ROUGHNESS = 10.0
+"""A 95 % interval of G wider than this factor tells no G, only S at its pivot [-]."""
 
 
 class SurfaceVerdict(StrEnum):
@@ -110,6 +117,18 @@ class Scaling:
         require_shape("covariance", self.covariance, (2, 2))
         freeze(self, "covariance")
 
+    @property
+    def roughness_known(self) -> bool:
+        """Whether the interval of G is within a decade, so that a G may be told."""
+        low, high = self.roughness_interval
+        return bool(high <= WIDEST_ROUGHNESS * low)
+
+    @property
+    def pivot_value_interval(self) -> tuple[float, float]:
+        """2.5 % and 97.5 % points of S at the pivot, log-normal [m^2]."""
+        reach = float(np.exp(NORMAL_97_5 * np.sqrt(self.covariance[1, 1])))
+        return self.pivot_value / reach, self.pivot_value * reach
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FractalFit:
@@ -151,7 +170,7 @@ class FractalFit:
 
     @property
     def roughness(self) -> float | None:
-        """G [m], None without a scaling range."""
+        """G [m], None without a scaling range; sure only with its interval."""
         return None if self.scaling is None else self.scaling.roughness
 
     @property

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """``jointbench contact``: a rough joint's stiffness from surface, material, preload."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -32,7 +33,8 @@ from jointbench.signal.fractal import fit_fractal
 from jointbench.signal.structure_function import StructureFunction, combine
 from jointbench.station.contact_request import ContactRequest
 from jointbench.station.inputs import read_surfaces
-from jointbench.station.surface import analyse_surface
+from jointbench.station.roughness_words import contact_surface_json
+from jointbench.station.surface import analyse_surface, chain_cautions
 
 FACES = 2
 
@@ -169,7 +171,13 @@ def surface_of(
                 f"{len(found)} surfaces for one joint; give one face or two"
             )
         faces = found if len(found) == FACES else found * FACES
-        return equivalent_surface([analyse_surface(s).structure for _, s in faces])
+        chains = [analyse_surface(s) for _, s in faces]
+        said = [one for chain in chains for one in chain_cautions(chain)]
+        try:
+            whole = equivalent_surface([chain.structure for chain in chains])
+        except BadData as error:  # what is odd about the heights may be the cause
+            raise BadData("; ".join([str(error), *dict.fromkeys(said)])) from error
+        return replace(whole, cautions=tuple(dict.fromkeys(said)))
     if dimension is None or roughness is None or files:
         raise UsageError(
             "give either --dimension and --roughness, or --surface for one face (both "
@@ -214,8 +222,7 @@ def contact_json(
 ) -> dict[str, object]:
     """Return what the contract promises of ``contact``, and more."""
     return {
-        "dimension": surface.dimension,
-        "roughness_m": surface.roughness,
+        **contact_surface_json(surface),
         "models": [_point_json(point) for point in points],
     }
 
@@ -242,7 +249,10 @@ def _point_json(point: ContactPoint) -> dict[str, object]:
         if damping
         else None,
         "largest_area": state.largest_area,
-        "critical_area": state.critical_area,
+        # Beyond the largest double near the lower end of the dimension.
+        "critical_area": state.critical_area
+        if math.isfinite(state.critical_area)
+        else None,
         "real_area": state.real_area,
         "stiffness_parts": dict(state.stiffness_parts),
         "load_parts": dict(state.load_parts),

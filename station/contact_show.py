@@ -33,6 +33,7 @@ from jointbench.station.report_page import (
     Text,
     write_report,
 )
+from jointbench.station.roughness_words import contact_surface_words
 
 LABELS = {
     "load": "preload [N]",
@@ -137,13 +138,14 @@ def contact_page(
     """Arrange predictions and sweep as one offline page."""
     cells = tuple(tuple(row) for row in _rows(points))
     items: list[Item] = [DataTable("Predictions", COLUMNS, cells)]
+    items += [Text(said, "notice") for said in surface.cautions]
     items += [Text(reason) for reason in _reasons(points)]
     sections = [Section("points", "Predictions", tuple(items))]
     if sweep is not None:
         sections.append(Section("sweep", "Sweep", _plots(sweep, rows)))
     return Report(
         title="Contact of a rough joint",
-        lead=f"D = {surface.dimension:.4f} (line), G = {surface.roughness:.3g} m",
+        lead=contact_surface_words(surface),
         software=f"{software_version()}: contact",
         simulated=False,
         tiles=(),
@@ -208,10 +210,10 @@ def _show(
     json_target: str | None,
 ) -> None:
     screen = console(json_target)
-    title = (
-        f"Contact at D = {surface.dimension:.4f} (line), G = {surface.roughness:.3g} m"
-    )
+    title = f"Contact at {contact_surface_words(surface)}"
     screen.print(table(title, COLUMNS, _rows(points)))
+    for said in surface.cautions:
+        screen.print(f"  {said}", markup=False)
     for reason in _reasons(points):
         screen.print(f"  {reason}", markup=False)
     if request.damping is None:

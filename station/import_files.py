@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.height_facts import cautions
 from jointbench.acquisition.records import Channel, Recording
 from jointbench.acquisition.session import JointSetup, Session, new_session
 from jointbench.acquisition.session_file import write_session
@@ -13,6 +14,7 @@ from jointbench.acquisition.surfaces import Surface
 from jointbench.station.inputs import parse_preload, read_foreign
 from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.roughness_words import caution_lines
 
 
 def run_import(
@@ -89,9 +91,12 @@ def _show(session: Session, out: Path, json_target: str | None) -> None:
         for recording in session.recordings
         for channel in recording.channels
     ]
-    write_json(
-        json_target, {"session": str(out), "channels": channels, "records": records}
-    )
+    said = {s.name: list(cautions(s.provenance)) for s in session.surfaces}
+    for name, texts in said.items():
+        for line in caution_lines(name, texts):
+            screen.print(f"  {line}", markup=False)
+    content = {"session": str(out), "channels": channels, "records": records}
+    write_json(json_target, content | {"cautions": said})
 
 
 def _channel(recording: str, channel: Channel) -> dict[str, object]:

@@ -49,7 +49,7 @@ from jointbench.station.process_joint import (
 from jointbench.station.recipe import Recipe
 from jointbench.station.recipe_settings import chain_settings
 from jointbench.station.stage_store import StageStore, stage_key
-from jointbench.station.surface import SurfaceChain
+from jointbench.station.surface import SurfaceChain, chain_cautions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,6 +114,7 @@ def process_session(
     )
     modal = _modal(judged, digest, recipe, stages, remarks)
     surfaces = surface_stage(session, digest, recipe, stages)
+    remarks += [f"Surface {said}" for one in surfaces for said in chain_cautions(one)]
     return ProcessedSession(
         session=session,
         hits=hits,

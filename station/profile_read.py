@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Read a roughness tester, and put what it measured where it belongs."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import InstrumentError, UsageError
+from jointbench.acquisition.height_facts import cautions, checked
 from jointbench.acquisition.serial_lines import diavite, mitutoyo
 from jointbench.acquisition.serial_lines.line import ProfileBroken, SerialLine
 from jointbench.acquisition.session_add import add_surface, require_addable
@@ -15,6 +16,7 @@ from jointbench.acquisition.surfaces import Profile
 from jointbench.acquisition.units import parse_value
 from jointbench.station.output import console, engineering, table, write_json
 from jointbench.station.outputs import check_outputs, write_text
+from jointbench.station.roughness_words import caution_lines
 from jointbench.station.serial_port import line_name
 
 
@@ -96,16 +98,23 @@ def read_profile(wanted: Wanted, line: str) -> Profile:
         port = SerialLine(line, baud=wanted.baud or diavite.BAUD)
     try:
         if wanted.instrument == "mitutoyo":
-            return mitutoyo.read_profile(port, name=wanted.name)
-        return diavite.read_profile(
+            return _checked(mitutoyo.read_profile(port, name=wanted.name), line)
+        found = diavite.read_profile(
             port,
             name=wanted.name,
             traverse=_traverse(wanted),
             filtered=wanted.filtered,
             signed=wanted.signed,
         )
+        return _checked(found, line)
     finally:
         port.close()
+
+
+def _checked(profile: Profile, line: str) -> Profile:
+    """Refuse a length that no tester traces, and note what looks wrong."""
+    found = checked(profile, line)
+    return replace(profile, provenance=found.provenance)
 
 
 def _traverse(wanted: Wanted) -> float:
@@ -163,6 +172,9 @@ def _show(
     ]
     screen = console(json_target)
     screen.print(table(profile.name, ("profile", ""), rows))
+    said = cautions(profile.provenance)
+    for text in caution_lines(profile.name, said):
+        screen.print(f"  {text}", markup=False)
     places = [str(place) for place in (out, session) if place is not None]
     screen.print(f"in {' and '.join(places)}", soft_wrap=True)
     screen.print(f"\nnext: jointbench surface {places[0]}", soft_wrap=True)
@@ -173,6 +185,7 @@ def _show(
             "points": profile.heights.size,
             "spacing_m": profile.spacing,
             "mean_deviation_m": deviation,
+            "cautions": list(said),
             "files": places,
         },
     )

@@ -19,7 +19,8 @@ from jointbench.station.figures import (
 )
 from jointbench.station.output import engineering, with_sd
 from jointbench.station.report_page import DataTable, Item, Plot, Section, Text
-from jointbench.station.surface import SurfaceChain
+from jointbench.station.roughness_words import HEADING, roughness_words
+from jointbench.station.surface import SurfaceChain, chain_cautions
 
 MOST_POINTS = 3000
 MOST_PIXELS = 260
@@ -31,6 +32,7 @@ def surface_section(chains: Sequence[SurfaceChain]) -> Section:
     """Return the section: each face's heights, then all structure functions."""
     items: list[Item] = [_heights(chain, n) for n, chain in enumerate(chains)]
     items += [_structure_plot(chains), _slope_plot(chains), _table(chains)]
+    items += [Text(said, "notice") for c in chains for said in chain_cautions(c)]
     items += [Text(f"{c.surface.name}: {c.fit.reason}") for c in chains]
     return Section("surfaces", "Surfaces", tuple(items))
 
@@ -144,15 +146,14 @@ def _table(chains: Sequence[SurfaceChain]) -> DataTable:
         fit = chain.fit
         row = [chain.surface.name, fit.verdict.value, "-", "-", "-", fit.instrument]
         if fit.scaling is not None and fit.fit_band is not None:
-            low, high = fit.scaling.roughness_interval
             row[2] = with_sd(fit.scaling.dimension, fit.scaling.dimension_sd)
-            row[3] = f"{fit.scaling.roughness:.3g} ({low:.2g} to {high:.2g})"
+            row[3] = roughness_words(fit.scaling)
             row[4] = " to ".join(engineering(end, "m") for end in fit.fit_band)
         rows.append(tuple(row))
     return DataTable(
         "Fractal parameters of a line on each surface; D with one standard deviation, "
-        "G with its 95 % interval.",
-        ("surface", "verdict", "D [-]", "G [m]", "fit band", "instrument model"),
+        "G with its 95 % interval; where that is wider than a decade, S at its pivot.",
+        ("surface", "verdict", "D [-]", HEADING, "fit band", "instrument model"),
         tuple(rows),
         BAD,
     )

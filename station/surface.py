@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from jointbench.acquisition.height_facts import cautions
 from jointbench.acquisition.records import Step
 from jointbench.acquisition.surfaces import Surface
 from jointbench.signal.fractal import fit_fractal
@@ -20,6 +21,12 @@ from jointbench.station.output import (
     write_json,
 )
 from jointbench.station.outputs import check_outputs
+from jointbench.station.roughness_words import (
+    HEADING,
+    caution_lines,
+    roughness_json,
+    roughness_words,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,9 +65,11 @@ def show_surfaces(chains: Sequence[SurfaceChain], json_target: str | None) -> No
     """Print verdict, D, G and the reason of each surface."""
     screen = console(json_target)
     rows = [(chain.surface.name, *_numbers(chain.fit)) for chain in chains]
-    columns = ("surface", "verdict", "D [-]", "G", "fit band")
-    screen.print(table("Surfaces (± one standard deviation)", columns, rows))
+    columns = ("surface", "verdict", "D [-]", HEADING, "fit band")
+    screen.print(table("Surfaces (D ± one standard deviation)", columns, rows))
     for chain in chains:
+        for said in chain_cautions(chain):
+            screen.print(f"  {said}", markup=False)
         screen.print(f"  {chain.surface.name}: {chain.fit.reason}", markup=False)
         screen.print(f"  {chain.surface.name}: {_origin(chain)}", markup=False)
 
@@ -72,9 +81,14 @@ def _numbers(fit: FractalFit) -> tuple[str, str, str, str]:
     return (
         fit.verdict.value,
         with_sd(fit.scaling.dimension, fit.scaling.dimension_sd),
-        engineering(fit.scaling.roughness, "m"),
+        roughness_words(fit.scaling),
         f"{low} to {high}",
     )
+
+
+def chain_cautions(chain: SurfaceChain) -> tuple[str, ...]:
+    """Return what to keep in mind about the heights, one line each."""
+    return caution_lines(chain.surface.name, cautions(chain.surface.provenance))
 
 
 def _origin(chain: SurfaceChain) -> str:
@@ -98,10 +112,10 @@ def surface_json(chain: SurfaceChain) -> dict[str, object]:
         "surface": chain.surface.name,
         "verdict": fit.verdict.value,
         "reason": fit.reason,
+        "cautions": list(cautions(chain.surface.provenance)),
         "dimension": fit.dimension,
         "dimension_sd": fit.dimension_sd,
-        "roughness_m": fit.roughness,
-        "roughness_interval_m": fit.roughness_interval,
+        **roughness_json(fit.scaling),
         "fit_band_m": fit.fit_band,
         "instrument": fit.instrument,
         "instrument_parameters": [

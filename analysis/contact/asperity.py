@@ -25,8 +25,6 @@ from jointbench.analysis.contact.models import (
     regime_laws,
 )
 
-# A critical area beyond exp(700) m^2, near the largest double, means "all plastic".
-_LARGEST_LOG_AREA = 700.0
 # Far above every regime bound; a power of it must not overflow.
 _LARGEST_LOG_RATIO = 300.0
 
@@ -65,6 +63,32 @@ def excess(model: ContactModel, surface: FractalSurface) -> FloatArray:
     return np.asarray(surface.dimension - model.topography.lowest_dimension)
 
 
+def log_ratio_at_unit_area(
+    model: ContactModel, surface: FractalSurface, material: ContactMaterial
+) -> FloatArray:
+    """Return ln(delta / delta_c) of a contact of 1 m^2 [-].
+
+    It stays a number of moderate size where the critical area, its exponential over e,
+    is beyond every double.
+
+    Args:
+        model: topography and yield criterion count.
+        surface: dimension, roughness, hardness.
+        material: modulus and what else the yield criterion needs.
+
+    Returns:
+        b of ln(delta / delta_c) = b - e ln(a / m^2).
+
+    Source:
+        a = g R delta, delta = c a^((1-e)/2) and delta_c = kappa^2 R.
+    """
+    kappa = surface_yield_ratio(model, surface, material)
+    e = excess(model, surface)
+    log_c = model.topography.log_interference(e, surface.roughness, surface.gamma)
+    log_shape = math.log(model.topography.shape)
+    return np.asarray(2 * log_c + log_shape - 2 * np.log(kappa))
+
+
 def log_critical_area(
     model: ContactModel, surface: FractalSurface, material: ContactMaterial
 ) -> FloatArray:
@@ -76,17 +100,14 @@ def log_critical_area(
         material: modulus and what else the yield criterion needs.
 
     Returns:
-        ln(a_c / m^2), at most 700.
+        ln(a_c / m^2); above some 700 the area itself is beyond every double.
 
     Source:
         Appl. Sci. 2023, 13, 11680, eqs. (23) and (41); from a = g R delta and
         delta_c = kappa^2 R. Note: eq. (41) as printed counts pi^(2/(2-D)) twice.
     """
-    e = excess(model, surface)
-    kappa = surface_yield_ratio(model, surface, material)
-    log_c = model.topography.log_interference(e, surface.roughness, surface.gamma)
-    log_area = 2 * log_c + math.log(model.topography.shape) - 2 * np.log(kappa)
-    return np.asarray(np.minimum(log_area / e, _LARGEST_LOG_AREA))
+    at_unit = log_ratio_at_unit_area(model, surface, material)
+    return np.asarray(at_unit / excess(model, surface))
 
 
 def interference(
@@ -105,9 +126,9 @@ def interference_ratio(
     log_area: FloatArray,
 ) -> FloatArray:
     """Return delta / delta_c = (a_c / a)^e of contacts of exp(`log_area`) m^2 [-]."""
-    e = excess(model, surface)
-    distance = log_critical_area(model, surface, material) - log_area
-    return np.asarray(np.exp(np.minimum(e * distance, _LARGEST_LOG_RATIO)))
+    at_unit = log_ratio_at_unit_area(model, surface, material)
+    log_ratio = at_unit - excess(model, surface) * log_area
+    return np.asarray(np.exp(np.minimum(log_ratio, _LARGEST_LOG_RATIO)))
 
 
 def asperity_load(

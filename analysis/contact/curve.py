@@ -106,7 +106,8 @@ def require_surface(model: ContactModel, surface: FractalSurface) -> None:
 
 def _require_finite(model: ContactModel, sums: JointSums) -> None:
     """Raise unless every area, load and stiffness is a number."""
-    for name in ("largest_area", "critical_area", "real_area", "load", "stiffness"):
+    numbers = ("largest_area", "log_critical_area", "real_area", "load", "stiffness")
+    for name in numbers:
         if not np.all(np.isfinite(getattr(sums, name))):
             raise BadData(
                 f"{name.replace('_', ' ')} of model {model.name!r} is not finite with "

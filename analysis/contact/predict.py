@@ -8,6 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
 from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.curve import contact_curve
@@ -40,6 +41,8 @@ DAMPING_REASON = (
 # Above this many times the largest contact, the real area is made of contacts far
 # smaller than any the model's surface was measured at.
 _MANY_CONTACTS = 100.0
+# ln of the largest area written as a plain number; no planet has 10^30 m^2.
+_LARGEST_LOG_SHOWN = 30 * math.log(10)
 
 
 class ContactVerdict(StrEnum):
@@ -67,7 +70,8 @@ class ContactState:
         loss_factor: of a first loading, in the convention asked for [-], or None.
         damping: [N s/m]; None where no mass or frequency is given, `DAMPING_REASON`.
         largest_area: area of the largest contact a_l [m^2].
-        critical_area: area below which asperities yield a_c [m^2].
+        critical_area: area below which asperities yield a_c [m^2]; inf where it is
+            beyond every double, as near the lower end of the dimension.
         real_area: sum of all contact areas [m^2].
         load_parts: load carried by each regime [N].
         stiffness_parts: stiffness of each regime [N/m].
@@ -247,13 +251,12 @@ def _judge(
     """Say whether the stiffness of one joint can be used, and why."""
     verdict = ContactVerdict.USABLE
     reasons: list[str] = []
-    largest, critical = float(sums.largest_area), float(sums.critical_area)
-    real = float(sums.real_area)
-    if largest < critical:
+    largest, real = float(sums.largest_area), float(sums.real_area)
+    if largest < float(sums.critical_area):
         reasons.append(
             f"the largest contact, {largest:.3g} m^2, is below the critical area, "
-            f"{critical:.3g} m^2: no contact is elastic, interaction changes nothing, "
-            "and the tangential stiffness of elastic contacts is 0"
+            f"{_area(sums.log_critical_area)}: no contact is elastic, interaction "
+            "changes nothing, and the tangential stiffness of elastic contacts is 0"
         )
     if real > _MANY_CONTACTS * largest:
         reasons.append(
@@ -273,3 +276,10 @@ def _judge(
             "m^2: the preload is beyond what the surface can carry in this model"
         )
     return verdict, reasons
+
+
+def _area(log_area: FloatArray) -> str:
+    """Write an area given by its logarithm, beyond the largest double too."""
+    if log_area < _LARGEST_LOG_SHOWN:
+        return f"{float(np.exp(log_area)):.3g} m^2"
+    return f"10^{float(log_area) / math.log(10):.0f} m^2"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the papers print, beside the same sums done right: each fault and its size."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 
@@ -287,9 +288,15 @@ def _size(value: float, usual: float) -> str:
 def _evaluate(formula: _Formula, inputs: eq.PrintedInputs) -> float:
     """Return what a printed formula gives; some divide by zero at one dimension."""
     try:
-        return formula(inputs)
+        value = formula(inputs)
     except (ZeroDivisionError, OverflowError) as error:
         raise BadData(
             f"the printed formula {formula.__name__} has no value at D = {inputs.D:g} "
             f"({error}); take mode 'corrected' or another D"
         ) from error
+    if not math.isfinite(value):
+        raise BadData(
+            f"the printed formula {formula.__name__} gives {value:g} at D = "
+            f"{inputs.D:g}; take mode 'corrected' or another D"
+        )
+    return value

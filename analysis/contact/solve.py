@@ -16,7 +16,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.contact.asperity import (
     FractalSurface,
     excess,
-    log_critical_area,
+    log_ratio_at_unit_area,
     surface_yield_ratio,
 )
 from jointbench.analysis.contact.material import ContactMaterial
@@ -40,9 +40,9 @@ class _Regimes:
     """Constants of some joints; arrays of shape (4, n) in the order of `REGIMES`."""
 
     growth: FloatArray  # q, shape (n,)
-    exponent: FloatArray  # s of the integral of x^(s-1)
+    exponent: FloatArray  # s of the integral of a^(s-1)
     log_scale: FloatArray  # ln of the load's factor over the wanted load
-    log_low: FloatArray  # ln of the lower bound of x
+    log_low: FloatArray  # ln of the regime's smallest area
     log_below: FloatArray  # ln of the load of all regimes below
 
 
@@ -64,16 +64,16 @@ def solve_largest_area(
         ln(a_l / m^2) of the broadcast shape, to rounding.
     """
     e = excess(model, surface)
-    log_critical = log_critical_area(model, surface, material)
+    log_ratio = log_ratio_at_unit_area(model, surface, material)
     kappa = surface_yield_ratio(model, surface, material)
-    arrays = np.broadcast_arrays(e, log_critical, kappa, surface.hardness, load)
+    arrays = np.broadcast_arrays(e, log_ratio, kappa, surface.hardness, load)
     flat = [np.ravel(array) for array in arrays]
     found = np.empty(arrays[0].size)
     for start in range(0, found.size, _BLOCK):
         block = slice(start, start + _BLOCK)
         parts = [array[block] for array in flat]
         regimes = _regimes(model, material.effective_modulus, *parts)
-        found[block] = _search(regimes) + parts[1]
+        found[block] = _search(regimes)
     return found.reshape(arrays[0].shape)
 
 
@@ -81,13 +81,13 @@ def _regimes(
     model: ContactModel,
     modulus: float,
     e: FloatArray,
-    log_critical: FloatArray,
+    log_ratio: FloatArray,
     kappa: FloatArray,
     hardness: FloatArray,
     load: FloatArray,
 ) -> _Regimes:
     """Collect exponent, factor and bound of each regime, and what lies below it."""
-    wanted = np.log(load) - np.log(model.population * (1 + e) / 2) - log_critical
+    wanted = np.log(load) - np.log(model.population * (1 + e) / 2)
     elastic = np.log(4 / 3 * modulus * kappa / model.topography.shape) - wanted
     hard = np.log(hardness) - wanted
     below = np.full_like(e, -np.inf)
@@ -95,17 +95,18 @@ def _regimes(
     laws = zip(regime_laws(model), pairwise(REGIME_BOUNDS), strict=True)
     for law, (upper, lower) in laws:
         if isinstance(law, PowerLaw):
-            exponent, factor = (1 + e) / 2 - law.exponent * e, elastic
+            exponent = (1 + e) / 2 - law.exponent * e
+            factor = elastic + (law.exponent - 1) * log_ratio
             coefficient = law.coefficient
         else:
             exponent, factor, coefficient = (1 - e) / 2, hard, law.pressure_factor
         if bears_nothing(law):
             factor, coefficient = np.full_like(e, -np.inf), 1.0
         scale = factor + math.log(coefficient)
-        low = np.full_like(e, -np.inf) if math.isinf(upper) else -math.log(upper) / e
+        low = (log_ratio - math.log(upper)) / e
         rows.append((exponent, scale, low, below))
         if lower:
-            high = -math.log(lower) / e
+            high = (log_ratio - math.log(lower)) / e
             below = np.logaddexp(below, scale + _log_integral(exponent, low, high))
     columns = [np.stack(column) for column in zip(*rows, strict=True)]
     return _Regimes((1 + e) / 2, *columns)
@@ -114,7 +115,7 @@ def _regimes(
 def _log_integral(
     exponent: FloatArray, log_low: FloatArray, log_high: FloatArray
 ) -> FloatArray:
-    """Return ln of the integral of x^(exponent - 1); down to 0 where low is -inf."""
+    """Return ln of the integral of a^(exponent - 1); down to 0 where low is -inf."""
     width = log_high - log_low
     span = np.abs(exponent) * width
     small = span < 1e-5
@@ -130,28 +131,30 @@ def _log_integral(
     return np.asarray(exponent * end + mean)
 
 
-def _excess_load(regimes: _Regimes, log_x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return ln(load/wanted) and its derivative by ln x."""
-    number = (log_x[None] > regimes.log_low[1:]).sum(axis=0)
-    columns = np.arange(log_x.size)
+def _excess_load(
+    regimes: _Regimes, log_area: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return ln(load/wanted) and its derivative by ln a_l."""
+    number = (log_area[None] > regimes.log_low[1:]).sum(axis=0)
+    columns = np.arange(log_area.size)
     exponent = regimes.exponent[number, columns]
     scale = regimes.log_scale[number, columns]
     low = regimes.log_low[number, columns]
-    partial = scale + _log_integral(exponent, low, np.maximum(log_x, low))
+    partial = scale + _log_integral(exponent, low, np.maximum(log_area, low))
     total = np.logaddexp(regimes.log_below[number, columns], partial)
-    slope = regimes.growth + np.exp(scale + exponent * log_x - total)
-    return regimes.growth * log_x + total, slope
+    slope = regimes.growth + np.exp(scale + exponent * log_area - total)
+    return regimes.growth * log_area + total, slope
 
 
 def _search(regimes: _Regimes) -> FloatArray:
-    """Return ln(a_l/a_c): Newton's steps inside a bracket that only shrinks."""
+    """Return ln a_l: Newton's steps inside a bracket that only shrinks."""
     first = np.isfinite(regimes.log_scale).argmax(axis=0)
     edge = np.take_along_axis(regimes.log_low, first[None], axis=0)[0]
     # Where all is plastic load is a multiple of area, and start is the solution.
     here = np.log(regimes.exponent[0]) - regimes.log_scale[0]
     here = np.where(first > 0, edge + 1.0, here)
     difference, slope = _excess_load(regimes, here)
-    # ln(load) rises by at least q for every ln(x).
+    # ln(load) rises by at least q for every ln(a_l).
     reach = np.abs(difference) / regimes.growth + 1e-12
     low = np.maximum(here - np.where(difference > 0, reach, 0.0), edge)
     high = here + np.where(difference < 0, reach, 0.0)

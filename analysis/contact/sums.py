@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Load and stiffness of a whole joint: asperity laws summed in closed form.
 
-Every law is a power of the contact area, so with X = a_l/a_c all sums are
-A * scale * J(s; lo, hi), J the integral of x^(s-1) between the regime's bounds, both
-clipped to X. Factors are kept as logarithms: areas span hundreds of decades as the
-fractal dimension nears its ends.
+Every law is a power of the contact area, so all sums are
+A * scale * J(s; lo, hi), J the integral of a^(s-1) between the regime's bounds, both
+clipped to the largest area. Areas and factors are kept as logarithms: the bounds span
+thousands of decades as the fractal dimension nears its ends, so that no area, the
+critical one least of all, may serve as a unit.
 """
 
 import math
@@ -17,6 +18,7 @@ from jointbench.analysis.contact.asperity import (
     FractalSurface,
     excess,
     log_critical_area,
+    log_ratio_at_unit_area,
     surface_yield_ratio,
 )
 from jointbench.analysis.contact.material import ContactMaterial
@@ -36,35 +38,47 @@ class JointSums:
 
     Attributes:
         largest_area: area of the largest contact a_l [m^2], shape (...).
-        critical_area: area below which asperities yield a_c [m^2], shape (...).
+        log_critical_area: ln of the area below which asperities yield, in m^2 [-],
+            shape (...).
         real_area: sum of all contact areas [m^2], shape (...).
         load: by regime [N], shape (4, ...), in the order of `REGIMES`.
         stiffness: by regime [N/m], shape (4, ...).
     """
 
     largest_area: FloatArray
-    critical_area: FloatArray
+    log_critical_area: FloatArray
     real_area: FloatArray
     load: FloatArray
     stiffness: FloatArray
 
+    @property
+    def critical_area(self) -> FloatArray:
+        """Area below which asperities yield a_c [m^2]; inf beyond every double."""
+        with np.errstate(over="ignore"):
+            return np.asarray(np.exp(self.log_critical_area))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sum:
-    """What all parts of one sum share: X, bounds, factors; arrays that broadcast."""
+    """What all parts of one sum share: a_l, bounds, factors; arrays that broadcast."""
 
     excess: FloatArray
-    log_x: FloatArray
-    log_population: FloatArray  # ln of A = f q X^q
-    log_hard: FloatArray  # ln of H a_c [N]
-    log_load: FloatArray  # ln of P_c(a_c) = 4/3 E kappa a_c / g [N]
-    log_slope: FloatArray  # ln of P_c / delta_c at a_c [N/m]
+    log_ratio: FloatArray  # ln of delta / delta_c at 1 m^2
+    log_largest: FloatArray
+    log_population: FloatArray  # ln of A = f q a_l^q
+    log_hard: FloatArray  # ln of H times 1 m^2 [N]
+    log_load: FloatArray  # ln of 4/3 E kappa / g times 1 m^2 [N]
+    log_slope: float  # ln of 4/3 E / sqrt(g) times 1 m [N/m]
+
+    def bound(self, ratio: float) -> FloatArray:
+        """Return ln of the area whose interference ratio is `ratio`, at most a_l."""
+        log_area = (self.log_ratio - math.log(ratio)) / self.excess
+        return np.asarray(np.minimum(log_area, self.log_largest))
 
     def limits(self, upper: float, lower: float) -> tuple[FloatArray, FloatArray]:
-        """Return ln of the integration limits of a regime, clipped to X."""
-        low = -math.log(upper) / self.excess
-        high = -math.log(lower) / self.excess if lower else self.log_x
-        return np.minimum(low, self.log_x), np.minimum(high, self.log_x)
+        """Return ln of the integration limits of a regime, clipped to a_l."""
+        high = self.bound(lower) if lower else self.log_largest
+        return self.bound(upper), high
 
 
 def power_integral(
@@ -116,8 +130,8 @@ def joint_sums(
         re-derived: there each regime and dimension has a formula of its own, with
         misprints. Note: limits are clipped to the largest area, which the papers omit.
     """
+    total = _prepare(model, surface, material, log_largest)
     log_critical = log_critical_area(model, surface, material)
-    total = _prepare(model, surface, material, log_critical, log_largest)
     regimes = list(
         zip(regime_laws(model), REGIME_BOUNDS[:-1], REGIME_BOUNDS[1:], strict=True)
     )
@@ -125,7 +139,7 @@ def joint_sums(
     real_area = model.population * (1 + e) / (1 - e) * np.exp(log_largest)
     return JointSums(
         largest_area=np.exp(log_largest + 0 * real_area),
-        critical_area=np.exp(log_critical + 0 * real_area),
+        log_critical_area=log_critical + 0 * real_area,
         real_area=real_area,
         load=np.stack([_load(total, *regime) for regime in regimes]),
         stiffness=np.stack([_stiffness(total, *regime) for regime in regimes]),
@@ -136,22 +150,22 @@ def _prepare(
     model: ContactModel,
     surface: FractalSurface,
     material: ContactMaterial,
-    log_critical: FloatArray,
     log_largest: FloatArray,
 ) -> _Sum:
     """Collect the factors that all regimes share."""
     e = excess(model, surface)
-    log_x = np.asarray(log_largest - log_critical)
     kappa = surface_yield_ratio(model, surface, material)
     stiff = math.log(4 / 3 * material.effective_modulus)
     log_shape = math.log(model.topography.shape)
+    growth = (1 + e) / 2
     return _Sum(
         excess=e,
-        log_x=log_x,
-        log_population=np.log(model.population * (1 + e) / 2) + (1 + e) / 2 * log_x,
-        log_hard=np.log(surface.hardness) + log_critical,
-        log_load=stiff + np.log(kappa) + log_critical - log_shape,
-        log_slope=np.asarray(stiff + 0.5 * (log_critical - log_shape)),
+        log_ratio=log_ratio_at_unit_area(model, surface, material),
+        log_largest=np.asarray(log_largest),
+        log_population=np.log(model.population * growth) + growth * log_largest,
+        log_hard=np.log(surface.hardness),
+        log_load=stiff + np.log(kappa) - log_shape,
+        log_slope=stiff - 0.5 * log_shape,
     )
 
 
@@ -161,14 +175,15 @@ def _load(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArr
     if bears_nothing(law):
         return np.zeros(np.broadcast(total.log_population, total.log_load).shape)
     if isinstance(law, PowerLaw):
+        # P = coefficient * 4/3 E kappa a/g * s^(exponent - 1), s = delta/delta_c.
         exponent = (1 + e) / 2 - law.exponent * e
         factor = total.log_population + total.log_load + math.log(law.coefficient)
+        factor = factor + (law.exponent - 1) * total.log_ratio
         return power_integral(exponent, *total.limits(upper, lower), factor)
     exponent = (1 - e) / 2
     factor = total.log_population + total.log_hard + math.log(law.pressure_factor)
     if math.isinf(upper):  # down to no area at all; the exponent is positive
-        high = np.minimum(-math.log(lower) / e, total.log_x)
-        return np.asarray(np.exp(factor + exponent * high) / exponent)
+        return np.asarray(np.exp(factor + exponent * total.bound(lower)) / exponent)
     return power_integral(exponent, *total.limits(upper, lower), factor)
 
 
@@ -176,7 +191,8 @@ def _stiffness(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> Flo
     """Return the stiffness of one regime [N/m]."""
     if not isinstance(law, PowerLaw) or bears_nothing(law):
         return np.zeros(np.broadcast(total.log_population, total.log_load).shape)
-    factor = total.log_population + total.log_slope
-    factor = factor + math.log(law.slope)
+    # dP/d(delta) = slope * 4/3 E sqrt(a/g) * s^(exponent - 3/2).
+    factor = total.log_population + total.log_slope + math.log(law.slope)
+    factor = factor + (law.exponent - 1.5) * total.log_ratio
     exponent = (1 - law.exponent) * total.excess
     return power_integral(exponent, *total.limits(upper, lower), factor)

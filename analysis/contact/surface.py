@@ -9,10 +9,30 @@ from jointbench.acquisition.errors import BadData
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.spread import ContactSpread
 from jointbench.signal.structure_constant import log_roughness
-from jointbench.signal.surface_verdict import FractalFit, Scaling
+from jointbench.signal.surface_verdict import (
+    NORMAL_97_5,
+    WIDEST_ROUGHNESS,
+    FractalFit,
+    Scaling,
+)
 
 _STEP = 1e-5
 """Step of the numerical derivative by D [-]; the constant is smooth in D."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceLevel:
+    """What a fit knows best of a surface beside D: S at its pivot.
+
+    Attributes:
+        pivot: lag at which D and S are nearly independent [m].
+        value: S there [m^2].
+        interval: 2.5 % and 97.5 % points of it [m^2].
+    """
+
+    pivot: float
+    value: float
+    interval: tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,11 +43,31 @@ class ContactSurface:
         dimension: of a line on the surface, 1 < D < 2 [-].
         roughness: fractal roughness G of that line [m].
         spread: standard deviations of D and ln G, and their correlation.
+        level: what the fit told; None where D and G were given as numbers.
+        cautions: what to keep in mind about the heights behind it.
     """
 
     dimension: float
     roughness: float
     spread: ContactSpread = field(default_factory=ContactSpread)
+    level: SurfaceLevel | None = None
+    cautions: tuple[str, ...] = ()
+
+    @property
+    def roughness_interval(self) -> tuple[float, float] | None:
+        """2.5 % and 97.5 % points of G [m]; None where no spread is known."""
+        if self.spread.log_roughness == 0:
+            return None
+        reach = float(np.exp(NORMAL_97_5 * self.spread.log_roughness))
+        return self.roughness / reach, self.roughness * reach
+
+    @property
+    def roughness_known(self) -> bool:
+        """Whether G may be told: given as a number, or fitted within a decade."""
+        interval = self.roughness_interval
+        if self.level is None or interval is None:
+            return True
+        return bool(interval[1] <= WIDEST_ROUGHNESS * interval[0])
 
     def dimension_for(self, model: ContactModel) -> float:
         """Return D as `model` wants it: of a line (2D) or of the surface, D + 1."""
@@ -66,6 +106,7 @@ def contact_surface(fit: FractalFit) -> ContactSurface:
             log_roughness=log_sd,
             correlation=float(np.clip(correlation, -1, 1)),
         ),
+        SurfaceLevel(scaling.pivot, scaling.pivot_value, scaling.pivot_value_interval),
     )
 
 

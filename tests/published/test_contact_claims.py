@@ -20,9 +20,10 @@ def scripts():
         import claims_2023
         import claims_2025
         import plate_rig
+        import printed_errors
     finally:
         sys.path.remove(folder)
-    return claims_2023, claims_2025, plate_rig
+    return claims_2023, claims_2025, plate_rig, printed_errors
 
 
 def test_every_claim_of_the_page_is_what_the_script_finds(scripts):
@@ -55,3 +56,14 @@ def test_a_plausible_damping_lets_the_mode_be_seen(scripts):
     rig = scripts[2]
     rows = {label: ratio for label, _, _, ratio in rig.plausible_damping()}
     assert 0.005 < rows["kogut-etsion, per-radian"] < 0.2
+
+
+def test_what_the_printed_errors_ask_for_is_told_for_either_sign(scripts):
+    """Fig. 9 of 2025 prints no sign; on the high side 3D/2D agrees within 3 %."""
+    asked = scripts[3].asked("3D", "2D")
+    assert asked["low", "low"] == pytest.approx(0.7479 / 0.37034)
+    assert asked["high", "high"] == pytest.approx(1.2521 / 1.62966)
+    row = next(line for line in PAGE.splitlines() if "| Fig. 9, stiffness |" in line)
+    assert "to the low side the errors ask 3D/2D = 2.02 and modified/3D = 1.12" in row
+    assert "to the high side 0.768 and 0.926" in row
+    assert "3D/2D agrees within 3 %" in row

@@ -39,6 +39,19 @@ def test_the_contract_keys_are_there(monkeypatch, tmp_path):
     assert found["damping"] is None
 
 
+def test_a_critical_area_beyond_every_double_is_null_and_named_by_its_power(
+    monkeypatch, tmp_path
+):
+    """JSON has no infinity; the reason gives the order of magnitude."""
+    found = result(monkeypatch, tmp_path, "--load=4 kN", "--dimension=1.002")
+    for model in found["models"]:
+        assert model["normal_stiffness"] == 0.0
+        assert model["verdict"] == "fully plastic"
+        assert model["usable"] is False
+        assert model["critical_area"] is None
+        assert any("critical area, 10^" in reason for reason in model["reasons"])
+
+
 def test_as_printed_is_another_number_and_says_why(monkeypatch, tmp_path):
     """Each fault by name, with its size."""
     options = ("--load=1 kN", "--model=modified_2d")
