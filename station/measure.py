@@ -287,7 +287,10 @@ def _show(measured: Measured, screen: Console) -> None:
         ("conditions", f"{measured.record.done} of {measured.planned}"),
         ("samples per channel", f"{measured.counters.delivered}"),
         ("lost samples", f"{measured.counters.lost}"),
-        ("interruptions", f"{sum(g.kind == 'back' for g in measured.record.gaps)}"),
+        (
+            "interruptions",
+            f"{sum(g.kind in ('back', 'rearmed') for g in measured.record.gaps)}",
+        ),
     ]
     screen.print(table(f"{measured.path}", ("session", "holds"), rows))
     for check in measured.record.checks:
