@@ -65,6 +65,8 @@ class NiStream:
     _moved: bool = False
     _made: int = 0
     _progress: float = 0.0
+    _asked: float = 0.0
+    _behind: bool = True
 
     def start(self) -> None:
         """Make the task and start its clock.
@@ -188,7 +190,7 @@ class NiStream:
             yield self._read_triggered(self._task, self._trigger)
             return
         block = self.settings.block
-        count = max(1, self._at_once(self._task.available()) // block) * block
+        count = max(1, self._waiting(self._task) // block) * block
         if self._moved:
             samples = self._task.resume_at(
                 self._position, count, timeout=self._timeout(count)
@@ -203,6 +205,18 @@ class NiStream:
         assert self._task is not None
         count = max(self.settings.block, self._at_once(waiting))
         return self._task.resume_at(first, count, timeout=self._timeout(count))
+
+    def _waiting(self, task: AnalogTask) -> int:
+        """Return how many samples to take at once; 0 where one block can wait at most.
+
+        The device is asked once in the time of a block, and as long as there is more.
+        """
+        now, block = self.settings.now(), self.settings.block
+        if not self._behind and now - self._asked < block / self.sample_rate:
+            return 0
+        waiting = self._at_once(task.available())
+        self._asked, self._behind = now, waiting > block
+        return waiting
 
     def _at_once(self, waiting: int) -> int:
         """Return how many of the samples that wait are read at once."""
@@ -250,7 +264,7 @@ class NiStream:
         resume, samples = read_oldest(self._task, self._position, self._read_from)
         lost, first = resume - self._position, self._position
         gap = Gap("overrun", self._segment, first, lost, lost / self.sample_rate, words)
-        self._position = resume
+        self._position, self._behind = resume, True
         made = self._made_before + resume
         self.counters.acquired = max(self.counters.acquired, made)
         segment = self._segment
