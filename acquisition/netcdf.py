@@ -12,6 +12,7 @@ Source:
     CF conventions 1.11, sections 2.2 (text), 3.5 (flags), 8.1 (packed data).
 """
 
+import math
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,7 +32,13 @@ CONVENTIONS = "CF-1.11"
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 MAX_ATTRIBUTE_BYTES = 60_000  # HDF5 keeps at most 64 KiB beside an object
 _GROWTH = 2**22  # bytes by which a file in memory grows
-_CHUNK_VALUES = 65_536
+_IN_MEMORY: dict[str, Any] = {
+    "driver": "core",
+    "backing_store": False,
+    "block_size": _GROWTH,
+}
+CHUNK_VALUES = 65_536
+"""Values of a chunk; what is written piece by piece is written by so many columns."""
 _COMPRESS_FROM = 256  # values; below, a chunk costs more than it saves
 
 Attribute = str | int | float | bool
@@ -39,7 +46,12 @@ Attribute = str | int | float | bool
 
 @contextmanager
 def new_file(
-    path: Path | str, *, schema: str, title: str, overwrite: bool = False
+    path: Path | str,
+    *,
+    schema: str,
+    title: str,
+    overwrite: bool = False,
+    memory: bool = True,
 ) -> Iterator[h5py.File]:
     """Write a file that appears under its name only once it is whole.
 
@@ -50,6 +62,8 @@ def new_file(
         schema: name and version of the layout, for example ``"jointbench-session/1"``.
         title: one line for people who open it elsewhere.
         overwrite: replace a file that is there.
+        memory: make the whole file in memory first; whoever writes more than that
+            holds writes to the disk, and sees to it that there is room (`DiskRoom`).
 
     Yields:
         The open file, with its root attributes set.
@@ -65,15 +79,14 @@ def new_file(
         part.write_bytes(b"")  # a folder that takes no file says so before the work
         # HDF5 that meets a full disk crashes the process when it ends: it writes to
         # memory, and what it made goes to the disk in one piece.
-        with h5py.File(
-            part, "w", driver="core", backing_store=False, block_size=_GROWTH
-        ) as file:
+        with h5py.File(part, "w", **(_IN_MEMORY if memory else {})) as file:
             attributes = {"Conventions": CONVENTIONS, "title": title, "schema": schema}
             write_attributes(file, attributes)
             yield file
             file.flush()
-            image = file.id.get_file_image()
-        part.write_bytes(image)
+            image = file.id.get_file_image() if memory else None
+        if image is not None:
+            part.write_bytes(image)
         _sync(part)
         _require_free(path, overwrite)
         part.replace(path)
@@ -144,18 +157,56 @@ def write_variable(
         ShapeError: the values do not fit the dimensions, or there are none.
     """
     array = np.asarray(values)
-    if array.ndim != len(dims) or array.size == 0:
-        raise ShapeError(f"{name!r} has shape {array.shape} for dimensions {dims}")
+    dataset = make_variable(
+        group,
+        name,
+        (array.shape, array.dtype),
+        dims,
+        units=units,
+        long_name=long_name,
+        attributes=attributes,
+    )
+    dataset[...] = array
+    return dataset
+
+
+def make_variable(
+    group: h5py.Group,
+    name: str,
+    kind: tuple[tuple[int, ...], np.typing.DTypeLike],
+    dims: Sequence[str],
+    *,
+    units: str | None = None,
+    long_name: str = "",
+    attributes: Mapping[str, Attribute | None] | None = None,
+) -> h5py.Dataset:
+    """Make a variable whose values are written later; otherwise as `write_variable`.
+
+    Args:
+        group: where.
+        name: of the variable.
+        kind: shape and type of the values.
+        dims: one name for each axis.
+        units: SI unit, or None.
+        long_name: what it is, in words.
+        attributes: anything else.
+
+    Raises:
+        ShapeError: the shape does not fit the dimensions, or holds no values.
+    """
+    shape, dtype = kind
+    if len(shape) != len(dims) or 0 in shape:
+        raise ShapeError(f"{name!r} has shape {shape} for dimensions {dims}")
     options: dict[str, Any] = {}
-    if array.size >= _COMPRESS_FROM:
+    if math.prod(shape) >= _COMPRESS_FROM:
         options = {
-            "chunks": _chunks(array.shape),
+            "chunks": _chunks(shape),
             "compression": "gzip",
             "compression_opts": 1,
             "shuffle": True,
             "fletcher32": True,
         }
-    dataset = group.create_dataset(name, data=array, **options)
+    dataset = group.create_dataset(name, shape=shape, dtype=dtype, **options)
     _attach(group, dataset, dims)
     write_attributes(dataset, {"long_name": long_name or None, "units": units})
     write_attributes(dataset, attributes or {})
@@ -184,16 +235,19 @@ def write_axis(
         long_name: what it is, in words.
     """
     packing = {"scale_factor": float(step), "add_offset": float(origin)}
-    index = np.arange(size, dtype=np.int32)
-    return write_variable(
+    dataset = make_variable(
         group,
         name,
-        index,
+        ((size,), np.int32),
         (name,),
         units=units,
         long_name=long_name,
         attributes=packing,
     )
+    for first in range(0, size, CHUNK_VALUES):
+        past = min(first + CHUNK_VALUES, size)
+        dataset[first:past] = np.arange(first, past, dtype=np.int32)
+    return dataset
 
 
 def write_flags(
@@ -304,7 +358,7 @@ def _scale(group: h5py.Group, dim: str, size: int) -> h5py.Dataset:
 def _chunks(shape: tuple[int, ...]) -> tuple[int, ...]:
     """Return chunks of whole last axes, about half a megabyte of doubles."""
     chunks = []
-    left = _CHUNK_VALUES
+    left = CHUNK_VALUES
     for length in reversed(shape):
         chunks.append(max(1, min(length, left)))
         left //= max(1, length)

@@ -44,6 +44,7 @@ from jointbench.acquisition.session_streams import (
 from jointbench.acquisition.text_files import named, shown
 
 SESSION_SCHEMA = "jointbench-session/1"
+SESSION_TITLE = "jointbench session: raw recordings and surfaces"
 # What damaged content makes h5py, NumPy, JSON and the records raise.
 _DAMAGE = (KeyError, ValueError, TypeError, OSError, RuntimeError, OverflowError)
 _TEXTS = ("uuid", "created", "software", "operator", "notes", "source")
@@ -64,18 +65,22 @@ def write_session(
             written there.
         BadData: a record is empty, or holds a text that cannot be stored.
     """
-    title = "jointbench session: raw recordings and surfaces"
     with new_file(
-        path, schema=SESSION_SCHEMA, title=title, overwrite=overwrite
+        path, schema=SESSION_SCHEMA, title=SESSION_TITLE, overwrite=overwrite
     ) as file:
-        write_attributes(file, {name: getattr(session, name) for name in _TEXTS})
-        write_attributes(file, {"simulated": bool(session.simulated)})
-        write_setup(file, session.joint)
+        write_head(file, session)
         for position, recording in enumerate(session.recordings):
             write_recording(file, recording, position)
         for position, surface in enumerate(session.surfaces):
             write_surface(file, surface, position)
         write_provenance(file, session)
+
+
+def write_head(file: h5py.File, session: Session) -> None:
+    """Write what a session says of itself, all but its recordings and surfaces."""
+    write_attributes(file, {name: getattr(session, name) for name in _TEXTS})
+    write_attributes(file, {"simulated": bool(session.simulated)})
+    write_setup(file, session.joint)
 
 
 def read_session(path: Path | str) -> Session:
@@ -94,7 +99,7 @@ def read_session(path: Path | str) -> Session:
     """
     with open_guarded(path) as file, damage_named(path):
         if read_attribute(file, "schema") == LIVE_SCHEMA:
-            return session_from_live(read_live(file))
+            return session_from_live(file, read_live(file))
         require_schema(file, SESSION_SCHEMA, path)
         return _read(file)
 

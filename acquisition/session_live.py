@@ -27,6 +27,7 @@ import h5py
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.disk_room import DiskRoom
 from jointbench.acquisition.errors import InstrumentError, UsageError
 from jointbench.acquisition.netcdf import write_attributes
 from jointbench.acquisition.session_lock import drop_lock, hold_lock
@@ -34,8 +35,6 @@ from jointbench.acquisition.text_files import named
 
 LIVE_SCHEMA = "jointbench-live/1"
 _SYNC_EVERY = 1.0  # [s]
-_RESERVE = 2**20  # bytes, more than HDF5's own and the close of the file take
-_STEP = 2**23  # bytes taken at once
 _LOG_CHUNK = 4096
 _BLOCKS_CHUNK = 256
 
@@ -153,7 +152,7 @@ class LiveSession:
 
     def _write_all(self) -> None:
         with self.path.open("rb+") as handle:
-            room = _Room(handle, self._file)
+            room = DiskRoom(handle, self._file)
             synced = time.monotonic()
             while (item := self._queue.get()) is not None:
                 try:
@@ -183,42 +182,6 @@ class LiveSession:
         _extend(self._file["samples"], single)
         row = np.array([[segment, first, single.shape[1], crc]], dtype=np.int64)
         _extend(self._file["blocks"], row.T)
-
-
-class _Room:
-    """Disk that is taken before HDF5 writes to it.
-
-    HDF5 that meets a full disk cannot close its file any more, and crashes the process
-    when it ends. So the disk is asked beforehand, beyond what HDF5 has used: it says
-    no to us, and HDF5 still has the room to close.
-    """
-
-    def __init__(self, handle: IO[bytes], file: h5py.File) -> None:
-        self._handle, self._file = handle, file
-        self._size = int(file.id.get_filesize())
-
-    def make(self, count: int) -> None:
-        """See to it that there is room for an item of so many bytes.
-
-        Raises:
-            OSError: there is none.
-        """
-        needed = int(self._file.id.get_filesize()) + count + _RESERVE
-        if needed <= self._size:
-            return
-        try:
-            self._take(needed + _STEP)
-        except OSError:
-            self._take(needed)
-
-    def _take(self, size: int) -> None:
-        if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(self._handle.fileno(), self._size, size - self._size)
-        else:
-            self._handle.seek(self._size)
-            self._handle.write(bytes(size - self._size))
-            self._handle.flush()
-        self._size = size
 
 
 def _create(path: Path, meta: Entry, channels: int, block: int) -> h5py.File:

@@ -13,52 +13,64 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import IntArray
 from jointbench.acquisition.errors import FormatError
+from jointbench.acquisition.netcdf import CHUNK_VALUES
 from jointbench.acquisition.netcdf_read import read_attribute
 
 Samples = NDArray[np.float32]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LiveBlock:
-    """One block as stored.
+@dataclass(frozen=True, slots=True)
+class LiveSpan:
+    """Blocks that follow each other without a gap, each with a right checksum.
 
     Attributes:
-        segment: uninterrupted stretch that it belongs to.
-        first: index of its first sample in that stretch.
-        stored: index of its first sample in the file.
-        samples: shape (n_channels, n).
+        segment: uninterrupted stretch of the stream that they belong to.
+        first: index of their first sample in that stretch.
+        stored: index of it in the file.
+        count: samples per channel.
     """
 
     segment: int
     first: int
     stored: int
-    samples: Samples
+    count: int
+
+    @property
+    def past(self) -> int:
+        """Index in the file one past the last sample."""
+        return self.stored + self.count
+
+    def cut(self, stored: int, past: int) -> "LiveSpan":
+        """Return the part from one index in the file up to another."""
+        return LiveSpan(
+            self.segment, self.first + stored - self.stored, stored, past - stored
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LiveContent:
-    """What is left of a recording.
+    """What is left of a recording; its samples stay in the file.
 
     Attributes:
         meta: as known before the first sample.
-        blocks: those whose checksum is right, in their order.
+        spans: what is there, in its order; a span goes over several runs.
         log: entries whose checksum is right, in their order.
         damaged: blocks that were left out.
     """
 
     meta: dict[str, Any]
-    blocks: tuple[LiveBlock, ...]
+    spans: tuple[LiveSpan, ...]
     log: tuple[dict[str, Any], ...]
     damaged: int
 
     @property
     def samples(self) -> int:
         """Samples per channel that are there and right."""
-        return sum(block.samples.shape[1] for block in self.blocks)
+        return sum(span.count for span in self.spans)
 
 
 def read_live(file: h5py.File) -> LiveContent:
-    """Read the file of a recording, finished or not.
+    """Read the file of a recording through, finished or not, block by block.
 
     Args:
         file: open for reading.
@@ -70,23 +82,57 @@ def read_live(file: h5py.File) -> LiveContent:
     if not isinstance(meta, dict) or "channels" not in meta:
         raise FormatError("the head of the recording does not name its channels")
     index = np.asarray(file["blocks"][...], dtype=np.int64)
-    blocks = tuple(_blocks(file["samples"], index))
+    good = list(_good(file["samples"], index))
     return LiveContent(
         meta=meta,
-        blocks=blocks,
+        spans=tuple(_spans(index, good)),
         log=tuple(_entries(file["log"][...].tobytes())),
-        damaged=index.shape[1] - len(blocks),
+        damaged=good.count(False),
     )
 
 
-def _blocks(dataset: h5py.Dataset, index: IntArray) -> Iterator[LiveBlock]:
+def read_pieces(file: h5py.File, stored: int, count: int) -> Iterator[Samples]:
+    """Yield samples from an index in the file on, some columns at a time."""
+    dataset = file["samples"]
+    for first in range(stored, stored + count, CHUNK_VALUES):
+        yield dataset[:, first : min(first + CHUNK_VALUES, stored + count)]
+
+
+def _good(dataset: h5py.Dataset, index: IntArray) -> Iterator[bool]:
+    """Tell of each block whether its samples are those that were written."""
     stored = 0
-    for segment, first, count, crc in index.T.tolist():
-        if count > 0 and stored + count <= dataset.shape[1]:
+    for _, _, count, crc in index.T.tolist():
+        whole = count > 0 and stored + count <= dataset.shape[1]
+        if whole:
             samples = np.ascontiguousarray(dataset[:, stored : stored + count])
-            if zlib.crc32(samples.tobytes()) == crc:
-                yield LiveBlock(segment, first, stored, samples)
+            whole = zlib.crc32(samples.tobytes()) == crc
+        yield whole
         stored += max(count, 0)
+
+
+def _spans(index: IntArray, good: list[bool]) -> Iterator[LiveSpan]:
+    span, stored = None, 0
+    for (segment, first, count, _), whole in zip(index.T.tolist(), good, strict=True):
+        block = LiveSpan(segment, first, stored, count)
+        stored += max(count, 0)
+        if not whole:
+            continue
+        if span is not None and _follows(span, block):
+            span = LiveSpan(span.segment, span.first, span.stored, span.count + count)
+            continue
+        if span is not None:
+            yield span
+        span = block
+    if span is not None:
+        yield span
+
+
+def _follows(one: LiveSpan, other: LiveSpan) -> bool:
+    return (
+        other.segment == one.segment
+        and other.first == one.first + one.count
+        and other.stored == one.past
+    )
 
 
 def _entries(text: bytes) -> Iterator[dict[str, Any]]:

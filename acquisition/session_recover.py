@@ -6,13 +6,17 @@ becomes one recording, cut where samples are missing, so that no recording prete
 be continuous where it is not.
 """
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import FormatError
 from jointbench.acquisition.records import (
     Channel,
@@ -25,7 +29,11 @@ from jointbench.acquisition.records import (
     step,
 )
 from jointbench.acquisition.session import JointSetup, Session
-from jointbench.acquisition.session_live_read import LiveBlock, LiveContent
+from jointbench.acquisition.session_live_read import (
+    LiveContent,
+    LiveSpan,
+    read_pieces,
+)
 
 _SESSION_TEXTS = ("uuid", "created", "software", "operator", "notes", "source")
 _NUMBERS = (str, int, float, bool)
@@ -33,25 +41,39 @@ _NUMBERS = (str, int, float, bool)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stretch:
-    """Blocks without a gap, all of one run."""
+    """Samples without a gap, all of one run."""
 
     run: dict[str, Any]
-    blocks: tuple[LiveBlock, ...]
-
-    @property
-    def first(self) -> int:
-        return self.blocks[0].stored
-
-    @property
-    def past(self) -> int:
-        return self.blocks[-1].stored + int(self.blocks[-1].samples.shape[1])
+    span: LiveSpan
 
 
-def session_from_live(content: LiveContent) -> Session:
+def session_from_live(file: h5py.File, content: LiveContent) -> Session:
     """Make the session that a recording amounts to.
 
     Args:
+        file: of the recording, open for reading.
+        content: of it, whole or what a crash left of it.
+
+    Raises:
+        FormatError: the head of the recording is not what `LiveSession` writes.
+    """
+    outline, spans = outline_live(content)
+    recordings = (
+        replace(recording, samples=_samples(file, span, len(recording.channels)))
+        for recording, span in zip(outline.recordings, spans, strict=True)
+    )
+    return replace(outline, recordings=tuple(recordings))
+
+
+def outline_live(content: LiveContent) -> tuple[Session, tuple[LiveSpan, ...]]:
+    """Make the session that a recording amounts to, all but its samples.
+
+    Args:
         content: of its file, whole or what a crash left of it.
+
+    Returns:
+        The session, its recordings without a sample, and where in the file those of
+        each recording are.
 
     Raises:
         FormatError: the head of the recording is not what `LiveSession` writes.
@@ -67,7 +89,7 @@ def session_from_live(content: LiveContent) -> Session:
     except (KeyError, TypeError, ValueError) as error:
         raise FormatError(f"the head of the recording is damaged ({error})") from error
     hits = _hits(content.log)
-    recordings = []
+    recordings, spans = [], []
     names: dict[str, int] = {}
     for stretch in _stretches(content):
         name = str(stretch.run.get("name", "stream"))
@@ -75,13 +97,24 @@ def session_from_live(content: LiveContent) -> Session:
         if names[name] > 1:
             name = f"{name} ({names[name]})"
         recordings.append(_recording(name, stretch, channels, rate, hits))
-    return Session(
+        spans.append(stretch.span)
+    session = Session(
         **texts,
         simulated=simulated,
         joint=_joint(recordings, meta),
         recordings=tuple(recordings),
         provenance=_provenance(content),
     )
+    return session, tuple(spans)
+
+
+def _samples(file: h5py.File, span: LiveSpan, channels: int) -> FloatArray:
+    samples = np.empty((channels, span.count))
+    done = 0
+    for piece in read_pieces(file, span.stored, span.count):
+        samples[:, done : done + piece.shape[1]] = piece
+        done += piece.shape[1]
+    return samples
 
 
 def lost_samples(log: Sequence[dict[str, Any]]) -> int:
@@ -95,29 +128,18 @@ def is_finished(content: LiveContent) -> bool:
 
 
 def _stretches(content: LiveContent) -> Iterator[_Stretch]:
-    runs = [entry for entry in content.log if entry.get("kind") == "run"]
-    waiting: list[LiveBlock] = []
+    """Yield the spans, cut where runs begin; of runs at one sample the last counts."""
     before: dict[str, Any] = {"name": "quiet", "purpose": "noise of the hammer"}
-    current = before
-    for block in content.blocks:
-        begun = [run for run in runs if int(run["stored"]) <= block.stored]
-        run = begun[-1] if begun else before
-        if waiting and (run is not current or not _follows(waiting[-1], block)):
-            yield _Stretch(current, tuple(waiting))
-            waiting = []
-        current = run
-        waiting.append(block)
-    if waiting:
-        yield _Stretch(current, tuple(waiting))
-
-
-def _follows(one: LiveBlock, other: LiveBlock) -> bool:
-    count = one.samples.shape[1]
-    return (
-        other.segment == one.segment
-        and other.first == one.first + count
-        and other.stored == one.stored + count
-    )
+    begins: dict[int, dict[str, Any]] = {0: before}
+    for entry in content.log:
+        if entry.get("kind") == "run":
+            begins[int(entry["stored"])] = entry
+    starts = sorted(begins)
+    for span in content.spans:
+        inside = [start for start in starts if span.stored < start < span.past]
+        for first, past in pairwise([span.stored, *inside, span.past]):
+            run = begins[starts[bisect_right(starts, first) - 1]]
+            yield _Stretch(run, span.cut(first, past))
 
 
 def _recording(
@@ -127,28 +149,26 @@ def _recording(
     rate: float,
     hits: Sequence[tuple[int, Hit]],
 ) -> Recording:
-    run = stretch.run
+    run, span = stretch.run, stretch.span
     own = [
-        _moved(hit, stretch.first)
+        _moved(hit, span.stored)
         for _, hit in hits
-        if stretch.first <= hit.start and hit.stop <= stretch.past
+        if span.stored <= hit.start and hit.stop <= span.past
     ]
     point = str(run.get("point", ""))
     preload = run.get("preload")
     return Recording(
         name=name,
-        samples=np.concatenate([b.samples for b in stretch.blocks], axis=1).astype(
-            float
-        ),
+        samples=np.empty((len(channels), 0)),
         sample_rate=rate,
         channels=tuple(_at(channel, point) for channel in channels),
-        start_time=stretch.first / rate,
+        start_time=span.stored / rate,
         hits=tuple(own),
         provenance=(
             step(
                 "record",
-                segment=stretch.blocks[0].segment,
-                first_sample=stretch.blocks[0].first,
+                segment=span.segment,
+                first_sample=span.first,
                 **_plain(run, ("torque", "level", "purpose")),
             ),
         ),

@@ -16,7 +16,8 @@ precision where that loses not one bit.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import h5py
 import numpy as np
@@ -25,6 +26,7 @@ from numpy.typing import NDArray
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData, FormatError, UnitError
 from jointbench.acquisition.netcdf import (
+    make_variable,
     write_attributes,
     write_axis,
     write_flags,
@@ -101,6 +103,46 @@ def write_recording(file: h5py.File, recording: Recording, position: int) -> Non
     """
     if recording.samples.size == 0:
         raise BadData(f"recording {recording.name!r} holds no samples; leave it out")
+    group = _begin_recording(file, recording, position, recording.samples.shape[1])
+    values = narrowest(recording.samples)
+    _make_samples(group, values.shape, values.dtype)[...] = values
+    _end_recording(file, group, recording)
+
+
+def write_recording_in_pieces(
+    file: h5py.File,
+    recording: Recording,
+    position: int,
+    *,
+    count: int,
+    pieces: Iterable[NDArray[np.float32]],
+) -> None:
+    """Write a recording whose samples would fill the memory.
+
+    Args:
+        file: to write to, on the disk.
+        recording: all of it but its samples.
+        position: among the recordings.
+        count: samples per channel.
+        pieces: the samples in single precision, each of shape (n_channels, n), finite.
+
+    Raises:
+        BadData: a text cannot be stored.
+    """
+    group = _begin_recording(file, recording, position, count)
+    shape = (len(recording.channels), count)
+    dataset = _make_samples(group, shape, np.dtype(np.float32))
+    done = 0
+    for piece in pieces:
+        dataset[:, done : done + piece.shape[1]] = piece
+        file.flush()
+        done += piece.shape[1]
+    _end_recording(file, group, recording)
+
+
+def _begin_recording(
+    file: h5py.File, recording: Recording, position: int, count: int
+) -> h5py.Group:
     streams = file.require_group("stream")
     group = streams.create_group(free_name(recording.name, streams))
     write_attributes(
@@ -116,20 +158,29 @@ def write_recording(file: h5py.File, recording: Recording, position: int) -> Non
     write_axis(
         group,
         "time",
-        recording.samples.shape[1],
+        count,
         step=1 / recording.sample_rate,
         origin=recording.start_time,
         units="s",
         long_name="time since the session began",
     )
-    write_variable(
+    return group
+
+
+def _make_samples(
+    group: h5py.Group, shape: tuple[int, ...], dtype: np.dtype[Any]
+) -> h5py.Dataset:
+    return make_variable(
         group,
         "samples",
-        narrowest(recording.samples),
+        (shape, dtype),
         ("channel", "time"),
         long_name="samples, each channel in its si_unit",
         attributes={"coordinates": "channel_name"},
     )
+
+
+def _end_recording(file: h5py.File, group: h5py.Group, recording: Recording) -> None:
     _write_channels(group, recording.channels)
     if recording.hits:
         _write_hits(file, group, recording)

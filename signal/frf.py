@@ -160,7 +160,32 @@ def estimate_frf(
             require_alive(recording, hit)
     if window is None:
         window = join_windows([choose_window(r) for r in judged if accepted_hits(r)])
-    spectra = hit_spectra(judged, window)
+    return average_spectra(
+        hit_spectra(judged, window),
+        window,
+        estimator=estimator,
+        inherited=_inherited(judged),
+    )
+
+
+def average_spectra(
+    spectra: HitSpectra,
+    window: HammerWindow,
+    *,
+    estimator: Estimator = Estimator.H1,
+    inherited: Provenance = (),
+) -> Frf:
+    """Estimate the FRF from hits that are transformed already; see `estimate_frf`.
+
+    Args:
+        spectra: of the accepted hits.
+        window: that was applied to each of them.
+        estimator: H1, H2 or Hv.
+        inherited: steps that the recordings went through.
+
+    Raises:
+        ChannelMissing: a pair of output and input that was never measured together.
+    """
     outputs, inputs, pairs = pair_up(spectra)
     averaged = [
         estimate_pair(
@@ -172,7 +197,7 @@ def estimate_frf(
     averages = min(pair.hits.size for pair in pairs)
     coherence = _stack([a.coherence for a in averaged], shape, averages)
     done = _record(spectra, window, averages, estimator, coherence)
-    inherited, decay = _inherited(judged), window.decay_rate or 0.0
+    decay = window.decay_rate or 0.0
     noise = innovation_noise(spectra, outputs, pairs, inherited, decay)
     return Frf(
         frequency=spectra.frequency,
@@ -201,13 +226,22 @@ def excited_band(spectra: HitSpectra) -> tuple[float, float]:
         over a fiftieth of the band [Hz].
     """
     power = np.mean(np.abs(spectra.force) ** 2, axis=0)
+    return excited_band_of(power, spectra.frequency)
+
+
+def excited_band_of(power: FloatArray, frequency: FloatArray) -> tuple[float, float]:
+    """Return the band in which a force has power; see `excited_band`.
+
+    Args:
+        power: of the force, in any unit, shape (n_lines,).
+        frequency: of the lines [Hz].
+    """
     lines = max(3, power.size // 50)
     smooth = uniform_filter1d(power, lines, mode="nearest")
     strong = smooth > smooth[: power.size // 4 + 1].max() * 10 ** (-_FORCE_DROP_DB / 10)
     first = int(np.argmax(strong))
     fallen = np.flatnonzero(~strong[first:])
     last = first + int(fallen[0]) - 1 if fallen.size else power.size - 1
-    frequency = spectra.frequency
     highest = min(frequency[last], 2.0 * frequency[-1] * _ALIAS_FREE)
     return float(frequency[max(first, 1)]), float(highest)
 

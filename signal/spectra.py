@@ -2,7 +2,7 @@
 """Spectra of hammer hits on one common block, and which hits serve which FRF."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.fft
@@ -101,6 +101,22 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
         quantity=common_response(channels),
         block=block,
         block_reason=reason,
+    )
+
+
+def join_spectra(parts: Sequence[HitSpectra]) -> HitSpectra:
+    """Return the spectra of several measurements of the same channels as one.
+
+    Args:
+        parts: at least one; all on the same block at the same sample rate.
+    """
+    first = parts[0]
+    return replace(
+        first,
+        force=np.concatenate([part.force for part in parts]),
+        response=np.concatenate([part.response for part in parts]),
+        labels=tuple(row for part in parts for row in part.labels),
+        points=tuple(point for part in parts for point in part.points),
     )
 
 

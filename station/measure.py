@@ -16,7 +16,7 @@ from jointbench.acquisition.ni.sensors import calibration_warning, table_channel
 from jointbench.acquisition.ni.stream import Counters, NiStream, StreamSettings
 from jointbench.acquisition.records import Channel, Hit, Verdict
 from jointbench.acquisition.session import software_version
-from jointbench.acquisition.session_file import read_session, write_session
+from jointbench.acquisition.session_finish import finish_live
 from jointbench.acquisition.session_live import LiveSession
 from jointbench.acquisition.session_lock import is_held
 from jointbench.station.measure_bench import Bench
@@ -142,7 +142,7 @@ def finish_session(path: Path) -> None:
         InstrumentError: there is no room for it; the recording is safe as it is.
     """
     try:
-        write_session(read_session(path), path, overwrite=True)
+        finish_live(path, path, overwrite=True)
     except UsageError as error:
         raise InstrumentError(
             f"'{path}' could not be finished ({error}); what was recorded is safe in "
@@ -287,7 +287,10 @@ def _show(measured: Measured, screen: Console) -> None:
         ("conditions", f"{measured.record.done} of {measured.planned}"),
         ("samples per channel", f"{measured.counters.delivered}"),
         ("lost samples", f"{measured.counters.lost}"),
-        ("interruptions", f"{sum(g.kind == 'back' for g in measured.record.gaps)}"),
+        (
+            "interruptions",
+            f"{sum(g.kind in ('back', 'rearmed') for g in measured.record.gaps)}",
+        ),
     ]
     screen.print(table(f"{measured.path}", ("session", "holds"), rows))
     for check in measured.record.checks:

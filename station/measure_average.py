@@ -6,12 +6,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.errors import BadData, NoHitFound
 from jointbench.acquisition.records import Channel, Hit, Recording, Verdict
-from jointbench.signal.frf import Frf, estimate_frf
+from jointbench.signal.coherence_without import coherence_without, typical_coherence
+from jointbench.signal.frf import Frf, average_spectra
 from jointbench.signal.hit_verdicts import HitLimits
 from jointbench.signal.live_hits import CutHit
+from jointbench.signal.spectra import (
+    HitSpectra,
+    hit_spectra,
+    join_spectra,
+    require_alive,
+)
+from jointbench.signal.windows import HammerWindow, choose_window, join_windows
 
 _ENOUGH = 3  # hits from which one of them can be told to spoil the others
 
@@ -29,47 +36,6 @@ class Accepted:
     hit: Hit
 
 
-def average(
-    accepted: Sequence[Accepted], channels: Sequence[Channel], sample_rate: float
-) -> Frf | None:
-    """Return the FRF of the hits of one condition, None where they give none."""
-    if not accepted:
-        return None
-    shortest = min(each.cut.samples.shape[1] for each in accepted)
-    hits = [
-        replace(
-            each.hit,
-            start=i * shortest,
-            trigger=i * shortest + each.cut.trigger,
-            stop=(i + 1) * shortest,
-            verdict=Verdict.OK,
-        )
-        for i, each in enumerate(accepted)
-    ]
-    joined = np.hstack([each.cut.samples[:, :shortest] for each in accepted])
-    recording = Recording(
-        "average", joined, sample_rate, tuple(channels), hits=tuple(hits)
-    )
-    try:
-        return estimate_frf(recording)
-    except BadData:
-        return None
-
-
-def mean_coherence(frf: Frf | None) -> float | None:
-    """Return the coherence over the excited band, each output weighed alike [-].
-
-    The dips at antiresonances, where there is nothing but noise, are left aside: the
-    median over lines is taken of each output.
-    """
-    if frf is None or frf.coherence is None or frf.averages < 2:
-        return None
-    low, high = frf.usable_band or (frf.frequency[0], frf.frequency[-1])
-    inside = (frf.frequency >= low) & (frf.frequency <= high)
-    lines: FloatArray = frf.coherence[:, 0, inside]
-    return float(np.median(lines, axis=1).mean()) if lines.size else None
-
-
 @dataclass(frozen=True, slots=True)
 class Spoiler:
     """The one hit of an average without which the others agree.
@@ -85,49 +51,128 @@ class Spoiler:
     reason: str
 
 
-def find_spoiler(
-    accepted: Sequence[Accepted],
-    channels: Sequence[Channel],
-    *,
-    sample_rate: float,
-    wanted: float,
-) -> Spoiler | None:
-    """Find the hit that takes the coherence of the others below what is wanted.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Transformed:
+    """A hit, and what became of it under one window and length."""
 
-    Whether it was the first or the last of them does not matter: each is left out in
-    turn.
+    recording: Recording
+    own: HammerWindow
+    window: HammerWindow | None = None
+    spectra: HitSpectra | None = None
 
-    Args:
-        accepted: hits of one condition.
-        channels: of their rows.
-        sample_rate: [Hz].
-        wanted: coherence [-].
 
-    Returns:
-        The hit without which the coherence is highest, if that is what is wanted; None
-        where all agree, or where no single one is to blame.
+class GrowingAverage:
+    """The average of the hits of one condition.
+
+    A hit is transformed when it comes. Those before it are transformed again only
+    where it asks for a wider window or a shorter block than they had.
     """
-    if len(accepted) < _ENOUGH:
-        return None
-    together = mean_coherence(average(accepted, channels, sample_rate))
-    if together is None or together >= wanted:
-        return None
-    without = [
-        mean_coherence(
-            average([*accepted[:i], *accepted[i + 1 :]], channels, sample_rate)
+
+    def __init__(self, channels: Sequence[Channel], sample_rate: float) -> None:
+        """Begin without a hit.
+
+        Args:
+            channels: of the rows of every hit.
+            sample_rate: [Hz].
+        """
+        self._channels, self._rate = tuple(channels), sample_rate
+        self._kept: dict[CutHit, _Transformed] = {}
+        self._length = 0
+        self._last: tuple[tuple[CutHit, ...], Frf | None] = ((), None)
+
+    def frf(self, accepted: Sequence[Accepted]) -> Frf | None:
+        """Return the FRF of hits, None where they give none."""
+        cuts = tuple(each.cut for each in accepted)
+        if cuts != self._last[0]:
+            self._last = (cuts, self._averaged(accepted))
+        return self._last[1]
+
+    def spoiler(self, accepted: Sequence[Accepted], *, wanted: float) -> Spoiler | None:
+        """Find the hit that takes the coherence of the others below what is wanted.
+
+        Whether it was the first or the last of them does not matter: each is left out
+        in turn.
+
+        Args:
+            accepted: hits of one condition.
+            wanted: coherence [-].
+
+        Returns:
+            The hit without which the coherence is highest, if that is what is wanted;
+            None where all agree, or where no single one is to blame.
+        """
+        if len(accepted) < _ENOUGH:
+            return None
+        together = mean_coherence(self.frf(accepted))
+        if together is None or together >= wanted:
+            return None
+        without = coherence_without(self._spectra(accepted)[0])
+        position = int(np.argmax(without))
+        if without[position] < wanted:
+            return None
+        return Spoiler(
+            position,
+            together,
+            f"coherence {without[position]:.3f} without this hit, {together:.3f} with "
+            f"it (limit {wanted:g}); it struck another place or direction",
         )
-        or 0.0
-        for i in range(len(accepted))
-    ]
-    position = int(np.argmax(without))
-    if without[position] < wanted:
+
+    def _averaged(self, accepted: Sequence[Accepted]) -> Frf | None:
+        try:
+            return average_spectra(*self._spectra(accepted))
+        except BadData:
+            return None
+
+    def _spectra(self, accepted: Sequence[Accepted]) -> tuple[HitSpectra, HammerWindow]:
+        """Return the spectra of hits under the one window that serves them all.
+
+        Raises:
+            NoHitFound: there are none.
+            ChannelMissing: a response saw nothing of a hit.
+        """
+        if not accepted:
+            raise NoHitFound("there are no hits yet; strike one")
+        length = min(each.cut.samples.shape[1] for each in accepted)
+        kept = self._kept if length == self._length else {}
+        self._length = length
+        self._kept = {
+            each.cut: kept.get(each.cut) or self._cut(each, length) for each in accepted
+        }
+        window = join_windows([hit.own for hit in self._kept.values()])
+        self._kept = {cut: _under(hit, window) for cut, hit in self._kept.items()}
+        parts = [hit.spectra for hit in self._kept.values()]
+        return join_spectra([part for part in parts if part is not None]), window
+
+    def _cut(self, accepted: Accepted, length: int) -> _Transformed:
+        trigger = accepted.cut.trigger
+        hit = replace(
+            accepted.hit, start=0, trigger=trigger, stop=length, verdict=Verdict.OK
+        )
+        recording = Recording(
+            "average",
+            accepted.cut.samples[:, :length],
+            self._rate,
+            self._channels,
+            hits=(hit,),
+        )
+        require_alive(recording, hit)
+        # Its words would tell every hit from every other.
+        return _Transformed(recording, replace(choose_window(recording), reason=""))
+
+
+def _under(hit: _Transformed, window: HammerWindow) -> _Transformed:
+    """Return a hit transformed under a window, which it may be already."""
+    if hit.window == window:
+        return hit
+    return replace(hit, window=window, spectra=hit_spectra([hit.recording], window))
+
+
+def mean_coherence(frf: Frf | None) -> float | None:
+    """Return the coherence over the excited band, each output weighed alike [-]."""
+    if frf is None or frf.coherence is None or frf.averages < 2:
         return None
-    return Spoiler(
-        position,
-        together,
-        f"coherence {without[position]:.3f} without this hit, {together:.3f} with it "
-        f"(limit {wanted:g}); it struck another place or direction",
-    )
+    band = frf.usable_band or (float(frf.frequency[0]), float(frf.frequency[-1]))
+    return typical_coherence(frf.coherence[:, 0], frf.frequency, band)
 
 
 def weak_force(level: float | None, accepted: Sequence[Accepted]) -> float | None:

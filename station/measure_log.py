@@ -81,4 +81,9 @@ def gap_words(gap: Gap) -> str:
         return f"connection lost, waiting for it: {gap.words}"
     if gap.kind == "back":
         return f"connection is back after {gap.seconds:.2f} s; the gap is noted"
+    if gap.kind == "rearmed":
+        return (
+            f"the device stopped and was started again, {gap.samples} samples lost and "
+            f"{gap.seconds:.2f} s without any; the gap is noted ({gap.words})"
+        )
     return f"overrun: {gap.samples} samples lost; the gap is noted"

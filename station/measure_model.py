@@ -62,7 +62,7 @@ class SensorTable(StrictTable):
     sensitivity: str | None = None
     axes: tuple[AxisTable, ...] = Field(default=(), max_length=3)
     range: str
-    iepe: str = "4 mA"
+    iepe: str | None = None
     coupling: Literal["AC", "DC"] = "AC"
     serial: str = ""
     calibrated: date | None = None
@@ -106,7 +106,7 @@ class SensorTable(StrictTable):
             ),
             unit=rows[0].sensitivity.rpartition("/")[2].strip(),
             range=parse_value(self.range, self.quantity),
-            excitation=_amperes(self.iepe),
+            excitation=None if self.iepe is None else _amperes(self.iepe),
             coupling=self.coupling,
             serial=self.serial,
             calibrated=self.calibrated,

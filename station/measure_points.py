@@ -6,9 +6,7 @@ from jointbench.signal.frf import Frf
 from jointbench.signal.live_hits import CutHit
 from jointbench.station.measure_asking import Asker
 from jointbench.station.measure_average import (
-    Accepted,
-    average,
-    find_spoiler,
+    GrowingAverage,
     mean_coherence,
     weak_force,
 )
@@ -33,6 +31,7 @@ class Points:
         self._asker = Asker(bench, self._route, trigger)
         self._book = CheckBook(bench.channels)
         self._trials = Trials(bench, record, trigger)
+        self._average = GrowingAverage(bench.channels, bench.stream.sample_rate)
         self.tighten, self.ask = self._route.tighten, self._asker.ask
         self.wait = self._asker.wait
 
@@ -84,11 +83,8 @@ class Points:
 
     def _weed(self, number: int) -> None:
         """Take the hit out that spoils the average, be it the last one or another."""
-        spoiler = find_spoiler(
-            self._ledger.good(number),
-            self._bench.channels,
-            sample_rate=self._bench.stream.sample_rate,
-            wanted=self._bench.plan.hits.coherence,
+        spoiler = self._average.spoiler(
+            self._ledger.good(number), wanted=self._bench.plan.hits.coherence
         )
         if spoiler is not None:
             index = self._ledger.take_out(number, spoiler)
@@ -104,7 +100,7 @@ class Points:
         elif command is Command.NEXT:
             good = self._ledger.good(condition.number)
             short = len(good) < self._bench.plan.hits.repeats
-            self._finish(self._average(good), given_up=short)
+            self._finish(self._average.frf(good), given_up=short)
         elif command is Command.REPEAT:
             if not self._ledger.any(condition.number):
                 self._route.back()
@@ -131,7 +127,7 @@ class Points:
         """Show the last hit, and ask for the next or go to the next condition."""
         hits, condition = self._bench.plan.hits, self._route.condition
         good = self._ledger.good(condition.number)
-        frf = self._average(good)
+        frf = self._average.frf(good)
         coherence = mean_coherence(frf)
         number, count = len(self._record.hits), len(good)
         self._bench.watcher.hit(
@@ -151,9 +147,6 @@ class Points:
             self._finish(frf, given_up=True)
         else:
             self._asker.ask()
-
-    def _average(self, good: list[Accepted]) -> Frf | None:
-        return average(good, self._bench.channels, self._bench.stream.sample_rate)
 
     def _finish(self, frf: Frf | None, *, given_up: bool) -> None:
         """Check what can be checked, and go to the next condition."""

@@ -11,16 +11,12 @@ from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_file import (
     damage_named,
     read_session,
-    write_session,
 )
+from jointbench.acquisition.session_finish import finish_live
 from jointbench.acquisition.session_live import LIVE_SCHEMA
 from jointbench.acquisition.session_live_read import LiveContent, read_live
 from jointbench.acquisition.session_lock import is_held
-from jointbench.acquisition.session_recover import (
-    is_finished,
-    recovered_path,
-    session_from_live,
-)
+from jointbench.acquisition.session_recover import recovered_path
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
 
@@ -76,33 +72,35 @@ def run_recover(
     """
     if is_held(file):
         raise UsageError(f"'{file}' is being recorded right now; wait until it is done")
-    content = _live_content(file)
-    if content is None:
+    if not _is_live(file):
         raise UsageError(
             f"'{file}' is a finished session, there is nothing to recover; "
             "`jointbench verify` reads it through"
         )
     target = out or recovered_path(file)
     check_outputs([file], [json_target])
-    session = session_from_live(content)
-    write_session(session, target, overwrite=overwrite)
-    hits = sum(len(recording.hits) for recording in session.recordings)
+    done = finish_live(file, target, overwrite=overwrite)
     console(json_target).print(
-        f"{target}: {content.samples} samples per channel, {hits} hits, "
-        f"{content.damaged} damaged blocks left out",
+        f"{target}: {done.samples} samples per channel, {done.hits} hits, "
+        f"{done.damaged} damaged blocks left out",
         soft_wrap=True,
     )
     write_json(
         json_target,
         {
             "session": str(target),
-            "samples": content.samples,
-            "hits": hits,
-            "damaged_blocks": content.damaged,
-            "finished": is_finished(content),
+            "samples": done.samples,
+            "hits": done.hits,
+            "damaged_blocks": done.damaged,
+            "finished": done.ended,
         },
     )
     return target
+
+
+def _is_live(file: Path) -> bool:
+    with open_guarded(file) as opened, damage_named(file):
+        return read_attribute(opened, "schema") == LIVE_SCHEMA
 
 
 def _live_content(file: Path) -> LiveContent | None:

@@ -17,8 +17,11 @@ MAY_IMPORT = {
     "station": {"acquisition", "signal", "analysis", "simulators"},
 }
 ONE_HOME = {"filterpy", "nidaqmx", "serial"}
-# The simulated chassis answers in NI's own protocol, which the client package ships.
-SECOND_HOMES = {"nidaqmx": {"simulators/chassis/protocol.py"}}
+# The simulated chassis answers in NI's own protocol, which the client package ships;
+# errors are sorted by the names that the package gives them.
+SECOND_HOMES = {
+    "nidaqmx": {"simulators/chassis/protocol.py", "acquisition/ni/error_codes.py"}
+}
 NOT_AT_START = (
     "scipy",
     "numba",

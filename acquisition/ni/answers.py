@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the driver says: modules, TEDS, and the two ways in which a stream breaks."""
+"""What the driver says: modules, TEDS, and the ways in which a stream breaks."""
 
 from dataclasses import dataclass
 
@@ -12,6 +12,14 @@ class ConnectionLost(InstrumentError):
 
 class Overrun(InstrumentError):
     """Samples were overwritten in the buffer before they were read."""
+
+
+class NotYet(InstrumentError):
+    """Samples have not come in time; the task runs on, and they may still come."""
+
+
+class Stopped(InstrumentError):
+    """The device stopped the task by itself; it is there and can start another."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,8 @@ The same calls serve a driver on this computer and a device server on another, r
 simulated; only the channel behind them differs.
 """
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from typing import Any
 
 import grpc
@@ -20,28 +20,35 @@ from nidaqmx.constants import (
     ExcitationSource,
     ForceIEPESensorSensitivityUnits,
     ForceUnits,
+    OverwriteMode,
     ReadRelativeTo,
 )
-from nidaqmx.errors import DaqError, DaqNotFoundError, DaqNotSupportedError, RpcError
+from nidaqmx.errors import DaqError, RpcError
 from nidaqmx.stream_readers import AnalogMultiChannelReader
 from nidaqmx.system import System
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import InstrumentError, UsageError
+from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.ni.answers import (
     ConnectionLost,
     Module,
-    Overrun,
     Teds,
 )
-from jointbench.acquisition.ni.sensors import Axis, Sensor, channel_name
+from jointbench.acquisition.ni.error_codes import (
+    NO_PROPERTY,
+    NO_TEDS,
+    lost_words,
+    named_errors,
+)
+from jointbench.acquisition.ni.sensors import (
+    Axis,
+    Sensor,
+    channel_name,
+    excitation_current,
+)
 from jointbench.acquisition.records import Quantity
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
-OVERRUN = -200279
-# The task is unknown, the device is away, or its clock has stopped.
-_GONE = {-200088, -88709, -201003, -50405, -200284}
-_TEDS_SILENT = {-200709, -200725, -200739, -200233}
 _OPTIONS = (
     ("grpc.max_receive_message_length", -1),
     ("grpc.max_send_message_length", -1),
@@ -78,12 +85,7 @@ class Chassis:
         Raises:
             InstrumentError: there is no driver, or the server does not answer.
         """
-        with _named_errors(self.address):
-            system = (
-                System.local()
-                if self._channel is None
-                else System.remote(self._options(""))
-            )
+        with named_errors(self.address):
             return tuple(
                 Module(
                     device.name,
@@ -92,26 +94,21 @@ class Chassis:
                     device.anlg_trig_supported,
                     tuple(device.ai_physical_chans.channel_names),
                 )
-                for device in system.devices
+                for device in self._system().devices
                 if device.ai_physical_chans.channel_names
             )
 
     def teds(self, physical: str) -> Teds | None:
         """Return the TEDS of the sensor at an input, None where none answers."""
         device = physical.partition("/")[0]
-        with _named_errors(self.address):
-            system = (
-                System.local()
-                if self._channel is None
-                else System.remote(self._options(""))
-            )
-            channel = system.devices[device].ai_physical_chans[physical]
+        with named_errors(self.address):
+            channel = self._system().devices[device].ai_physical_chans[physical]
             try:
                 return Teds(
                     channel.teds_mfg_id, channel.teds_model_num, channel.teds_serial_num
                 )
             except DaqError as error:
-                if error.error_code in _TEDS_SILENT:
+                if error.error_code in NO_TEDS:
                     return None
                 raise
 
@@ -120,13 +117,19 @@ class Chassis:
 
         Raises:
             InstrumentError: a channel is refused.
+            UsageError: a module does not offer the current that a sensor needs.
         """
-        with _named_errors(self.address):
+        axes = [(sensor, axis) for sensor in sensors for axis in sensor.axes]
+        with named_errors(self.address):
+            offered = self._offered({_device(axis) for _, axis in axes})
+            currents = [
+                excitation_current(sensor, axis, offered[_device(axis)])
+                for sensor, axis in axes
+            ]
             task = nidaqmx.Task(name, grpc_options=self._options(name))
             try:
-                for sensor in sensors:
-                    for axis in sensor.axes:
-                        _add_channel(task, sensor, axis)
+                for (sensor, axis), current in zip(axes, currents, strict=True):
+                    _add_channel(task, sensor, axis, current)
             except Exception:
                 task.close()
                 raise
@@ -145,8 +148,26 @@ class Chassis:
                 return None
             if code is grpc.StatusCode.INVALID_ARGUMENT:
                 raise UsageError(str(error.details())) from error
-            raise ConnectionLost(_lost(self.address)) from error
+            raise ConnectionLost(lost_words(self.address)) from error
         return answer
+
+    def _offered(self, devices: Iterable[str]) -> dict[str, tuple[float, ...]]:
+        """Return the currents that devices offer to sensors [A], by their names."""
+        found = {}
+        for name in devices:
+            try:
+                values = self._system().devices[name].ai_current_int_excit_discrete_vals
+            except DaqError as error:
+                if error.error_code not in NO_PROPERTY:
+                    raise
+                values = ()
+            found[name] = tuple(float(value) for value in values if value > 0)
+        return found
+
+    def _system(self) -> Any:
+        if self._channel is None:
+            return System.local()
+        return System.remote(self._options(""))
 
     def _options(self, name: str) -> Any:
         if self._channel is None:
@@ -171,13 +192,16 @@ class AnalogTask:
             sample_rate: asked for [Hz].
             buffer: samples per channel that the driver keeps until they are read.
         """
-        with _named_errors(self._address):
+        with named_errors(self._address):
             self._task.timing.cfg_samp_clk_timing(
                 sample_rate,
                 sample_mode=AcquisitionType.CONTINUOUS,
                 samps_per_chan=buffer,
             )
             self._task.in_stream.input_buf_size = buffer
+            # By default a full buffer stops the device; what it makes meanwhile is
+            # lost. This way the oldest samples are, and the newest are there to read.
+            self._task.in_stream.overwrite = OverwriteMode.OVERWRITE_UNREAD_SAMPLES
             rate = float(self._task.timing.samp_clk_rate)
             self._task.start()
             return rate
@@ -200,7 +224,7 @@ class AnalogTask:
             before: samples kept before the edge.
             level: [SI unit of the channel].
         """
-        with _named_errors(self._address):
+        with named_errors(self._address):
             self._task.timing.cfg_samp_clk_timing(
                 sample_rate, sample_mode=AcquisitionType.FINITE, samps_per_chan=samples
             )
@@ -216,27 +240,39 @@ class AnalogTask:
 
         Raises:
             Overrun: some of them were overwritten.
+            NotYet: they have not come in time.
+            Stopped: the device stopped the task by itself.
             ConnectionLost: the server or the device went away.
             InstrumentError: anything else went wrong.
         """
         samples = np.empty((self._count, count))
-        with _named_errors(self._address):
+        with named_errors(self._address):
             self._reader.read_many_sample(samples, count, timeout)
         return samples
 
     def done(self) -> bool:
         """Tell whether a finite block has been made to its end."""
-        with _named_errors(self._address):
+        with named_errors(self._address):
             return bool(self._task.is_task_done())
 
     def acquired(self) -> int:
         """Return how many samples per channel the device has made since the start."""
-        with _named_errors(self._address):
+        with named_errors(self._address):
             return int(self._task.in_stream.total_samp_per_chan_acquired)
+
+    def available(self) -> int:
+        """Return how many samples per channel wait to be read."""
+        with named_errors(self._address):
+            return int(self._task.in_stream.avail_samp_per_chan)
+
+    def buffer(self) -> int:
+        """Return how many samples per channel the driver keeps."""
+        with named_errors(self._address):
+            return int(self._task.in_stream.input_buf_size)
 
     def position(self) -> int:
         """Return the next sample that a read returns, as the driver counts them."""
-        with _named_errors(self._address):
+        with named_errors(self._address):
             return int(self._task.in_stream.curr_read_pos)
 
     def resume_at(self, sample: int, count: int, *, timeout: float) -> FloatArray:
@@ -248,14 +284,15 @@ class AnalogTask:
             timeout: [s].
         """
         stream = self._task.in_stream
-        with _named_errors(self._address):
+        with named_errors(self._address):
             stream.relative_to = ReadRelativeTo.FIRST_SAMPLE
             stream.offset = sample
-        samples = self.read(count, timeout=timeout)
-        with _named_errors(self._address):
-            stream.relative_to = ReadRelativeTo.CURRENT_READ_POSITION
-            stream.offset = 0
-        return samples
+        try:
+            return self.read(count, timeout=timeout)
+        finally:
+            with named_errors(self._address):
+                stream.relative_to = ReadRelativeTo.CURRENT_READ_POSITION
+                stream.offset = 0
 
     def open_loops(self) -> tuple[str, ...]:
         """Return the channels whose IEPE loop is open: a cable or a sensor is off.
@@ -278,13 +315,17 @@ class AnalogTask:
             self._task.close()
 
 
-def _add_channel(task: Any, sensor: Sensor, axis: Axis) -> None:
+def _device(axis: Axis) -> str:
+    return axis.physical.partition("/")[0]
+
+
+def _add_channel(task: Any, sensor: Sensor, axis: Axis, current: float) -> None:
     name = channel_name(sensor, axis)
     excitation = {
         "current_excit_source": ExcitationSource.INTERNAL
-        if sensor.excitation
+        if current
         else ExcitationSource.NONE,
-        "current_excit_val": sensor.excitation,
+        "current_excit_val": current,
     }
     limits = {"min_val": -sensor.range, "max_val": sensor.range}
     if sensor.quantity is Quantity.FORCE:
@@ -313,32 +354,3 @@ def _add_channel(task: Any, sensor: Sensor, axis: Axis) -> None:
             "hammers (force) and accelerometers (acceleration)"
         )
     channel.ai_coupling = Coupling[sensor.coupling]
-
-
-@contextmanager
-def _named_errors(address: str | None) -> Iterator[None]:
-    """Turn what `nidaqmx` raises into one line that says what to do."""
-    try:
-        yield
-    except (DaqNotFoundError, DaqNotSupportedError) as error:
-        raise InstrumentError(
-            "no NI-DAQmx driver on this computer; install it from ni.com/downloads, or "
-            "name a device server with ni+grpc://host:31763"
-        ) from error
-    except RpcError as error:
-        raise ConnectionLost(_lost(address)) from error
-    except DaqError as error:
-        words = str(error).split("\n\nStatus Code")[0]
-        message = f"NI-DAQmx {error.error_code}: {words}"
-        if error.error_code == OVERRUN:
-            raise Overrun(message) from error
-        if error.error_code in _GONE:
-            raise ConnectionLost(message) from error
-        raise InstrumentError(message) from error
-
-
-def _lost(address: str | None) -> str:
-    return (
-        f"the device server at {address or 'this computer'} does not answer; check "
-        "cable, power and the server program"
-    )

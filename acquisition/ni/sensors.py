@@ -8,6 +8,8 @@ from datetime import date
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Channel, Quantity
 
+_SAME_CURRENT = 0.06  # an NI 443x says 2.1 mA where its data sheet says 2 mA
+
 
 @dataclass(frozen=True, slots=True)
 class Axis:
@@ -35,7 +37,8 @@ class Sensor:
         axes: one for each input it takes.
         unit: unit of the table, for example ``"g"``; samples are SI throughout.
         range: largest value expected [SI unit].
-        excitation: current of its built-in amplifier [A], 0 for none.
+        excitation: current of its built-in amplifier [A], 0 for none; None leaves it
+            to what the module offers.
         coupling: ``"AC"`` or ``"DC"``.
         serial: serial number, empty if not stated.
         calibrated: day of the last calibration, None if not stated.
@@ -48,7 +51,7 @@ class Sensor:
     axes: tuple[Axis, ...]
     unit: str
     range: float
-    excitation: float = 0.004
+    excitation: float | None = None
     coupling: str = "AC"
     serial: str = ""
     calibrated: date | None = None
@@ -102,6 +105,43 @@ def channel_name(sensor: Sensor, axis: Axis) -> str:
     if len(sensor.axes) == 1:
         return sensor.name
     return sensor.name + axis.direction.lstrip("+-")
+
+
+def excitation_current(sensor: Sensor, axis: Axis, offered: Sequence[float]) -> float:
+    """Return the current to feed a sensor's amplifier with [A], 0 for none.
+
+    Args:
+        sensor: the sensor; its own `excitation` counts where it is stated.
+        axis: the input that it is plugged into.
+        offered: currents above zero that the module of the input offers [A]; empty
+            where there are none, or the module does not say.
+
+    Returns:
+        The least current that is offered, where the sensor states none: an amplifier
+        takes 2 mA to 20 mA, and only a cable of tens of metres asks for more.
+
+    Raises:
+        UsageError: the module does not offer it, or offers none.
+    """
+    stated = sensor.excitation
+    what = f"channel {channel_name(sensor, axis)!r} at {axis.physical}"
+    if stated == 0 or (stated is not None and not offered):
+        return stated
+    if not offered:
+        raise UsageError(
+            f"{what}: the module offers no current for an IEPE sensor; use one that "
+            "does, or state iepe = '0 mA' if the sensor has a supply of its own"
+        )
+    if stated is None:
+        return min(offered)
+    nearest = min(offered, key=lambda current: abs(current - stated))
+    if abs(nearest - stated) <= _SAME_CURRENT * stated:
+        return nearest
+    amounts = ", ".join(f"{1e3 * current:g} mA" for current in sorted(offered))
+    raise UsageError(
+        f"{what}: iepe is {1e3 * stated:g} mA, the module offers {amounts}; state "
+        "that, or leave iepe out"
+    )
 
 
 def calibration_warning(sensor: Sensor, today: date) -> str | None:

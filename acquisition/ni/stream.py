@@ -1,125 +1,43 @@
 # SPDX-License-Identifier: MIT
 """Continuous acquisition that survives its cable: blocks, and the gaps between."""
 
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import InstrumentError
-from jointbench.acquisition.ni.answers import ConnectionLost, Overrun
+from jointbench.acquisition.ni.answers import (
+    ConnectionLost,
+    NotYet,
+    Overrun,
+    Stopped,
+)
 from jointbench.acquisition.ni.driver import AnalogTask, Chassis
+from jointbench.acquisition.ni.oldest import read_oldest
 from jointbench.acquisition.ni.sensors import Sensor
+from jointbench.acquisition.ni.stream_records import (
+    Block,
+    Counters,
+    Gap,
+    HardwareTrigger,
+    StreamSettings,
+    Waiting,
+)
+
+__all__ = [
+    "Block",
+    "Counters",
+    "Gap",
+    "HardwareTrigger",
+    "NiStream",
+    "StreamSettings",
+    "Waiting",
+]
 
 _RETRY = 0.2  # [s] between attempts to come back
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Block:
-    """Successive samples of one segment.
-
-    Attributes:
-        samples: SI units, shape (n_channels, n).
-        segment: number of the uninterrupted task they come from, from 0.
-        first: index of the first of them since that task began.
-    """
-
-    samples: FloatArray
-    segment: int
-    first: int
-
-
-@dataclass(frozen=True, slots=True)
-class Gap:
-    """What is missing between two blocks.
-
-    Attributes:
-        kind: ``"overrun"``, ``"lost"`` (the connection, just now) or ``"back"``.
-        segment: number of the segment that ends or goes on.
-        first: index of the first sample that is missing in it.
-        samples: how many are known to be missing.
-        seconds: how long nothing was measured [s]; 0 where that is not known yet.
-        words: what the driver said.
-    """
-
-    kind: str
-    segment: int
-    first: int
-    samples: int
-    seconds: float
-    words: str
-
-
-@dataclass(frozen=True, slots=True)
-class Waiting:
-    """A device that looks for its trigger has found none yet.
-
-    Attributes:
-        samples: how many fit into the time just waited.
-    """
-
-    samples: int
-
-
-@dataclass(frozen=True, slots=True)
-class HardwareTrigger:
-    """A rising edge that the device itself looks for.
-
-    Attributes:
-        channel: name of the channel that triggers.
-        level: [SI unit of the channel].
-        before: samples kept before the edge.
-        samples: of the whole block.
-    """
-
-    channel: str
-    level: float
-    before: int
-    samples: int
-
-
-@dataclass(frozen=True, slots=True)
-class StreamSettings:
-    """How to stream.
-
-    Attributes:
-        sample_rate: asked for [Hz].
-        block: samples per channel of a block.
-        buffer: seconds that the driver keeps until they are read [s].
-        patience: how long to wait for a connection that is lost [s].
-        now: clock [s].
-        sleep: waits [s].
-    """
-
-    sample_rate: float
-    block: int
-    buffer: float = 20.0
-    patience: float = 120.0
-    now: Callable[[], float] = time.monotonic
-    sleep: Callable[[float], None] = time.sleep
-
-
-@dataclass(slots=True)
-class Counters:
-    """What the device made against what was read, over all segments.
-
-    Attributes:
-        acquired: samples per channel made by the device, as its counter says.
-        unread: of those, still in its buffer when the counter was read.
-        delivered: samples per channel read.
-        unwanted: of those made, left in the buffer when the stream was paused.
-    """
-
-    acquired: int = 0
-    unread: int = 0
-    delivered: int = 0
-    unwanted: int = 0
-
-    @property
-    def lost(self) -> int:
-        """Samples per channel that were made, are not waiting, and were not read."""
-        return self.acquired - self.unread - self.unwanted - self.delivered
+_GRACE = 5.0  # [s] beyond their own time that samples may take to come
+_MOST_VALUES = 2**21  # of all channels in one read: 16 MB
 
 
 @dataclass(slots=True)
@@ -144,6 +62,11 @@ class NiStream:
     _position: int = 0
     _made_before: int = 0
     _trigger: HardwareTrigger | None = None
+    _moved: bool = False
+    _made: int = 0
+    _progress: float = 0.0
+    _asked: float = 0.0
+    _behind: bool = True
 
     def start(self) -> None:
         """Make the task and start its clock.
@@ -157,7 +80,7 @@ class NiStream:
         except InstrumentError:
             task.close()
             raise
-        self._task, self._position = task, 0
+        self._task, self._position, self._moved, self._made = task, 0, False, 0
         self._made_before = self.counters.acquired
 
     def trigger_by(self, trigger: HardwareTrigger) -> None:
@@ -174,8 +97,7 @@ class NiStream:
 
     def pause(self) -> None:
         """Stop on purpose; what the device has made and nobody read is not wanted."""
-        with suppress(InstrumentError):
-            self.count()
+        self._count_or_none()
         self.counters.unwanted += self.counters.unread
         self.counters.unread = 0
         self.close()
@@ -187,12 +109,16 @@ class NiStream:
         Raises:
             InstrumentError: the device refuses, or does not come back in time.
         """
+        self._come_back((ConnectionLost, NotYet, Stopped))
+
+    def _come_back(self, awaited: tuple[type[InstrumentError], ...]) -> None:
+        """Start as soon as it works; only errors that are awaited are waited out."""
         settings = self.settings
         since = settings.now()
         while True:
             try:
                 return self.start()
-            except ConnectionLost as error:
+            except awaited as error:
                 if settings.now() - since > settings.patience:
                     raise InstrumentError(
                         f"{error}; gave up after {settings.patience:g} s, what was "
@@ -203,15 +129,19 @@ class NiStream:
     def items(self) -> Iterator[Block | Gap | Waiting]:
         """Yield blocks and gaps for as long as the stream is read.
 
+        What waits in the buffer is read at once and handed over block by block, so
+        that a reader who was held up catches up.
+
         Raises:
-            InstrumentError: the device refuses for another reason than those two, or
-                does not come back.
+            InstrumentError: the device refuses for a reason that only the operator can
+                help with, does not come back, or makes no samples.
         """
+        self._progress = self.settings.now()
         while True:
             try:
-                yield self._read()
-            except Overrun as error:
-                yield from self._overrun(str(error))
+                yield from self._next()
+            except Stopped as error:
+                yield from self._rearm(str(error))
             except ConnectionLost as error:
                 yield Gap("lost", self._segment, self._position, 0, 0.0, str(error))
                 yield self._reconnect(str(error))
@@ -230,9 +160,9 @@ class NiStream:
         block is whole or an error.
         """
         if self._task is not None and self._trigger is None:
-            acquired, position = self._task.acquired(), self._task.position()
-            self.counters.acquired = self._made_before + max(acquired, position)
-            self.counters.unread = max(0, acquired - position)
+            acquired = max(self._task.acquired(), self._position)
+            self.counters.acquired = self._made_before + acquired
+            self.counters.unread = acquired - self._position
 
     def close(self) -> None:
         """Stop the task, if it is still there."""
@@ -240,21 +170,78 @@ class NiStream:
             self._task.close()
             self._task = None
 
-    def _read(self) -> Block | Waiting:
+    def _count_or_none(self) -> None:
+        """Count; a device that does not answer has no unread samples that are known."""
+        self.counters.unread = 0
+        with suppress(InstrumentError):
+            self.count()
+
+    def _next(self) -> Iterator[Block | Gap | Waiting]:
+        try:
+            yield from self._read()
+        except Overrun as error:
+            yield from self._overrun(str(error))
+        except NotYet as error:
+            yield self._late(str(error))
+
+    def _read(self) -> Iterator[Block | Waiting]:
         assert self._task is not None, "start() comes first"
         if self._trigger is not None:
-            return self._read_triggered(self._task, self._trigger)
-        count = self.settings.block
-        samples = self._task.read(count, timeout=count / self.sample_rate + 5.0)
-        return self._took(samples)
+            yield self._read_triggered(self._task, self._trigger)
+            return
+        block = self.settings.block
+        count = max(1, self._waiting(self._task) // block) * block
+        if self._moved:
+            samples = self._task.resume_at(
+                self._position, count, timeout=self._timeout(count)
+            )
+            self._moved = False
+        else:
+            samples = self._task.read(count, timeout=self._timeout(count))
+        yield from self._blocks(samples)
+
+    def _read_from(self, first: int, waiting: int) -> FloatArray:
+        """Read what waits from a sample on, one block at least."""
+        assert self._task is not None
+        count = max(self.settings.block, self._at_once(waiting))
+        return self._task.resume_at(first, count, timeout=self._timeout(count))
+
+    def _waiting(self, task: AnalogTask) -> int:
+        """Return how many samples to take at once; 0 where one block can wait at most.
+
+        The device is asked once in the time of a block, and as long as there is more.
+        """
+        now, block = self.settings.now(), self.settings.block
+        if not self._behind and now - self._asked < block / self.sample_rate:
+            return 0
+        waiting = self._at_once(task.available())
+        self._asked, self._behind = now, waiting > block
+        return waiting
+
+    def _at_once(self, waiting: int) -> int:
+        """Return how many of the samples that wait are read at once."""
+        channels = sum(len(sensor.axes) for sensor in self.sensors)
+        return min(waiting, _MOST_VALUES // channels)
+
+    def _timeout(self, count: int) -> float:
+        return count / self.sample_rate + _GRACE
+
+    def _blocks(self, samples: FloatArray) -> Iterator[Block]:
+        """Hand over what was read; whoever takes it may pause the stream meanwhile."""
+        segment, size = self._segment, self.settings.block
+        for first in range(0, samples.shape[1], size):
+            yield self._took(samples[:, first : first + size])
+            if self._segment != segment:
+                return
 
     def _read_triggered(
         self, task: AnalogTask, trigger: HardwareTrigger
     ) -> Block | Waiting:
         if not task.done():
             self.settings.sleep(self.settings.block / self.sample_rate)
+            self._progress = self.settings.now()
             return Waiting(self.settings.block)
-        block = self._took(task.read(trigger.samples, timeout=5.0))
+        block = self._took(task.read(trigger.samples, timeout=_GRACE))
         # The next one is armed before anybody is asked to hit.
         self.close()
         self._segment += 1
@@ -262,44 +249,102 @@ class NiStream:
         return block
 
     def _took(self, samples: FloatArray) -> Block:
+        # Counted before it is told: whoever is told may stop the stream.
         block = Block(samples, self._segment, self._position)
         self._position += samples.shape[1]
+        self._progress = self.settings.now()
         self.counters.delivered += samples.shape[1]
         made = self._made_before + self._position
         self.counters.acquired = max(self.counters.acquired, made)
         return block
 
     def _overrun(self, words: str) -> Iterator[Block | Gap]:
-        """Go on at a sample that is still there, and say what lies between."""
+        """Go on at the oldest sample that is still there; say what lies before it."""
         assert self._task is not None
-        newest = self._task.acquired()
-        # The newest quarter of the buffer is safe from being overwritten meanwhile.
-        keep = round(0.25 * self.settings.buffer * self.sample_rate)
-        resume = max(self._position, newest - keep)
-        if resume == self._position:
-            resume = newest
-        samples = self._task.resume_at(
-            resume,
-            self.settings.block,
-            timeout=self.settings.block / self.sample_rate + 5.0,
-        )
+        resume, samples = read_oldest(self._task, self._position, self._read_from)
         lost, first = resume - self._position, self._position
-        seconds = lost / self.sample_rate
-        gap = Gap("overrun", self._segment, first, lost, seconds, words)
-        self._position = resume
-        self.counters.acquired = max(
-            self.counters.acquired, self._made_before + self._position
-        )
-        # Counted before it is told: whoever is told may stop the stream.
-        block = self._took(samples)
+        gap = Gap("overrun", self._segment, first, lost, lost / self.sample_rate, words)
+        self._position, self._behind = resume, True
+        made = self._made_before + resume
+        self.counters.acquired = max(self.counters.acquired, made)
+        segment = self._segment
         yield gap
-        yield block
+        if self._segment == segment:
+            yield from self._blocks(samples)
+
+    def _late(self, words: str) -> Waiting:
+        """Wait for samples that are late, for as long as the task can still make them.
+
+        Raises:
+            Stopped: the task has ended by itself.
+            InstrumentError: the device has made no sample for too long.
+        """
+        assert self._task is not None
+        settings, made = self.settings, self._task.acquired()
+        if self._task.done():
+            raise Stopped(words)
+        if made != self._made:
+            self._made, self._progress = made, settings.now()
+        elif settings.now() - self._progress > settings.patience:
+            raise InstrumentError(
+                f"{words}; no sample for {settings.patience:g} s, what was recorded is "
+                "safe: check the clock and the trigger of the device"
+            )
+        # A read that ends early may have taken what there was with it.
+        self._moved = self._task.position() != self._position
+        return Waiting(0)
+
+    def _rearm(self, words: str) -> Iterator[Block | Gap]:
+        """Save what the stopped task still holds, and start another.
+
+        Raises:
+            InstrumentError: the device stops again and again.
+        """
+        settings, since = self.settings, self.settings.now()
+        if since - self._progress > settings.patience:
+            raise InstrumentError(
+                f"{words}; the device made no sample for {settings.patience:g} s, what "
+                "was recorded is safe: lower the rate, or free the computer"
+            )
+        segment = self._segment
+        yield from self._leftover()
+        if self._segment != segment:
+            return
+        self._count_or_none()
+        lost, first = self.counters.unread, self._position
+        self.counters.unread = 0
+        self.close()
+        self._segment += 1
+        if first == 0:
+            settings.sleep(_RETRY)
+        self.resume()
+        away = settings.now() - since + lost / self.sample_rate
+        yield Gap("rearmed", segment, first, lost, away, words)
+
+    def _leftover(self) -> Iterator[Block]:
+        """Yield what can still be read from a task that has stopped."""
+        segment = self._segment
+        while self._segment == segment:
+            samples = self._still_there()
+            if samples is None:
+                return
+            yield from self._blocks(samples)
+
+    def _still_there(self) -> FloatArray | None:
+        with suppress(InstrumentError):
+            if self._task is not None and self._trigger is None:
+                waiting = self._at_once(self._task.available())
+                if waiting:
+                    return self._task.read(waiting, timeout=0.0)
+        return None
 
     def _reconnect(self, words: str) -> Gap:
         since, first = self.settings.now(), self._position
         self.close()
         self._segment += 1
-        self.resume()
+        # It has run with this very table: whatever is refused now, a device that has
+        # just been switched on may still learn.
+        self._come_back((InstrumentError,))
         away = self.settings.now() - since
         return Gap("back", self._segment, first, 0, away, words)
 

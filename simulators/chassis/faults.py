@@ -12,6 +12,8 @@ class FaultKind(StrEnum):
 
     OVERRUN = "overrun"
     """At a sample, `value` samples are overwritten before they are read."""
+    ERROR = "error"
+    """At a sample, one read ends with NI's error number -`value`."""
     DROP = "drop"
     """At a sample, the server goes away for `value` seconds."""
     SLOW = "slow"
@@ -22,6 +24,8 @@ class FaultKind(StrEnum):
     """From a sample on, the IEPE loop of input number `value` is whole again."""
     REFUSE = "refuse"
     """From the start, input number `value` does not exist."""
+    TEDS_ERROR = "teds_error"
+    """From the start, every TEDS is refused with NI's error number -`value`."""
     WRONG_TEDS = "wrong_teds"
     """From the start, another sensor's TEDS answers at input number `value`."""
 

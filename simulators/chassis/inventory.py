@@ -4,20 +4,22 @@
 import math
 from dataclasses import dataclass
 
-from jointbench.simulators.chassis.protocol import Refusal
+from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal
 from jointbench.simulators.plates_bench import PluggedSensor
 
 INPUTS_PER_MODULE = 4
 PRODUCT = "NI 9234"
 DRIVER_VERSION = {0x1272: 24, 0x1923: 5, 0x2F22: 0}
-NO_SUCH_CHANNEL = -200170
-NO_SUCH_DEVICE = -200220
-BAD_VALUE = -200077
-NO_TEDS = -200709
-UNKNOWN_ATTRIBUTE = -200233
+CURRENTS = (0.002,)  # [A], of an NI 9234
+NO_SUCH_CHANNEL = DAQmxErrors.PHYSICAL_CHAN_DOES_NOT_EXIST
+NO_SUCH_DEVICE = DAQmxErrors.INVALID_DEVICE_ID
+BAD_VALUE = DAQmxErrors.INVALID_ATTRIBUTE_VALUE
+NO_TEDS = DAQmxErrors.TEDS_SENSOR_NOT_DETECTED
+UNKNOWN_ATTRIBUTE = DAQmxErrors.SPECIFIED_ATTR_NOT_VALID
 _PRODUCT_TYPE, _SERIAL, _CHANNELS = 0x631, 0x632, 0x231E
 _ANALOG_TRIGGER, _SIMULATED = 0x2984, 0x22CA
 _MAX_RATES, _MIN_RATE, _RANGES = (0x298C, 0x298D), 0x298E, 0x2990
+_CURRENTS = 0x29CB
 _TEDS_MANUFACTURER, _TEDS_MODEL, _TEDS_SERIAL, _TEDS_VERSION = (
     0x21DA,
     0x21DB,
@@ -36,6 +38,9 @@ class Inventory:
         top_rate: samples per second and channel at the most [Hz]; slower rates are
             this one over a whole number.
         analogue_trigger: whether the modules can trigger on a signal.
+        currents: that the modules offer to IEPE sensors [A]; empty for none.
+        teds_error: number of NI's error that ends every question for a TEDS, 0 for
+            none.
         sensors: plugged into the first inputs.
         missing: inputs that are refused.
         swapped_teds: inputs at which a wrong TEDS answers.
@@ -45,6 +50,8 @@ class Inventory:
     modules: int = 1
     top_rate: float = 51_200.0
     analogue_trigger: bool = True
+    currents: tuple[float, ...] = CURRENTS
+    teds_error: int = 0
     sensors: tuple[PluggedSensor, ...] = ()
     missing: frozenset[int] = frozenset()
     swapped_teds: frozenset[int] = frozenset()
@@ -126,11 +133,29 @@ def device_number(inventory: Inventory, device: str, attribute: int) -> float:
 
 
 def device_ranges(inventory: Inventory, device: str, attribute: int) -> list[float]:
-    """Return pairs of input ranges [V]."""
-    _place(inventory, device)
+    """Return pairs of input ranges [V], or the currents for IEPE sensors [A]."""
+    place = _place(inventory, device)
     if attribute == _RANGES:
         return [-5.0, 5.0]
+    if attribute == _CURRENTS and place and inventory.currents:
+        return list(inventory.currents)
     raise _unknown(attribute)
+
+
+def require_current(inventory: Inventory, current: float) -> None:
+    """Refuse a current that the modules do not offer [A].
+
+    Raises:
+        Refusal: as an NI module refuses it.
+    """
+    if not any(math.isclose(current, offered) for offered in inventory.currents):
+        offered = "\n".join(f"{each:g}" for each in inventory.currents)
+        raise Refusal(
+            BAD_VALUE,
+            "Requested value is not a supported value for this property.\n"
+            f"Property: AI.CurrentExcit.Val\nRequested Value: {current:g}\n"
+            f"You Can Select: {offered}",
+        )
 
 
 def teds_number(inventory: Inventory, physical: str, attribute: int) -> int:
@@ -140,6 +165,8 @@ def teds_number(inventory: Inventory, physical: str, attribute: int) -> int:
         Refusal: no sensor with a TEDS is plugged in.
     """
     number = input_number(inventory, physical)
+    if inventory.teds_error:
+        raise Refusal(inventory.teds_error, f"No TEDS to read.\nChannel: {physical}")
     if number >= len(inventory.sensors):
         raise Refusal(NO_TEDS, f"No TEDS sensor was detected.\nChannel: {physical}")
     sensor = inventory.sensors[number]

@@ -13,18 +13,24 @@ from nidaqmx.constants import (
     AccelSensitivityUnits,
     AccelUnits,
     AcquisitionType,
+    ExcitationSource,
     ForceIEPESensorSensitivityUnits,
     ForceUnits,
+    OverwriteMode,
     ReadRelativeTo,
 )
+from nidaqmx.error_codes import DAQmxErrors
 
 __all__ = [
     "AccelSensitivityUnits",
     "AccelUnits",
     "AcquisitionType",
+    "DAQmxErrors",
     "Daqmx",
+    "ExcitationSource",
     "ForceIEPESensorSensitivityUnits",
     "ForceUnits",
+    "OverwriteMode",
     "ReadRelativeTo",
     "Refusal",
     "Servicer",

@@ -111,8 +111,10 @@ class ReadingService(TaskService):
             elif fault.kind is FaultKind.CLOSE:
                 self._open.discard(int(fault.value))
             elif fault.kind is FaultKind.OVERRUN:
-                task.overwritten_to = task.position + int(fault.value)
-                task.skip_to(task.overwritten_to)
+                task.skip_to(task.position + task.buffer + int(fault.value))
+            elif fault.kind is FaultKind.ERROR:
+                words = "An error by script."
+                raise Refusal(-int(fault.value), words, read=0)
             elif fault.kind is FaultKind.DROP:
                 self._drop(fault.value)
 

@@ -17,7 +17,7 @@ import grpc
 from jointbench.acquisition.errors import InstrumentError, UsageError
 from jointbench.acquisition.source import Source
 from jointbench.simulators.chassis.faults import Fault, FaultKind
-from jointbench.simulators.chassis.inventory import Inventory
+from jointbench.simulators.chassis.inventory import CURRENTS, Inventory
 from jointbench.simulators.chassis.protocol import add_servicer
 from jointbench.simulators.chassis.reading import ReadingService
 from jointbench.simulators.chassis.specimen import StreamedSpecimen
@@ -50,6 +50,7 @@ class ChassisSetup:
         modules: of four inputs each.
         top_rate: samples per second and channel at the most [Hz].
         analogue_trigger: whether the modules can trigger on a signal.
+        currents: that the modules offer to IEPE sensors [A]; empty for none.
         faults: what goes wrong, and when.
         port: to listen on; 0 for any that is free.
     """
@@ -59,6 +60,7 @@ class ChassisSetup:
     modules: int = 1
     top_rate: float = 51_200.0
     analogue_trigger: bool = True
+    currents: tuple[float, ...] = CURRENTS
     faults: tuple[Fault, ...] = ()
     port: int = 0
 
@@ -177,7 +179,7 @@ class SimulatedChassis:
         return service
 
 
-_FROM_THE_START = (FaultKind.REFUSE, FaultKind.WRONG_TEDS)
+_FROM_THE_START = (FaultKind.REFUSE, FaultKind.WRONG_TEDS, FaultKind.TEDS_ERROR)
 
 
 def _inventory(setup: ChassisSetup, sensors: tuple[PluggedSensor, ...]) -> Inventory:
@@ -188,6 +190,8 @@ def _inventory(setup: ChassisSetup, sensors: tuple[PluggedSensor, ...]) -> Inven
         modules=setup.modules,
         top_rate=setup.top_rate,
         analogue_trigger=setup.analogue_trigger,
+        currents=setup.currents,
+        teds_error=next((-f for f in inputs(FaultKind.TEDS_ERROR)), 0),
         sensors=sensors,
         missing=inputs(FaultKind.REFUSE),
         swapped_teds=inputs(FaultKind.WRONG_TEDS),

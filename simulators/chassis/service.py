@@ -22,8 +22,11 @@ from jointbench.simulators.chassis.protocol import (
     AccelUnits,
     AcquisitionType,
     Daqmx,
+    DAQmxErrors,
+    ExcitationSource,
     ForceIEPESensorSensitivityUnits,
     ForceUnits,
+    OverwriteMode,
     ReadRelativeTo,
     Refusal,
     Servicer,
@@ -32,7 +35,7 @@ from jointbench.simulators.chassis.protocol import (
 )
 from jointbench.simulators.chassis.task import Task, TaskChannel, Trigger
 
-INVALID_TASK = -200088
+INVALID_TASK = DAQmxErrors.INVALID_TASK
 RISING = 10280
 STANDARD_GRAVITY = 9.80665
 _CHANNEL_TYPE, _ANALOG_INPUT = 0x187F, 10100
@@ -110,7 +113,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
 
     @answered
     def GetDeviceAttributeDoubleArray(self, request: Any, context: Any) -> Any:
-        """Answer for ranges."""
+        """Answer for ranges and currents."""
         values = stock.device_ranges(
             self.inventory, request.device_name, attribute_of(request)
         )
@@ -179,6 +182,7 @@ class TaskService(DeviceService):
     def CreateAIForceIEPEChan(self, request: Any, context: Any) -> Any:
         """Add a hammer or a load cell with a built-in amplifier."""
         units = request.sensitivity_units_raw or request.sensitivity_units
+        self._require_current(request)
         per_newton = 1e-3 * request.sensitivity
         if units == ForceIEPESensorSensitivityUnits.MILLIVOLTS_PER_POUND.value:
             per_newton /= POUND_FORCE
@@ -191,6 +195,7 @@ class TaskService(DeviceService):
     def CreateAIAccelChan(self, request: Any, context: Any) -> Any:
         """Add an accelerometer."""
         units = request.sensitivity_units_raw or request.sensitivity_units
+        self._require_current(request)
         in_volts = units == AccelSensitivityUnits.VOLTS_PER_G.value
         per_g = request.sensitivity * (1.0 if in_volts else 1e-3)
         returned = request.units_raw or request.units
@@ -203,6 +208,11 @@ class TaskService(DeviceService):
         """Add a plain voltage."""
         self._add(request, 1.0)
         return Daqmx.CreateAIVoltageChanResponse()
+
+    def _require_current(self, request: Any) -> None:
+        source = request.current_excit_source_raw or request.current_excit_source
+        if source == ExcitationSource.INTERNAL.value:
+            stock.require_current(self.inventory, request.current_excit_val)
 
     def _add(self, request: Any, sensitivity: float) -> None:
         number = stock.input_number(self.inventory, request.physical_channel)
@@ -293,11 +303,13 @@ class TaskService(DeviceService):
 
     @answered
     def SetReadAttributeInt32(self, request: Any, context: Any) -> Any:
-        """Move the place that the next read starts from."""
+        """Move the place of the next read; say whether unread samples may go."""
         task = self.task(request)
         value = request.value_raw or request.value
         if attribute_of(request) == 0x190A:
             task.relative_to_first = value == ReadRelativeTo.FIRST_SAMPLE.value
         elif attribute_of(request) == 0x190B:
             task.offset = value
+        elif attribute_of(request) == 0x1211:
+            task.overwrites = value == OverwriteMode.OVERWRITE_UNREAD_SAMPLES.value
         return Daqmx.SetReadAttributeInt32Response()

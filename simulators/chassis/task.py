@@ -9,14 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.simulators.chassis.protocol import Refusal
+from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal
 from jointbench.simulators.converter import Digitiser
 
-SAMPLES_NO_LONGER_AVAILABLE = -200279
-SAMPLES_NOT_YET_AVAILABLE = -200284
-SAMPLES_WILL_NEVER_BE_AVAILABLE = -200278
-WAIT_TIMED_OUT = -200560
-NO_CHANNELS = -200478
 INPUT_RANGE = 5.0  # [V], either sign
 BITS = 24
 _LONGEST_SLEEP = 0.02  # [s] between looks at the clock
@@ -88,7 +83,7 @@ class Task:
         self.trigger: Trigger | None = None
         self.relative_to_first = False
         self.offset = 0
-        self.overwritten_to = 0
+        self.overwrites = False
         self.overloaded: set[str] = set()
         self._pace, self._volts = pace, volts
         self._started: float | None = None
@@ -114,9 +109,12 @@ class Task:
             Refusal: there is no channel.
         """
         if not self.channels:
-            raise Refusal(NO_CHANNELS, "The task has no channels.")
+            raise Refusal(
+                DAQmxErrors.CAN_NOT_PERFORM_OP_WHEN_NO_CHANS_IN_TASK,
+                "The task has no channels.",
+            )
         self._started = self._pace.now()
-        self._position = self.overwritten_to = self._skipped = 0
+        self._position = self._skipped = 0
         self._end, self._found_to = _NEVER, 1
         if self.finite is not None and self.trigger is None:
             self._end = self.finite
@@ -158,7 +156,7 @@ class Task:
         while not self.done():
             if self._pace.now() >= deadline:
                 raise Refusal(
-                    WAIT_TIMED_OUT,
+                    DAQmxErrors.WAIT_UNTIL_DONE_DOES_NOT_INDICATE_DONE,
                     "Wait Until Done did not indicate that the task was done "
                     "within the specified timeout.",
                 )
@@ -175,23 +173,39 @@ class Task:
             self._await_trigger(deadline)
         self._await_samples(count, deadline)
         first = self.position
-        oldest = max(self.overwritten_to, self.acquired() - self.buffer)
-        if self.buffer and self.finite is None and first < oldest:
+        if self.buffer and self.finite is None:
+            self._require_kept(first)
+        samples = self._samples(first, count)
+        self._position = first + count
+        return samples
+
+    def _require_kept(self, first: int) -> None:
+        """Refuse samples that the buffer holds no more.
+
+        Source:
+            NI-DAQmx properties, OverWrite Mode.
+        """
+        if first >= self.acquired() - self.buffer:
+            return
+        if self.overwrites:
             raise Refusal(
-                SAMPLES_NO_LONGER_AVAILABLE,
+                DAQmxErrors.SAMPLES_NO_LONGER_AVAILABLE,
                 "The application is not able to keep up with the hardware "
                 "acquisition: samples were overwritten before they were read.",
                 read=0,
             )
-        samples = self._samples(first, count)
-        self._position = first + count
-        return samples
+        self.stop()
+        raise Refusal(
+            DAQmxErrors.ACQ_STOPPED_TO_PREVENT_INPUT_BUFFER_OVERWRITE,
+            "Acquisition has been stopped to prevent an input buffer overwrite.",
+            read=0,
+        )
 
     def _await_samples(self, count: int, deadline: float) -> None:
         need = self.position + count
         if need > self._end:
             raise Refusal(
-                SAMPLES_WILL_NEVER_BE_AVAILABLE,
+                DAQmxErrors.SAMPLES_WILL_NEVER_BE_AVAILABLE,
                 "The specified number of samples will never be available.",
                 read=0,
             )
@@ -202,7 +216,7 @@ class Task:
                 return
             if left <= 0 or not self.running:
                 raise Refusal(
-                    SAMPLES_NOT_YET_AVAILABLE,
+                    DAQmxErrors.SAMPLES_NOT_YET_AVAILABLE,
                     "Some or all of the samples requested have not yet been acquired.",
                     read=0,
                 )
@@ -213,7 +227,7 @@ class Task:
         while not self._look():
             if self._pace.now() >= deadline:
                 raise Refusal(
-                    SAMPLES_NOT_YET_AVAILABLE,
+                    DAQmxErrors.SAMPLES_NOT_YET_AVAILABLE,
                     "The reference trigger did not occur within the timeout.",
                     read=0,
                 )

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import fields
 from pathlib import Path
 
 import h5py
@@ -13,6 +14,7 @@ from jointbench.acquisition.errors import InstrumentError, UsageError
 from jointbench.acquisition.guards import open_guarded
 from jointbench.acquisition.records import Verdict
 from jointbench.acquisition.session_file import read_session, write_session
+from jointbench.acquisition.session_finish import finish_live
 from jointbench.acquisition.session_live import LiveSession
 from jointbench.acquisition.session_live_read import read_live
 from jointbench.acquisition.session_lock import is_held
@@ -119,7 +121,7 @@ def test_a_block_with_a_wrong_checksum_is_left_out(tmp_path: Path) -> None:
     with open_guarded(path) as file:
         content = read_live(file)
     assert content.damaged == 1
-    assert [b.stored for b in content.blocks] == [0, 200]
+    assert [span.stored for span in content.spans] == [0, 200]
 
 
 def test_a_torn_line_of_the_log_is_left_out(tmp_path: Path) -> None:
@@ -247,3 +249,121 @@ def test_an_error_of_the_disk_does_not_hide_another_one(tmp_path: Path) -> None:
         LiveSession(tmp_path / "s.h5", META, channels=2, block=100),
     ):
         raise InstrumentError("own")
+
+
+def test_a_session_finished_in_place_is_what_its_recording_read_as(
+    tmp_path: Path,
+) -> None:
+    """Samples, hits, channels, runs and provenance, bit for bit."""
+    path = tmp_path / "s.h5"
+    record(path)
+    before = read_session(path)
+    done = finish_live(path, path, overwrite=True)
+    after = read_session(path)
+    assert (done.samples, done.hits, done.damaged, done.ended) == (300, 1, 0, True)
+    for field in fields(after):
+        if field.name not in {"recordings", "joint"}:
+            assert getattr(after, field.name) == getattr(before, field.name)
+    for one, other in zip(after.recordings, before.recordings, strict=True):
+        np.testing.assert_array_equal(one.samples, other.samples)
+        for field in fields(one):
+            if field.name != "samples":
+                assert getattr(one, field.name) == getattr(other, field.name)
+    with h5py.File(path, "r") as file:
+        assert bytes(file.attrs["schema"]).startswith(b"jointbench-session/")
+
+
+def test_a_session_finished_piece_by_piece_is_the_file_that_is_written_whole(
+    tmp_path: Path,
+) -> None:
+    """Of several chunks, with a gap in between: layout and values are the same."""
+    path = tmp_path / "s.h5"
+    with LiveSession(path, META, channels=2, block=1000) as live:
+        live.log({"kind": "run", "name": "one", "point": "1"})
+        for first in range(0, 150_000, 1000):
+            live.append(block(first, 1000), segment=0, first=first)
+        live.append(block(0, 1000), segment=1, first=0)
+        live.log({"kind": "end"})
+    write_session(read_session(path), tmp_path / "whole.h5")
+    finish_live(path, tmp_path / "pieces.h5")
+    with (
+        h5py.File(tmp_path / "whole.h5") as whole,
+        h5py.File(tmp_path / "pieces.h5") as pieces,
+    ):
+        names: list[str] = []
+        whole.visit(names.append)
+        found: list[str] = []
+        pieces.visit(found.append)
+        assert found == names
+        for name in names:
+            if isinstance(whole[name], h5py.Dataset):
+                assert pieces[name].dtype == whole[name].dtype
+                assert pieces[name].chunks == whole[name].chunks
+                np.testing.assert_array_equal(pieces[name][...], whole[name][...])
+                assert set(pieces[name].attrs) == set(whole[name].attrs)
+
+
+FINISH = """
+import resource, sys
+sys.path[:0] = {path!r}
+from pathlib import Path
+from jointbench.acquisition.session_file import write_session
+from jointbench.acquisition.session_finish import finish_live
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+finish_live(Path({source!r}), Path({target!r}))
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the peak of the memory")
+def test_a_session_is_finished_in_memory_that_does_not_grow_with_it(
+    tmp_path: Path,
+) -> None:
+    """32 MB of samples take no more than 24 MB; whole they would take 200 MB."""
+    path, many = tmp_path / "s.h5", 65_536
+    with LiveSession(path, META, channels=2, block=many) as live:
+        for first in range(0, 64 * many, many):
+            live.append(block(first, many), segment=0, first=first)
+        live.log({"kind": "end"})
+    code = FINISH.format(
+        path=sys.path, source=str(path), target=str(tmp_path / "done.h5")
+    )
+    ran = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert int(ran.stdout) < 24 * 1024
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits are POSIX")
+def test_a_disk_without_room_for_the_finished_session_leaves_the_recording(
+    tmp_path: Path,
+) -> None:
+    """One line that says so, no part of a file, and the recording as it was."""
+    path, many = tmp_path / "s.h5", 65_536
+    rng = np.random.default_rng(1)
+    with LiveSession(path, META, channels=2, block=many) as live:
+        for first in range(0, 8 * many, many):
+            live.append(rng.normal(size=(2, many)), segment=0, first=first)
+    code = NO_ROOM.format(path=sys.path, source=str(path), target=str(path))
+    ran = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert "cannot be written" in ran.stdout
+    assert "File too large" in ran.stdout
+    assert read_session(path).recordings[0].samples.shape == (2, 8 * many)
+    assert not list(tmp_path.glob("*.part"))
+
+
+NO_ROOM = """
+import resource, signal, sys
+sys.path[:0] = {path!r}
+from pathlib import Path
+from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.session_finish import finish_live
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))
+try:
+    finish_live(Path({source!r}), Path({target!r}), overwrite=True)
+except UsageError as error:
+    print(error)
+"""
