@@ -130,15 +130,22 @@ def find_spoiler(
     )
 
 
-def weak_force(level: float | None, accepted: Sequence[Accepted]) -> float | None:
+def weak_force(
+    level: float | None, accepted: Sequence[Accepted], elsewhere: Sequence[float] = ()
+) -> float | None:
     """Return the least useful peak [N]: a third of the level, or of the usual hit.
 
     Args:
         level: that was asked for [N], None for any.
         accepted: hits of the condition so far.
+        elsewhere: peaks of trial hits and of hits at other conditions [N]. The first
+            hit of a condition is compared with these, half as strictly: a slender part
+            is struck more softly.
     """
-    share = HitLimits().weak_ratio
+    limits = HitLimits()
     if level is not None:
-        return share * level
+        return limits.weak_ratio * level
     peaks = [each.hit.peak_force for each in accepted]
-    return share * float(np.median(peaks)) if peaks else None
+    if peaks:
+        return limits.weak_ratio * float(np.median(peaks))
+    return limits.between_levels * float(np.median(elsewhere)) if elsewhere else None

@@ -12,7 +12,7 @@ from jointbench.acquisition.records import Recording
 from jointbench.signal.choices import Choices
 from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.modes import ModalSettings
-from jointbench.station.chain import ChainSettings, ModalChain, run_chain
+from jointbench.station.chain import ChainSettings, ModalChain, judge_hits, run_chain
 from jointbench.station.inputs import is_session_name, read_recordings
 from jointbench.station.output import console, progress_bar, table, with_sd, write_json
 from jointbench.station.outputs import check_outputs
@@ -75,8 +75,10 @@ def run_modal(
     """
     target = out or _beside(files)
     check_outputs(files, [target, universal, json_target])
-    recordings = read_recordings(files, columns=columns, point=point)
-    groups = by_preload(recordings)
+    settings = settings or ChainSettings()
+    stored = read_recordings(files, columns=columns, point=point)
+    # A hit's level is that of the campaign, whatever the preload.
+    groups = by_preload(judge_hits(stored, settings))
     chains = []
     for preload, group in groups:
         with progress_bar("judging hits, estimating FRFs") as progress:

@@ -88,6 +88,24 @@ def test_a_session_with_nothing_hidden_misses_nothing(
     assert found["scored"] == []
 
 
+def test_a_glancing_hit_among_levels_is_left_out_and_told(
+    visit: Path, tmp_path: Path
+) -> None:
+    """Unjudged recordings, one of them a fiftieth of the softest level's force."""
+    session = read_session(visit)
+    bare = [replace(recording, hits=()) for recording in session.recordings]
+    softest = min(bare, key=lambda recording: recording.samples[0].max())
+    glancing = replace(softest, name="glancing", samples=softest.samples / 50.0)
+    unjudged = replace(session, recordings=(*bare, glancing))
+    write_session(unjudged, tmp_path / "bare.h5")
+    found = gap(
+        tmp_path / "bare.h5", tmp_path / "g.json", model=visit.with_suffix(".toml")
+    )
+    told = [words for words in found["remarks"] if "glancing" in words]
+    assert len(told) == 1
+    assert "the campaign's softest level" in told[0]
+
+
 def test_a_url_is_recorded_and_what_it_hides_is_named(tmp_path: Path) -> None:
     """A delay of the top's channel, from URL to name."""
     url = f"{URL}&hide=delay&size=0.2"
