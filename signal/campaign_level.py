@@ -88,7 +88,7 @@ def softest_level(peaks: FloatArray) -> Softest | None:
     first = int(enough[0])
     level = float(np.median(ordered[first : first + shared[first]]))
     above = np.count_nonzero(ordered > _SAME_LEVEL * level)
-    return Softest(level, bool(above >= needed))
+    return Softest(level, bool(above >= max(1, ceil(_LEAST_SHARE * ordered.size))))
 
 
 def planned_level(recording: Recording) -> float | None:
@@ -135,14 +135,14 @@ def _reference(
     peak: float, planned: float | None, peaks: FloatArray, limits: HitLimits
 ) -> tuple[float, float, str]:
     """Return what a peak is compared with [N], the limit [-], and what it is."""
-    single = max(limits.weak_ratio, limits.between_levels)
+    single = max(limits.weak_ratio, limits.ladder_ratio)
     if planned is not None:
         return planned, single, "the level that the plan asks for"
     softest = softest_level(peaks)
     if softest is None:
         harder = peaks[peaks > peak]
         following = float(harder.min()) if harder.size else peak
-        return following, limits.between_levels, "the next harder hit"
+        return following, limits.ladder_ratio, "the next harder hit"
     if softest.several:
-        return softest.level, limits.between_levels, "the campaign's softest level"
+        return softest.level, limits.ladder_ratio, "the campaign's softest level"
     return softest.level, single, "the campaign's level"

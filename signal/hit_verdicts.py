@@ -31,8 +31,8 @@ class HitLimits:
             the force would reach it.
         weak_ratio: peak force over the median peak of the recording [-].
         weak_force: smallest useful peak force [N], or None.
-        ladder_ratio: peak force over the softest level of a campaign of several
-            levels [-], or None for half of `weak_ratio`.
+        ladder_ratio: peak force over the softest repeated level of a campaign of
+            several levels [-]: a step of its ladder, struck once, may lie below.
     """
 
     overload_fraction: float = 0.98
@@ -40,13 +40,7 @@ class HitLimits:
     double_ratio: float = 0.05
     weak_ratio: float = 1.0 / 3.0
     weak_force: float | None = None
-    ladder_ratio: float | None = None
-
-    @property
-    def between_levels(self) -> float:
-        """Limit below the softest of several levels: the next step may be meant."""
-        own = self.ladder_ratio
-        return 0.5 * self.weak_ratio if own is None else own
+    ladder_ratio: float = 0.1
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,11 +30,9 @@ from jointbench.station.record_command import write_visit
 from jointbench.station.sources import is_url
 from jointbench.station.toml_file import read_toml
 
-ANY_LEVEL = HitCriteria(
-    peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0, ladder_ratio=1.0 / 6.0)
-)
-"""Levels span 30x on purpose: none is weak but far below the softest of them, and the
-trigger must reach that one."""
+ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
+"""Levels span 30x on purpose: none is weak but what lies far below the softest of them,
+and the trigger must reach that one."""
 Progress = Callable[[str], None]
 
 

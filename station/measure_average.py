@@ -13,6 +13,7 @@ from jointbench.signal.frf import Frf, estimate_frf
 from jointbench.signal.hit_verdicts import HitLimits
 from jointbench.signal.live_hits import CutHit
 
+_ELSEWHERE = 0.5  # a slender point is struck more softly than the others
 _ENOUGH = 3  # hits from which one of them can be told to spoil the others
 
 
@@ -146,6 +147,8 @@ def weak_force(
     if level is not None:
         return limits.weak_ratio * level
     peaks = [each.hit.peak_force for each in accepted]
+    if not peaks and not elsewhere:
+        return None
     if peaks:
         return limits.weak_ratio * float(np.median(peaks))
-    return limits.between_levels * float(np.median(elsewhere)) if elsewhere else None
+    return _ELSEWHERE * limits.weak_ratio * float(np.median(elsewhere))

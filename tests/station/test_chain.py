@@ -107,7 +107,7 @@ def test_options_that_mean_nothing_are_refused(
 
 
 def one_hit(seed: int, peak: float) -> Recording:
-    """One hit of `peak` newtons, its samples scaled to it: level is all that differs."""
+    """One hit of `peak` newtons: the same samples scaled, level is all that differs."""
     both = two_hits()
     noise = np.random.default_rng(seed).normal(0.0, 1e-3, (2, 4096))
     samples = both.samples[:, :4096] * (peak / 50.0) + noise
