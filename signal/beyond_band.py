@@ -18,8 +18,10 @@ from jointbench.signal.spectra import HitSpectra
 
 _ALIAS_FREE = 2.0 / 2.56
 """Share of the lines that anti-alias filters of usual converters leave [-]."""
-_STANDS_OUT = 5.0
-"""Height over the median around from which a peak stands out [-]."""
+_STANDS_OUT = 3.0
+"""Height over the valleys beside it from which a peak stands out [-]."""
+_SMOOTH = 9
+"""Lines over which the level is a median."""
 _WORTH_TELLING = 0.01
 """Height over the highest peak of the band below which nobody misses a peak [-]."""
 _LEAST_COHERENCE = 0.8
@@ -64,19 +66,19 @@ class Beyond:
     peaks: tuple[Peak, ...]
 
     def words(self) -> str:
-        """One sentence: what is there and how to reach it; empty at the record's end."""
+        """One sentence on what is there and how to reach it; empty for a whole band."""
         if self.end >= self.reach:
             return ""
         end = (
-            f"the band ends at {self.end:.4g} Hz, where the force as recorded is "
+            f"the band ends at {_hertz(self.end)}, where the force as recorded is "
             f"{max(0.0, -self.force_drop):.0f} dB down; above it"
         )
         if not self.peaks:
-            return f"{end} no peak stands out up to {self.reach:.4g} Hz"
+            return f"{end} no peak stands out up to {_hertz(self.reach)}"
         highest = max(self.peaks, key=lambda p: p.height)
         top = min(self.reach, _round_up(1.05 * self.peaks[-1].frequency))
         return (
-            f"{end} peaks stand out, the highest at {highest.frequency:.4g} Hz, "
+            f"{end} peaks stand out, the highest at {_hertz(highest.frequency)}, "
             f"{highest.height:.2g} times as high as the highest within; to fit them as "
             f"well: --band {self.begin:.3g}:{top:g}"
         )
@@ -91,8 +93,8 @@ def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Bey
         spectra: of the accepted hits, as recorded.
 
     Returns:
-        Up to five peaks, those that stand out five times of what is around them, with
-        a coherence above 0.8 where there is one.
+        Up to five peaks, those three times as high as the valleys beside them, with a
+        coherence above 0.8 where there is one.
     """
     frequency = frf.frequency
     level = np.sqrt(np.mean(np.abs(frf.response) ** 2, axis=(0, 1)))
@@ -134,13 +136,28 @@ def _force_drop(spectra: HitSpectra) -> FloatArray:
 
 
 def _standing_out(level: FloatArray) -> Sequence[int]:
-    """Return the lines of peaks that stand out of what is around them."""
-    around = median_filter(level, max(3, level.size // _AROUND), mode="nearest")
-    found, _ = find_peaks(level, distance=max(1, level.size // _APART))
-    return [int(i) for i in found if level[i] > _STANDS_OUT * around[i]]
+    """Return the lines of peaks that stand out of what is around them.
+
+    Noise of a single hit is rough from line to line; the median of a few is not.
+    """
+    smooth = median_filter(level, _SMOOTH, mode="nearest")
+    floor = max(float(smooth.max()), 1.0) * np.finfo(float).eps
+    found, _ = find_peaks(
+        np.log(np.maximum(smooth, floor)),
+        prominence=np.log(_STANDS_OUT),
+        distance=max(1, level.size // _APART),
+    )
+    return [
+        max(0, i - _SMOOTH) + int(np.argmax(level[max(0, i - _SMOOTH) : i + _SMOOTH]))
+        for i in map(int, found)
+    ]
 
 
 def _round_up(frequency: float) -> float:
     """Return the next number of two digits [Hz]."""
     step = 10.0 ** (np.floor(np.log10(frequency)) - 1)
     return float(np.ceil(frequency / step) * step)
+
+
+def _hertz(frequency: float) -> str:
+    return f"{frequency:.0f} Hz" if frequency >= 100.0 else f"{frequency:.3g} Hz"

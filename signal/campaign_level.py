@@ -22,6 +22,8 @@ _SAME_LEVEL = 2.0
 _LEAST_REPEATS = 2
 _LEAST_SHARE = 0.1
 """Share of the hits that makes a level [-]: glancing hits are rarer."""
+_MANY_REPEATS, _MANY_SHARE = 3, 0.2
+"""The same for a level further below the next one than the step of a ladder."""
 _OWN_HITS = 3
 """Hits of one level in a recording that make the recording its own reference."""
 _COMPARED = (Verdict.OK, Verdict.WEAK)
@@ -69,26 +71,42 @@ def compare_levels(
     )
 
 
-def softest_level(peaks: FloatArray) -> Softest | None:
-    """Return the softest level that was struck at least twice by a tenth of the hits.
+def softest_level(peaks: FloatArray, ladder_ratio: float) -> Softest | None:
+    """Return the softest level that was struck repeatedly.
 
     Args:
         peaks: of all hits of a campaign [N], shape (n,).
+        ladder_ratio: two hits further below the next level than this are a level only
+            if they are many [-].
 
     Returns:
         None where no two hits share a level.
     """
     ordered = np.sort(peaks)
-    needed = max(_LEAST_REPEATS, ceil(_LEAST_SHARE * ordered.size))
-    shared = np.searchsorted(ordered, _SAME_LEVEL * ordered, side="right")
-    shared = shared - np.arange(ordered.size)
-    enough = np.flatnonzero(shared >= needed)
+    total, first = ordered.size, 0
+    found = _first_level(ordered, first, total)
+    while found is not None:
+        first, past = found
+        level = float(np.median(ordered[first:past]))
+        following = _first_level(ordered, past, total)
+        many = past - first >= max(_MANY_REPEATS, ceil(_MANY_SHARE * total))
+        near = following is None or level >= ladder_ratio * ordered[following[0]]
+        if many or near:
+            above = np.count_nonzero(ordered > _SAME_LEVEL * level)
+            return Softest(level, bool(above >= max(1, ceil(_LEAST_SHARE * total))))
+        found = following
+    return None
+
+
+def _first_level(ordered: FloatArray, begin: int, total: int) -> tuple[int, int] | None:
+    """Return (first, past) of the softest shared level from an index on, or None."""
+    needed = max(_LEAST_REPEATS, ceil(_LEAST_SHARE * total))
+    past = np.searchsorted(ordered, _SAME_LEVEL * ordered, side="right")
+    enough = np.flatnonzero(past[begin:] - np.arange(begin, ordered.size) >= needed)
     if enough.size == 0:
         return None
-    first = int(enough[0])
-    level = float(np.median(ordered[first : first + shared[first]]))
-    above = np.count_nonzero(ordered > _SAME_LEVEL * level)
-    return Softest(level, bool(above >= max(1, ceil(_LEAST_SHARE * ordered.size))))
+    first = begin + int(enough[0])
+    return first, int(past[first])
 
 
 def planned_level(recording: Recording) -> float | None:
@@ -138,7 +156,7 @@ def _reference(
     single = max(limits.weak_ratio, limits.ladder_ratio)
     if planned is not None:
         return planned, single, "the level that the plan asks for"
-    softest = softest_level(peaks)
+    softest = softest_level(peaks, limits.ladder_ratio)
     if softest is None:
         harder = peaks[peaks > peak]
         following = float(harder.min()) if harder.size else peak

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.acquisition.records import Quantity, Recording
 from jointbench.signal.hits import accepted_hits
 from jointbench.signal.modal_model import ModalModel
@@ -212,5 +212,5 @@ def _seconds(time: float) -> str:
     return f"{time:.3g} s" if time >= 0.1 else f"{1e3 * time:.3g} ms"
 
 
-def _modes(numbers: Sequence[int]) -> str:
-    return f"mode{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
+def _modes(numbers: IntArray) -> str:
+    return f"mode{'s' * (numbers.size > 1)} {', '.join(map(str, numbers.tolist()))}"
