@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.records import Hit, Recording
 from jointbench.signal.choices import Choices
 from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.mode_confidence import rate_modes
@@ -175,40 +176,50 @@ def modal_json(chain: ModalChain, notes: ModalNotes) -> dict[str, object]:
         "orders": orders,
         "warnings": list(notes.limits),
         "notes": list(notes.remarks()),
-        "beyond_band": {
-            "force_drop_db": notes.beyond.force_drop,
-            "alias_free_to_hz": notes.beyond.reach,
-            "peaks": [
-                {
-                    "frequency_hz": peak.frequency,
-                    "height": peak.height,
-                    "coherence": peak.coherence,
-                    "force_drop_db": peak.force_drop,
-                }
-                for peak in notes.beyond.peaks
-            ],
-        },
-        "linearity": linearity_json(notes),
+        "beyond_band": _beyond_json(notes),
+        "linearity": _linearity_json(notes),
         "averages": chain.frf.averages,
         "added_decay_rate_per_s": chain.frf.added_decay_rate,
         "synthesis_error_rms": synthesis_error(chain),
         "hits": [
-            {
-                "recording": recording.name,
-                "time_s": recording.start_time + hit.trigger / recording.sample_rate,
-                "point": hit.point,
-                "peak_n": float(hit.peak_force),
-                "verdict": hit.verdict.value,
-                "measure": float(hit.measure),
-                "reason": hit.reason,
-            }
+            _hit_json(recording, hit)
             for recording in chain.recordings
             for hit in recording.hits
         ],
     }
 
 
-def linearity_json(notes: ModalNotes) -> dict[str, object]:
+def _hit_json(recording: Recording, hit: Hit) -> dict[str, object]:
+    return {
+        "recording": recording.name,
+        "time_s": recording.start_time + hit.trigger / recording.sample_rate,
+        "point": hit.point,
+        "peak_n": float(hit.peak_force),
+        "verdict": hit.verdict.value,
+        "measure": float(hit.measure),
+        "reason": hit.reason,
+    }
+
+
+def _beyond_json(notes: ModalNotes) -> dict[str, object]:
+    """Return the peaks above the band, heights over the highest within."""
+    beyond = notes.beyond
+    return {
+        "force_drop_db": beyond.force_drop,
+        "alias_free_to_hz": beyond.reach,
+        "peaks": [
+            {
+                "frequency_hz": peak.frequency,
+                "height": peak.height,
+                "coherence": peak.coherence,
+                "force_drop_db": peak.force_drop,
+            }
+            for peak in beyond.peaks
+        ],
+    }
+
+
+def _linearity_json(notes: ModalNotes) -> dict[str, object]:
     """Return whether the FRF depends on the level, or why nobody can tell."""
     found = notes.linearity
     if found is None:
