@@ -18,7 +18,9 @@ from jointbench.acquisition.arrays import (
 )
 from jointbench.acquisition.errors import ShapeError
 from jointbench.acquisition.records import Provenance, Quantity, Recording, Step, step
+from jointbench.signal.campaign_level import compare_levels
 from jointbench.signal.frf_estimators import Estimator, bias_bound, estimate_pair
+from jointbench.signal.hit_verdicts import HitLimits
 from jointbench.signal.hits import accepted_hits, find_hits
 from jointbench.signal.innovation_noise import innovation_noise
 from jointbench.signal.spectra import (
@@ -154,7 +156,11 @@ def estimate_frf(
     """
     if isinstance(recordings, Recording):
         recordings = (recordings,)
-    judged = [r if r.hits else find_hits(r) for r in recordings]
+    judged = compare_levels(
+        [r if r.hits else find_hits(r) for r in recordings],
+        HitLimits(),
+        [not r.hits for r in recordings],
+    )
     for recording in judged:
         for hit in accepted_hits(recording):
             require_alive(recording, hit)

@@ -31,6 +31,8 @@ class HitLimits:
             the force would reach it.
         weak_ratio: peak force over the median peak of the recording [-].
         weak_force: smallest useful peak force [N], or None.
+        ladder_ratio: peak force over the softest repeated level of a campaign of
+            several levels [-]: a step of its ladder, struck once, may lie below.
     """
 
     overload_fraction: float = 0.98
@@ -38,6 +40,7 @@ class HitLimits:
     double_ratio: float = 0.05
     weak_ratio: float = 1.0 / 3.0
     weak_force: float | None = None
+    ladder_ratio: float = 0.1
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,7 +105,7 @@ def choose_window(recording: Recording) -> HammerWindow:
     width = max(_PULSES_KEPT * pulse, _SAMPLES_KEPT) / recording.sample_rate
     lead = max(_LEAD_SAMPLES, round(_LEAD_PULSES * pulse)) / recording.sample_rate
     length = min(hit.stop - hit.start for hit in hits)
-    left = max(_left_at_end(recording, hit, length) for hit in hits)
+    left = max(left_at_end(recording, hit, length) for hit in hits)
     why = (
         f"pulse of {1e3 * pulse / recording.sample_rate:.3g} ms; response ends at "
         f"{100 * left:.2g} % of its start (limit {100 * _DECAYED:g} %)"
@@ -190,13 +190,18 @@ def _pulse_length(recording: Recording, hit: Hit) -> int:
     return peak + (int(low[0]) if low.size else 0) - trigger + 1
 
 
-def _left_at_end(recording: Recording, hit: Hit, length: int) -> float:
+def left_at_end(recording: Recording, hit: Hit, length: int | None = None) -> float:
     """Return the rms of the last tenth over that of the first, largest response.
 
     A last tenth as loud as the middle is a noise floor, not a ringing structure:
     it counts as decayed unless it is half as loud as the start.
+
+    Args:
+        recording: of the hit.
+        hit: its segment.
+        length: of the block in samples, None for the whole segment.
     """
-    stop = min(hit.start + length, hit.stop)
+    stop = hit.stop if length is None else min(hit.start + length, hit.stop)
     rows = list(response_rows(recording))
     response = recording.samples[rows, hit.trigger : stop]
     response = response - response.mean(axis=1, keepdims=True)

@@ -4,8 +4,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from jointbench.acquisition.errors import NoHitFound
+from jointbench.acquisition.errors import NoHitFound, NoModeFound
 from jointbench.acquisition.records import Provenance, Recording
+from jointbench.signal.campaign_level import compare_levels
+from jointbench.signal.data_limits import block_words, time_scale_words
 from jointbench.signal.frf import Frf, estimate_frf
 from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.hits import HitCriteria, find_hits
@@ -61,22 +63,24 @@ def judge_hits(
     """Find and judge the hits of recordings that carry none yet.
 
     Where others were judged as they were recorded, one without a hit is a quiet
-    stretch between them, and is left out.
+    stretch between them, and is left out. A file of one hit has nothing to compare its
+    level with: that is judged over all recordings, or by the plan.
 
     Raises:
         NoHitFound: there is no hit in a recording, and none was judged before.
     """
     some = any(recording.hits for recording in recordings)
-    found = []
+    found, fresh = [], []
     for recording in recordings:
         try:
             found.append(
                 recording if recording.hits else find_hits(recording, settings.hits)
             )
+            fresh.append(not recording.hits)
         except NoHitFound:
             if not some:
                 raise
-    return tuple(found)
+    return compare_levels(found, settings.hits.limits, fresh)
 
 
 def run_chain(
@@ -105,7 +109,11 @@ def run_chain(
     settings = settings or ChainSettings()
     judged = judge_hits(recordings, settings)
     frf = chain_frf([smoothed(r, settings) for r in judged], settings)
-    result = identify_modes(frf, settings.modal, progress=progress)
+    try:
+        result = identify_modes(frf, settings.modal, progress=progress)
+    except NoModeFound as error:
+        why = (*time_scale_words(judged), *block_words(judged))
+        raise NoModeFound("; ".join((str(error), *why))) from error
     filled = fill_and_repeat(judged, result, settings, progress=progress)
     if filled is not None:
         return filled

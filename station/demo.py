@@ -21,7 +21,9 @@ from jointbench.station.demo_gap import (
 )
 from jointbench.station.demo_truth import compare_with_truth
 from jointbench.station.identify import show_joint
-from jointbench.station.modal import modal_json, show_modal
+from jointbench.station.modal import modal_json
+from jointbench.station.modal_notes import modal_notes
+from jointbench.station.modal_show import show_modal
 from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_folder, check_outputs, write_text
 from jointbench.station.report_command import compose, joint_link
@@ -129,7 +131,7 @@ def _show(
 ) -> None:
     screen = console(json_target)
     if analysis.modal is not None:
-        show_modal(analysis.modal, json_target)
+        show_modal(analysis.modal, modal_notes(analysis.modal), json_target)
     show_surfaces(analysis.surfaces, json_target)
     if analysis.joint is not None:
         show_joint(analysis.joint, json_target)
@@ -206,7 +208,7 @@ def _summary(
         "gap": gap_json(gap),
     }
     if analysis.modal is not None:
-        summary["modal"] = modal_json(analysis.modal)
+        summary["modal"] = modal_json(analysis.modal, modal_notes(analysis.modal))
         summary["accepted_hits"] = sum(
             hit.verdict is Verdict.OK
             for recording in analysis.modal.recordings

@@ -19,6 +19,7 @@ from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.records import Diagnosis
 from jointbench.analysis.gap.session_campaign import session_campaign
 from jointbench.analysis.gap.single_record import StretchScore, diagnose_record
+from jointbench.signal.campaign_level import compare_levels
 from jointbench.signal.hit_verdicts import HitLimits
 from jointbench.signal.hits import HitCriteria, find_hits
 from jointbench.station.bench_model import BenchModel
@@ -30,7 +31,8 @@ from jointbench.station.sources import is_url
 from jointbench.station.toml_file import read_toml
 
 ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
-"""Levels span 30x on purpose: none is weak, and the trigger must reach the softest."""
+"""Levels span 30x on purpose: none is weak but what lies far below the softest of them,
+and the trigger must reach that one."""
 Progress = Callable[[str], None]
 
 
@@ -187,11 +189,12 @@ def _examine_sessions(
     sessions = [read_session(path) for path in paths]
     sessions.sort(key=lambda session: session.created)
     remarks: list[str] = []
-    recordings = [
-        recording
+    judged = [
+        pair
         for session in sessions
-        for recording in _with_hits(session, wanted.preload, remarks)
+        for pair in _with_hits(session, wanted.preload, remarks)
     ]
+    recordings = _level_compared(judged, remarks)
     if not recordings:
         names = ", ".join(path.name for path in paths)
         raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
@@ -214,8 +217,8 @@ def _model(path: Path, wanted: Wanted) -> BenchModel:
 
 def _with_hits(
     session: Session, preload: float | None, remarks: list[str]
-) -> list[Recording]:
-    """Return the recordings in order of time, with judged hits and their preload."""
+) -> list[tuple[Recording, bool]]:
+    """Return recordings in order of time, with hits and preload; True: judged now."""
     of_session = session.joint.preload if session.joint is not None else None
     found = []
     for recording in sorted(session.recordings, key=lambda r: r.start_time):
@@ -232,8 +235,24 @@ def _with_hits(
             continue
         # What was written of the session is not checked there: an impossible preload
         # must reach the one check that names it, not the record's own.
-        found.append(_at_preload(judged, own if own is not None else preload))
+        placed = _at_preload(judged, own if own is not None else preload)
+        found.append((placed, not recording.hits))
     return found
+
+
+def _level_compared(
+    judged: Sequence[tuple[Recording, bool]], remarks: list[str]
+) -> list[Recording]:
+    """Compare the level of hits judged now with the plan's, or that of all sessions."""
+    before = [recording for recording, _ in judged]
+    after = compare_levels(before, ANY_LEVEL.limits, [fresh for _, fresh in judged])
+    remarks += [
+        f"recording {new.name!r}: {hit.reason}"
+        for old, new in zip(before, after, strict=True)
+        for was, hit in zip(old.hits, new.hits, strict=True)
+        if was.verdict is not hit.verdict
+    ]
+    return list(after)
 
 
 def _at_preload(recording: Recording, preload: float | None) -> Recording:

@@ -11,6 +11,7 @@ from jointbench.acquisition.records import Channel, Recording
 from jointbench.acquisition.session import JointSetup, Session, new_session
 from jointbench.acquisition.session_file import write_session
 from jointbench.acquisition.surfaces import Surface
+from jointbench.signal.data_limits import time_scale_words
 from jointbench.station.inputs import parse_preload, read_foreign
 from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_outputs
@@ -70,7 +71,7 @@ def run_import(
         joint=joint,
     )
     write_session(session, out, overwrite=overwrite)
-    _show(session, out, json_target)
+    _show(session, out, time_scale_words(recordings), json_target)
     return session
 
 
@@ -82,10 +83,14 @@ def _free(name: str, taken: list[str]) -> str:
     return name
 
 
-def _show(session: Session, out: Path, json_target: str | None) -> None:
+def _show(
+    session: Session, out: Path, warnings: Sequence[str], json_target: str | None
+) -> None:
     records = _records(session)
     screen = console(json_target)
     screen.print(table(f"{out}", ("record", "holds"), list(records.items())))
+    for words in warnings:
+        screen.print(f"warning: {words}")
     channels = [
         _channel(recording.name, channel)
         for recording in session.recordings
@@ -96,7 +101,7 @@ def _show(session: Session, out: Path, json_target: str | None) -> None:
         for line in caution_lines(name, texts):
             screen.print(f"  {line}", markup=False)
     content = {"session": str(out), "channels": channels, "records": records}
-    write_json(json_target, content | {"cautions": said})
+    write_json(json_target, content | {"cautions": said, "warnings": list(warnings)})
 
 
 def _channel(recording: str, channel: Channel) -> dict[str, object]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from jointbench.acquisition.errors import NoHitFound
 from jointbench.acquisition.records import Hit, Recording, Verdict
+from jointbench.signal.campaign_level import compare_levels
 from jointbench.signal.hits import HitCriteria, find_hits
 from jointbench.station.recipe import HitsPart
 from jointbench.station.recipe_settings import hit_criteria
@@ -65,7 +66,20 @@ def judge_again(recordings: Sequence[Recording], part: HitsPart) -> tuple[Hits, 
         found.append(_with_memory(recording, fresh, part, criteria))
     if first is not None and not any(found):
         raise first
-    return tuple(found)
+    return _level_compared(recordings, found, part, criteria)
+
+
+def _level_compared(
+    recordings: Sequence[Recording],
+    found: Sequence[Hits],
+    part: HitsPart,
+    criteria: HitCriteria,
+) -> tuple[Hits, ...]:
+    """Compare the level of fresh hits with the plan's, or that of all recordings."""
+    judged = [replace(r, hits=h) for r, h in zip(recordings, found, strict=True)]
+    fresh = [part.again or not recording.hits for recording in recordings]
+    compared = compare_levels(judged, criteria.limits, fresh)
+    return tuple(recording.hits for recording in compared)
 
 
 def _with_memory(

@@ -20,6 +20,7 @@ from jointbench.signal.spectra import (
 )
 from jointbench.signal.windows import HammerWindow, choose_window, join_windows
 
+_ELSEWHERE = 0.5  # a slender point is struck more softly than the others
 _ENOUGH = 3  # hits from which one of them can be told to spoil the others
 
 
@@ -175,15 +176,24 @@ def mean_coherence(frf: Frf | None) -> float | None:
     return typical_coherence(frf.coherence[:, 0], frf.frequency, band)
 
 
-def weak_force(level: float | None, accepted: Sequence[Accepted]) -> float | None:
+def weak_force(
+    level: float | None, accepted: Sequence[Accepted], elsewhere: Sequence[float] = ()
+) -> float | None:
     """Return the least useful peak [N]: a third of the level, or of the usual hit.
 
     Args:
         level: that was asked for [N], None for any.
         accepted: hits of the condition so far.
+        elsewhere: peaks of trial hits and of hits at other conditions [N]. The first
+            hit of a condition is compared with these, half as strictly: a slender part
+            is struck more softly.
     """
-    share = HitLimits().weak_ratio
+    limits = HitLimits()
     if level is not None:
-        return share * level
+        return limits.weak_ratio * level
     peaks = [each.hit.peak_force for each in accepted]
-    return share * float(np.median(peaks)) if peaks else None
+    if not peaks and not elsewhere:
+        return None
+    if peaks:
+        return limits.weak_ratio * float(np.median(peaks))
+    return _ELSEWHERE * limits.weak_ratio * float(np.median(elsewhere))

@@ -64,7 +64,7 @@ class Points:
         """Judge a hit, store the verdict, and go on."""
         condition = self._route.condition
         good = self._ledger.good(condition.number)
-        least = weak_force(condition.level, good)
+        least = weak_force(condition.level, good, self._elsewhere())
         hit = self._trigger.judge(cut, condition.point, least)
         if self.on_trial:
             self._ledger.enter(self._trials.take(cut, hit), cut, None)
@@ -80,6 +80,11 @@ class Points:
             self._weed(condition.number)
         last = self._ledger.last
         self._go_on(cut, hit if last is None else last.hit)
+
+    def _elsewhere(self) -> list[float]:
+        """Return the peaks of trial hits and of good hits at any condition [N]."""
+        good = [h.peak_force for h in self._record.hits if h.verdict is Verdict.OK]
+        return [*self._trials.peaks, *good]
 
     def _weed(self, number: int) -> None:
         """Take the hit out that spoils the average, be it the last one or another."""

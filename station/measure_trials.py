@@ -20,11 +20,13 @@ class Trials:
         bench: of the session.
         record: takes the proposals.
         trigger: takes the settings.
+        peaks: of the trial hits that were fit to propose from [N].
     """
 
     bench: Bench
     record: Record
     trigger: TriggerWatch
+    peaks: list[float] = field(default_factory=list)
     _fit: list[CutHit] = field(default_factory=list)
 
     @property
@@ -37,6 +39,7 @@ class Trials:
         if hit.verdict is not Verdict.OK:
             return hit
         self._fit.append(cut)
+        self.peaks.append(hit.peak_force)
         reason = f"trial hit, in no average; {hit.reason}"
         return replace(hit, verdict=Verdict.OPERATOR, reason=reason)
 

@@ -8,13 +8,16 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.records import Recording
+from jointbench.acquisition.records import Hit, Recording
 from jointbench.signal.choices import Choices
 from jointbench.signal.frf_estimators import Estimator
+from jointbench.signal.mode_confidence import rate_modes
 from jointbench.signal.modes import ModalSettings
-from jointbench.station.chain import ChainSettings, ModalChain, run_chain
+from jointbench.station.chain import ChainSettings, ModalChain, judge_hits, run_chain
 from jointbench.station.inputs import is_session_name, read_recordings
-from jointbench.station.output import console, progress_bar, table, with_sd, write_json
+from jointbench.station.modal_notes import ModalNotes, modal_notes
+from jointbench.station.modal_show import show_modal
+from jointbench.station.output import console, progress_bar, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.preloads import by_preload, join_pages, of_preload
 from jointbench.station.results_file import results_path, write_results
@@ -75,9 +78,11 @@ def run_modal(
     """
     target = out or _beside(files)
     check_outputs(files, [target, universal, json_target])
-    recordings = read_recordings(files, columns=columns, point=point)
-    groups = by_preload(recordings)
-    chains = []
+    settings = settings or ChainSettings()
+    stored = read_recordings(files, columns=columns, point=point)
+    # A hit's level is that of the campaign, whatever the preload.
+    groups = by_preload(judge_hits(stored, settings))
+    chains, pages = [], []
     for preload, group in groups:
         with progress_bar("judging hits, estimating FRFs") as progress:
             chain = run_chain(group, settings, progress=progress)
@@ -90,9 +95,10 @@ def run_modal(
             write_results(own, chain, files)
         if shared is not None:
             write_universal(shared, chain.frf, chain.result.model)
-        show_modal(chain, json_target)
+        notes = modal_notes(chain)
+        show_modal(chain, notes, json_target)
         chains.append(chain)
-    pages = [modal_json(chain) for chain in chains]
+        pages.append(modal_json(chain, notes))
     content = join_pages([preload for preload, _ in groups], pages)
     write_json(json_target, content | {"results": str(target or "")})
     return chains[0]
@@ -124,30 +130,6 @@ def _beside(files: Sequence[Path]) -> Path | None:
     return results_path(sessions[0]) if len(sessions) == len(files) == 1 else None
 
 
-def show_modal(chain: ModalChain, json_target: str | None) -> None:
-    """Print verdicts, FRF and modes."""
-    screen = console(json_target)
-    for recording in chain.recordings:
-        screen.print(_hits_line(recording))
-    model = chain.result.model
-    rows = [
-        (
-            str(number + 1),
-            with_sd(model.natural_frequency[number], model.frequency_sd[number]),
-            with_sd(
-                100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
-            ),
-            *stage_cells(chain, number),
-            remark(chain, number),
-        )
-        for number in range(model.natural_frequency.size)
-    ]
-    low, high = chain.result.band
-    title = f"Modes between {low:.0f} and {high:.0f} Hz (± one standard deviation)"
-    columns = ("mode", "natural frequency [Hz]", "damping ratio [%]")
-    screen.print(table(title, (*columns, *STAGE_COLUMNS, "remark"), rows))
-
-
 def stage_cells(chain: ModalChain, number: int) -> tuple[str, str]:
     """Return what the Kalman stage did at a mode: its gain and its phase."""
     gain = chain.result.stage_gain
@@ -156,29 +138,11 @@ def stage_cells(chain: ModalChain, number: int) -> tuple[str, str]:
     return f"{gain.gain[number]:.4f}", f"{np.degrees(gain.phase[number]):.1f}"
 
 
-def remark(chain: ModalChain, number: int) -> str:
-    """Say who chose a mode, if not the program, and what its interval is made of."""
-    model = chain.result.model
-    words = ["kept by hand"] if model.by_hand[number] else []
-    if model.systematic[number]:
-        words.append("systematic error above noise")
-    return ", ".join(words)
-
-
-def _hits_line(recording: Recording) -> str:
-    good = sum(hit.verdict == "ok" for hit in recording.hits)
-    bad = [
-        f"hit {number} {hit.verdict.value}: {hit.reason}"
-        for number, hit in enumerate(recording.hits, 1)
-        if hit.verdict != "ok"
-    ]
-    line = f"{recording.name}: {good} of {len(recording.hits)} hits accepted"
-    return "\n  ".join([line, *bad])
-
-
-def modal_json(chain: ModalChain) -> dict[str, object]:
+def modal_json(chain: ModalChain, notes: ModalNotes) -> dict[str, object]:
     """Return what the contract promises of ``modal``, and more."""
     model, gain = chain.result.model, chain.result.stage_gain
+    orders = chain.result.stabilisation.orders.size
+    rated = rate_modes(model, orders)
     modes = [
         {
             "frequency_hz": float(model.natural_frequency[i]),
@@ -189,6 +153,12 @@ def modal_json(chain: ModalChain) -> dict[str, object]:
             "chosen_by": "hand" if model.by_hand[i] else "automatic",
             "misfit_over_noise": float(model.misfit[i]),
             "systematic": bool(model.systematic[i]),
+            "frequency_systematic_hz": float(rated.frequency_error[i]),
+            "damping_ratio_systematic": float(rated.damping_error[i]),
+            "confidence": float(rated.confidence[i]),
+            "rank": int(rated.rank[i]),
+            "grade": rated.grades[i].value,
+            "broad": bool(rated.broad[i]),
             "shape_re": [float(v) for v in model.shapes[i].real],
             "shape_im": [float(v) for v in model.shapes[i].imag],
             "kalman_gain": None if gain is None else float(gain.gain[i]),
@@ -203,22 +173,63 @@ def modal_json(chain: ModalChain) -> dict[str, object]:
         "outputs": list(model.outputs),
         "inputs": list(model.inputs),
         "band_hz": list(chain.result.band),
+        "orders": orders,
+        "warnings": list(notes.limits),
+        "notes": list(notes.remarks()),
+        "beyond_band": _beyond_json(notes),
+        "linearity": _linearity_json(notes),
         "averages": chain.frf.averages,
         "added_decay_rate_per_s": chain.frf.added_decay_rate,
         "synthesis_error_rms": synthesis_error(chain),
         "hits": [
-            {
-                "recording": recording.name,
-                "time_s": recording.start_time + hit.trigger / recording.sample_rate,
-                "point": hit.point,
-                "peak_n": float(hit.peak_force),
-                "verdict": hit.verdict.value,
-                "measure": float(hit.measure),
-                "reason": hit.reason,
-            }
+            _hit_json(recording, hit)
             for recording in chain.recordings
             for hit in recording.hits
         ],
+    }
+
+
+def _hit_json(recording: Recording, hit: Hit) -> dict[str, object]:
+    return {
+        "recording": recording.name,
+        "time_s": recording.start_time + hit.trigger / recording.sample_rate,
+        "point": hit.point,
+        "peak_n": float(hit.peak_force),
+        "verdict": hit.verdict.value,
+        "measure": float(hit.measure),
+        "reason": hit.reason,
+    }
+
+
+def _beyond_json(notes: ModalNotes) -> dict[str, object]:
+    """Return the peaks above the band, heights over the highest within."""
+    beyond = notes.beyond
+    return {
+        "force_drop_db": beyond.force_drop,
+        "alias_free_to_hz": beyond.reach,
+        "peaks": [
+            {
+                "frequency_hz": peak.frequency,
+                "height": peak.height,
+                "coherence": peak.coherence,
+                "force_drop_db": peak.force_drop,
+            }
+            for peak in beyond.peaks
+        ],
+    }
+
+
+def _linearity_json(notes: ModalNotes) -> dict[str, object]:
+    """Return whether the FRF depends on the level, or why nobody can tell."""
+    found = notes.linearity
+    if found is None:
+        return {"checked": False, "words": notes.unchecked}
+    return {
+        "checked": True,
+        "nonlinear": found.nonlinear,
+        "change_per_doubling": found.change_per_doubling,
+        "significance": found.significance,
+        "words": found.words,
     }
 
 

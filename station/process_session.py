@@ -37,6 +37,7 @@ from jointbench.station.judge_again import (
     judge_again,
     verdict_changes,
 )
+from jointbench.station.modal_notes import limit_words
 from jointbench.station.preloads import by_preload
 from jointbench.station.process_joint import (
     PreloadModes,
@@ -178,6 +179,8 @@ def _modal(
     for preload, group in by_preload(judged):
         try:
             found.append(_modes_at(preload, group, digest, recipe, stages))
+            words = limit_words(found[-1].chain)
+            remarks += [f"Modes{at_words(preload)}: {w}" for w in words]
         except (BadData, UsageError) as error:
             problems.append(error)
             remarks.append(f"No modes{at_words(preload)}: {error}")

@@ -10,6 +10,7 @@ from jointbench.acquisition.errors import InstrumentError, NoHitFound
 from jointbench.acquisition.records import Recording, step
 from jointbench.acquisition.session import JointSetup, Session, new_session
 from jointbench.acquisition.source import Source
+from jointbench.signal.campaign_level import compare_levels
 from jointbench.signal.hits import HitCriteria, find_hits
 from jointbench.station.sources import Visit
 
@@ -76,6 +77,8 @@ def record_visit(visit: Visit, *, criteria: HitCriteria | None = None) -> Sessio
         except NoHitFound:
             pass
         recordings.append(recorded)
+    limits = (criteria or HitCriteria()).limits
+    recordings = list(compare_levels(recordings, limits))
     preloads = {recording.preload for recording in recordings}
     return new_session(
         source=visit.source,

@@ -7,6 +7,7 @@ from jointbench.acquisition.errors import BadData
 from jointbench.signal.hits import accepted_hits
 from jointbench.signal.leakage import estimate_leakage
 from jointbench.signal.linearity import check_linearity
+from jointbench.signal.mode_confidence import rate_modes
 from jointbench.signal.mode_indicators import cmif
 from jointbench.signal.spectra import hit_spectra
 from jointbench.signal.windows import HammerWindow, choose_window, join_windows
@@ -87,12 +88,21 @@ def _linearity(chain: ModalChain, window: HammerWindow) -> str:
 
 
 def systematic_words(chain: ModalChain) -> str:
-    """Say which intervals rest on misfit, not noise."""
-    marked = np.flatnonzero(chain.result.model.systematic) + 1
+    """Say which intervals rest on misfit, not noise, and by how much at most."""
+    model = chain.result.model
+    rated = rate_modes(model, chain.result.stabilisation.orders.size)
+    marked = np.flatnonzero(model.systematic)
     if marked.size == 0:
         return "Noise makes up the intervals of all modes."
+    error = rated.frequency_error[marked]
+    worst = int(np.argmax(error))
+    share = error / model.natural_frequency[marked]
+    damping = rated.damping_error[marked] / np.abs(model.damping_ratio[marked])
     return (
-        f"Systematic error exceeds noise at mode{'s' * (marked.size > 1)} "
-        f"{', '.join(map(str, marked))}: leakage, a neighbour left out or a structure "
-        "that is not linear; more hits would not narrow those intervals."
+        f"Systematic error exceeds noise at {marked.size} of "
+        f"{model.natural_frequency.size} modes: {np.median(error):.2g} Hz "
+        f"({100 * np.median(share):.1g} %) and {100 * np.median(damping):.2g} % of the "
+        f"damping at the middle one, {error[worst]:.2g} Hz at most (mode "
+        f"{marked[worst] + 1}). Leakage, a neighbour left out or a structure that is "
+        "not linear; more hits would not narrow those intervals."
     )

@@ -27,7 +27,7 @@ _KEY = 64
 """Characters of a key."""
 _LEFT_BEHIND = 3600.0
 """Age at which a half written stage is nobody's [s]."""
-STAGE_LAYOUT = 2
+STAGE_LAYOUT = 3
 """Counts up when a stage, or a result, holds something else for the same settings."""
 
 

@@ -17,7 +17,12 @@ from jointbench.analysis.structures.structure import Structure
 from jointbench.signal.frf import Frf
 from jointbench.signal.modal_model import ModalModel
 from jointbench.signal.modes import ModalSettings
-from jointbench.station.chain import ChainSettings, ModalChain, run_chain
+from jointbench.station.chain import (
+    ChainSettings,
+    ModalChain,
+    judge_hits,
+    run_chain,
+)
 from jointbench.station.inputs import read_recordings
 from jointbench.station.modal import parse_band
 from jointbench.station.output import working
@@ -60,7 +65,8 @@ def measured_states(
     settings = ChainSettings(modal=ModalSettings(band=parse_band(band)))
     found: dict[str, MeasuredState] = {}
     for path in sessions:
-        groups = by_preload(read_recordings([path], columns=None, point="1"))
+        stored = read_recordings([path], columns=None, point="1")
+        groups = by_preload(judge_hits(stored, settings))
         for preload, recordings in groups:
             label = path.stem
             if len(groups) > 1:

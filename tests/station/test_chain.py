@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The chain from recordings to modes: estimator, hand choices, lost samples."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -8,10 +9,19 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.records import Channel, Quantity, Recording
+from jointbench.acquisition.records import (
+    Channel,
+    Quantity,
+    Recording,
+    Verdict,
+    step,
+)
+from jointbench.signal.frf import estimate_frf
 from jointbench.signal.frf_estimators import Estimator
 from jointbench.station.chain import ModalChain, run_chain
+from jointbench.station.judge_again import judge_again
 from jointbench.station.modal import modal_settings
+from jointbench.station.recipe import HitsPart
 from jointbench.station.results_file import write_results
 
 RATE = 4096.0
@@ -94,3 +104,37 @@ def test_options_that_mean_nothing_are_refused(
     """The message says what to write."""
     with pytest.raises(UsageError, match=said):
         modal_settings(None, None, estimator, keep, ())
+
+
+def one_hit(seed: int, peak: float) -> Recording:
+    """One hit of `peak` newtons: the same samples scaled, level is all that differs."""
+    both = two_hits()
+    noise = np.random.default_rng(seed).normal(0.0, 1e-3, (2, 4096))
+    samples = both.samples[:, :4096] * (peak / 50.0) + noise
+    return Recording(f"hit {seed}", samples, RATE, both.channels)
+
+
+def test_a_glancing_hit_in_a_file_of_its_own_enters_no_average() -> None:
+    """2 N in one of five files, 50 N in the others: the average has four."""
+    peaks = (50.0, 46.0, 2.0, 52.0, 55.0)
+    chain = run_chain([one_hit(i, peak) for i, peak in enumerate(peaks)])
+    verdicts = [recording.hits[0].verdict for recording in chain.recordings]
+    assert verdicts == [Verdict.WEAK if p == 2.0 else Verdict.OK for p in peaks]
+    assert chain.frf.averages == 4
+
+
+def test_an_frf_of_unjudged_recordings_leaves_the_glancing_hit_out() -> None:
+    """The same without the chain about it."""
+    peaks = (50.0, 46.0, 2.0, 52.0)
+    assert estimate_frf([one_hit(i, p) for i, p in enumerate(peaks)]).averages == 3
+
+
+def test_hits_judged_again_are_compared_with_the_whole_session() -> None:
+    """As `process` does; a stored level of the plan counts before the others'."""
+    recordings = [one_hit(i, p) for i, p in enumerate((50.0, 46.0, 2.0, 20.0))]
+    asked = (step("record", level=80.0),)
+    recordings[3] = replace(recordings[3], provenance=asked)
+    hits = judge_again(recordings, HitsPart())
+    verdicts = [own[0].verdict for own in hits]
+    assert verdicts == [Verdict.OK, Verdict.OK, Verdict.WEAK, Verdict.WEAK]
+    assert "the plan asks for, 80 N" in hits[3][0].reason

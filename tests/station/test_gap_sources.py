@@ -11,6 +11,7 @@ import pytest
 import scipy.io
 
 from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.acquisition.records import Verdict
 from jointbench.acquisition.session import JointSetup
 from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.station.bench_model import BenchModel
@@ -86,6 +87,29 @@ def test_a_session_with_nothing_hidden_misses_nothing(
     found = gap(visit, tmp_path / "g.json", model=visit.with_suffix(".toml"))
     assert found["verdict"] == "none"
     assert found["scored"] == []
+
+
+def test_a_glancing_hit_among_levels_is_left_out_and_told(
+    visit: Path, tmp_path: Path
+) -> None:
+    """Unjudged recordings, one of them a fiftieth of the softest level's force.
+
+    The softest level, struck once, a seventh of the next, is meant and stays.
+    """
+    session = read_session(visit)
+    bare = [replace(recording, hits=()) for recording in session.recordings]
+    softest = min(bare, key=lambda recording: recording.samples[0].max())
+    glancing = replace(softest, name="glancing", samples=softest.samples / 50.0)
+    unjudged = replace(session, recordings=(*bare, glancing))
+    write_session(unjudged, tmp_path / "bare.h5")
+    found = gap(
+        tmp_path / "bare.h5", tmp_path / "g.json", model=visit.with_suffix(".toml")
+    )
+    told = [words for words in found["remarks"] if "a glancing hit" in words]
+    assert len(told) == 1
+    assert "recording 'glancing'" in told[0]
+    hits = [hit for recording in session.recordings for hit in recording.hits]
+    assert all(hit.verdict is Verdict.OK for hit in hits)
 
 
 def test_a_url_is_recorded_and_what_it_hides_is_named(tmp_path: Path) -> None:

@@ -128,6 +128,22 @@ def test_every_scripted_hit_gets_its_verdict_and_only_good_ones_count(
     assert [hit.verdict for hit in stored] == wanted
 
 
+def test_the_first_hit_of_a_point_is_compared_with_those_before_it(
+    tmp_path: Path,
+) -> None:
+    """No level in the plan: a weak first stroke at point 2 is asked for again."""
+    fates = (Fate.GOOD, Fate.WEAK, Fate.GOOD)
+    plan = read_plan(plan_file(tmp_path, points='["1", "2"]', repeats="1", levels="[]"))
+    setup = ChassisSetup(bench=PlatesBench(hand=Hand(fates=fates)), speed=math.inf)
+    with SimulatedChassis(setup) as server:
+        chassis = Chassis(server.address)
+        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        measured = measure(plan, opened, tmp_path / "s.h5", Lines(console("-")))
+        chassis.close()
+    verdicts = [hit.verdict for hit in measured.record.hits]
+    assert verdicts == [Verdict.OK, Verdict.WEAK, Verdict.OK]
+
+
 def test_a_dropped_server_pauses_the_session_and_the_gap_is_in_the_file(
     tmp_path: Path,
 ) -> None:
