@@ -21,6 +21,7 @@ from jointbench.acquisition.session_recover import (
     recovered_path,
     session_from_live,
 )
+from jointbench.acquisition.session_replace import require_replaceable
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
 
@@ -83,7 +84,11 @@ def run_recover(
             "`jointbench verify` reads it through"
         )
     target = out or recovered_path(file)
-    check_outputs([file], [json_target])
+    check_outputs([file, target], [json_target])
+    if target.resolve() == file.resolve():
+        raise UsageError(f"'{target}' is an input; recover to another file")
+    if target.exists() and overwrite:
+        require_replaceable(target)
     session = session_from_live(content)
     write_session(session, target, overwrite=overwrite)
     hits = sum(len(recording.hits) for recording in session.recordings)
