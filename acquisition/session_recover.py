@@ -142,7 +142,7 @@ def _recording(
         ),
         sample_rate=rate,
         channels=tuple(_at(channel, point) for channel in channels),
-        start_time=stretch.first / rate,
+        start_time=_start_time(stretch, rate),
         hits=tuple(own),
         provenance=(
             step(
@@ -154,6 +154,14 @@ def _recording(
         ),
         preload=None if preload is None else float(preload),
     )
+
+
+def _start_time(stretch: _Stretch, rate: float) -> float:
+    """Return the time of the first sample [s]: by its run's own, if that says so."""
+    begun = stretch.run.get("start_time")
+    if begun is None:
+        return stretch.first / rate
+    return float(begun) + (stretch.first - int(stretch.run["stored"])) / rate
 
 
 def _at(channel: Channel, point: str) -> Channel:

@@ -24,6 +24,7 @@ from jointbench.acquisition.session_recover import (
 from jointbench.acquisition.session_replace import require_replaceable
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.record_live import HITS_LATER, with_hits
 
 
 def run_verify(file: Path, *, json_target: str | None) -> bool:
@@ -90,6 +91,8 @@ def run_recover(
     if target.exists() and overwrite:
         require_replaceable(target)
     session = session_from_live(content)
+    if content.meta.items() >= HITS_LATER.items():
+        session = with_hits(session)
     write_session(session, target, overwrite=overwrite)
     hits = sum(len(recording.hits) for recording in session.recordings)
     console(json_target).print(
