@@ -36,10 +36,17 @@ def kills() -> tuple[signal.Signals, ...]:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Take a polite kill and a closed window as Ctrl-C: unwind, put all in order."""
+    """Take a polite kill and a closed window as Ctrl-C: unwind, put all in order.
+
+    A second kill does not disturb that: a terminal that closes sends two.
+    """
+    told = False
 
     def stop(number: int, frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
+        nonlocal told
+        again, told = told, True
+        if not again:
+            raise KeyboardInterrupt
 
     with _handling(dict.fromkeys(kills(), stop)), _closed_window():
         yield
@@ -49,7 +56,7 @@ def interruptible() -> Iterator[None]:
 def patient_interrupt(work: Stoppable) -> Iterator[None]:
     """Note Ctrl-C and kills in the work; a Ctrl-C after that interrupts at once.
 
-    A second kill changes nothing: a terminal that closes sends two.
+    A second kill changes nothing.
 
     Args:
         work: looks at its `interrupted` after every block.

@@ -119,10 +119,11 @@ def test_a_killed_run_goes_on_where_it_was(make_session, tmp_path: Path) -> None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is sent otherwise there")
-def test_ctrl_c_finishes_the_files_in_hand_and_tells_of_each(
-    make_session, tmp_path: Path
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_a_stop_finishes_the_files_in_hand_and_tells_of_each(
+    make_session, tmp_path: Path, name: str
 ) -> None:
-    """Every result that is there has its line in the ledger; exit code 130."""
+    """Ctrl-C, a kill, a hang-up: each result has its line in the ledger; code 130."""
     for number in range(5):
         make_session(f"in/{number}.h5", seed=number + 1)
     command = [
@@ -136,7 +137,7 @@ def test_ctrl_c_finishes_the_files_in_hand_and_tells_of_each(
         if process.poll() is not None or list(tmp_path.glob("out/*.results.h5")):
             break
         time.sleep(0.02)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(getattr(signal, name))
     assert process.wait(60) == 130
     there = len(list(tmp_path.glob("out/*.results.h5")))
     lines = read_ledger(tmp_path / "out" / "default.ledger.jsonl")
