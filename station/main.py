@@ -86,14 +86,15 @@ def record_command(
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
-) -> None:
+) -> int:
     """Record everything a bench delivers into a session file; hits are judged.
 
     Example: jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out s.h5
     """
     from jointbench.station.record_command import run_record
 
-    run_record(source, out, overwrite=force, json_target=json)
+    written = run_record(source, out, overwrite=force, json_target=json)
+    return 0 if written.whole else EXIT_QUALITY
 
 
 @app.command(name="import")

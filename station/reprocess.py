@@ -6,13 +6,11 @@ loss cost at most the files in hand; call again and it goes on.
 """
 
 import os
-import signal
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import FrameType
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.text_files import named, visible
@@ -23,6 +21,7 @@ from jointbench.station.archive_files import (
 )
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
+from jointbench.station.measure_interrupt import interruptible
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs, make_folder, require_folder
 from jointbench.station.process import STAGES_FOLDER, outcome_json, recipe_or_default
@@ -157,7 +156,7 @@ def reprocess(
     run = {"recipe": recipe.name, "recipe_sha256": recipe_digest(recipe)}
     with (
         open_ledger(places.ledger, run | {"files": len(tasks)}) as ledger,
-        _interruptible(),
+        interruptible(),
         run_progress(len(tasks)) as tell,
     ):
         known = [_remembering(task, ledger) for task in tasks]
@@ -204,24 +203,6 @@ def _make_room(tasks: Sequence[Task]) -> None:
 def _prune(places: Places, met: int) -> None:
     if places.stages is not None and met % PRUNE_EVERY == 0:
         prune_stages(places.stages, places.stages_bytes)
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """Take a polite kill (SIGTERM) as Ctrl-C: finish the files in hand and stop."""
-
-    def stop(_signal: int, _frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    try:
-        before = signal.signal(signal.SIGTERM, stop)
-    except ValueError:  # not in the main thread: whoever runs us stops us
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def run_reprocess(

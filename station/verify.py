@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """``jointbench verify`` and ``jointbench recover``: is a session whole, and if not."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from jointbench.acquisition.errors import BadData, UsageError
@@ -11,14 +12,17 @@ from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_file import (
     damage_named,
     read_session,
+    write_session,
 )
-from jointbench.acquisition.session_finish import finish_live
+from jointbench.acquisition.session_finish import Finished, finish_live
 from jointbench.acquisition.session_live import LIVE_SCHEMA
 from jointbench.acquisition.session_live_read import LiveContent, read_live
 from jointbench.acquisition.session_lock import is_held
 from jointbench.acquisition.session_recover import recovered_path
+from jointbench.acquisition.session_replace import require_replaceable
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.record_live import HITS_LATER, with_hits
 
 
 def run_verify(file: Path, *, json_target: str | None) -> bool:
@@ -78,8 +82,12 @@ def run_recover(
             "`jointbench verify` reads it through"
         )
     target = out or recovered_path(file)
-    check_outputs([file], [json_target])
-    done = finish_live(file, target, overwrite=overwrite)
+    check_outputs([file, target], [json_target])
+    if target.resolve() == file.resolve():
+        raise UsageError(f"'{target}' is an input; recover to another file")
+    if target.exists() and overwrite:
+        require_replaceable(target)
+    done = _recover(file, target, overwrite=overwrite)
     console(json_target).print(
         f"{target}: {done.samples} samples per channel, {done.hits} hits, "
         f"{done.damaged} damaged blocks left out",
@@ -96,6 +104,17 @@ def run_recover(
         },
     )
     return target
+
+
+def _recover(file: Path, target: Path, *, overwrite: bool) -> Finished:
+    """Finish a recording beside it; hits that were to be judged later are judged."""
+    done = finish_live(file, target, overwrite=overwrite)
+    content = _live_content(file)
+    if content is None or not content.meta.items() >= HITS_LATER.items():
+        return done
+    session = with_hits(read_session(target))
+    write_session(session, target, overwrite=True)
+    return replace(done, hits=sum(len(r.hits) for r in session.recordings))
 
 
 def _is_live(file: Path) -> bool:
