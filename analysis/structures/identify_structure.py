@@ -209,7 +209,7 @@ def _state_fit(problem: Problem, best: Optimum, row: int) -> StateFit:
     return StateFit(
         evidence.label,
         measured,
-        frequency_of(state.eigenvalue[chosen], model.shift),
+        frequency_of(state.eigenvalue[chosen]),
         damping_ratios(state, values.damping)[chosen],
         likeness,
         energy_shares(state, values.stiffness)[chosen],
