@@ -5,8 +5,10 @@ from pathlib import Path
 
 from jointbench.acquisition.records import Step, Verdict
 from jointbench.acquisition.session_file import read_session
+from jointbench.analysis.identification import JointParameter
 from jointbench.station.bench_model import BenchModel
 from jointbench.station.geometry import Geometry
+from jointbench.station.joint_text import interval_text
 from jointbench.station.output import console, engineering, with_sd, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.report_hits import hits_section
@@ -115,14 +117,20 @@ def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, .
         tiles.append(Tile(f"D of {chain.surface.name}", value, chain.fit.verdict.value))
     if analysis.joint is not None:
         stiffness = analysis.joint.parameter(f"{joint_link(bench)}.stiffness")
-        value = engineering(stiffness.value, "N/m")
-        sd = "" if stiffness.sd is None else f"± {engineering(stiffness.sd, 'N/m')}"
-        tiles.append(Tile("joint stiffness, from modes", value, sd))
+        tiles.append(_joint_tile(stiffness))
     if analysis.contact is not None:
         state = analysis.contact.at.state
         value = engineering(state.normal_stiffness, "N/m")
         tiles.append(Tile("joint stiffness, contact law", value, state.model))
     return tuple(tiles)
+
+
+def _joint_tile(stiffness: JointParameter) -> Tile:
+    title = "joint stiffness, from modes"
+    if not stiffness.identifiable:
+        return Tile(title, f"{interval_text(stiffness.interval)} N/m", "not determined")
+    sd = "" if stiffness.sd is None else f"± {engineering(stiffness.sd, 'N/m')}"
+    return Tile(title, engineering(stiffness.value, "N/m"), sd)
 
 
 def _hits_tile(analysis: SessionAnalysis) -> Tile:
