@@ -14,7 +14,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from jointbench.acquisition.errors import UsageError
+from rich.console import Console
+
+from jointbench.acquisition.errors import InstrumentError, UsageError
 from jointbench.acquisition.text_files import named, visible
 from jointbench.station.archive_files import (
     archive_folder,
@@ -30,6 +32,7 @@ from jointbench.station.process_file import Outcome, State, Task
 from jointbench.station.processed_file import processed_path
 from jointbench.station.recipe import Recipe, recipe_digest
 from jointbench.station.reprocess_progress import run_progress, time_words
+from jointbench.station.settled import settled
 from jointbench.station.stage_store import prune_stages
 from jointbench.station.worker_pool import PoolSettings, run_pool
 
@@ -68,12 +71,14 @@ class RunSummary:
         outcomes: one a file, as they came in.
         interrupted: whether it was stopped.
         unwritable: why results could not be written, or empty.
+        lost: why what ran the files is gone, or empty.
         seconds: that it took [s].
     """
 
     outcomes: list[Outcome] = field(default_factory=list)
     interrupted: bool = False
     unwritable: str = ""
+    lost: str = ""
     seconds: float = 0.0
 
     @property
@@ -88,6 +93,11 @@ class RunSummary:
     def failed(self) -> list[Outcome]:
         """Those that go into the quarantine list."""
         return [one for one in self.outcomes if one.state is State.FAILED]
+
+    @property
+    def rotten(self) -> list[Outcome]:
+        """Those whose result was rotten and was made anew."""
+        return [one for one in self.outcomes if one.rotten]
 
 
 def pool_backend(settings: PoolSettings) -> Backend:
@@ -160,10 +170,11 @@ def reprocess(
         _interruptible(),
         run_progress(len(tasks)) as tell,
     ):
-        known = [_remembering(task, ledger) for task in tasks]
-        _make_room(known)
+        known, others = settled(tasks, ledger.last, recipe_digest(recipe))
+        waiting = [_remembering(task, ledger) for task in others]
+        _make_room(waiting)
         try:
-            with closing(_generator(backend(known, recipe))) as outcomes:
+            with closing(_outcomes(known, waiting, recipe, backend)) as outcomes:
                 for outcome in outcomes:
                     if outcome.unwritable:  # no fault of the file
                         summary.unwritable = outcome.reason
@@ -174,17 +185,25 @@ def reprocess(
                     _prune(places, len(summary.outcomes))
         except KeyboardInterrupt:
             summary.interrupted = True
+        except InstrumentError as error:
+            summary.lost = str(error)
         summary.seconds = time.monotonic() - begun
         counts = {state.value: n for state, n in summary.counts.items()}
-        end = {"kind": "end", "time": now(), "interrupted": summary.interrupted}
+        end: dict[str, object] = {"kind": "end", "time": now()}
+        end |= {"interrupted": summary.interrupted, "lost": summary.lost}
         ledger.write(end | counts | {"seconds": round(summary.seconds, 3)})
     _prune(places, 0)
     write_quarantine(places.quarantine, summary.failed)
     return summary
 
 
-def _generator(outcomes: Iterator[Outcome]) -> Generator[Outcome, None, None]:
-    yield from outcomes
+def _outcomes(
+    known: Sequence[Outcome], waiting: Sequence[Task], recipe: Recipe, backend: Backend
+) -> Generator[Outcome, None, None]:
+    """Yield what the ledger settles, then what the backend makes of the rest."""
+    yield from known
+    if waiting:
+        yield from backend(waiting, recipe)
 
 
 def _remembering(task: Task, ledger: Ledger) -> Task:
@@ -246,6 +265,8 @@ def run_reprocess(
     Raises:
         KeyboardInterrupt: it was stopped, after all was put in order.
         UsageError: results cannot be written.
+        InstrumentError: the cluster does not answer, or was lost on the way; all that
+            was done until then is put in order.
     """
     check_outputs([recipe] if recipe else [], [json_target])
     made = recipe_or_default(recipe)
@@ -260,6 +281,8 @@ def run_reprocess(
         raise KeyboardInterrupt
     if summary.unwritable:
         raise UsageError(summary.unwritable)
+    if summary.lost:
+        raise InstrumentError(summary.lost)
     return summary
 
 
@@ -297,6 +320,7 @@ def _show(
     changes = sum(outcome.changes for outcome in summary.outcomes)
     rows.append(("verdicts changed", str(changes)))
     screen.print(table("Reprocessed", ("files", "number"), rows))
+    _show_rotten(screen, summary.rotten)
     failed = summary.failed
     for outcome in failed[:MOST_SHOWN]:
         screen.print(f"quarantined: {_reason(outcome)}", soft_wrap=True)
@@ -307,6 +331,13 @@ def _show(
         screen.print(f"quarantine: {places.quarantine}", soft_wrap=True)
     if summary.interrupted:
         screen.print("interrupted; the same command goes on where it stopped")
+
+
+def _show_rotten(screen: Console, rotten: Sequence[Outcome]) -> None:
+    for outcome in rotten[:MOST_SHOWN]:
+        screen.print(f"made anew: {outcome.rotten}", soft_wrap=True)
+    if len(rotten) > MOST_SHOWN:
+        screen.print(f"and {len(rotten) - MOST_SHOWN} more, see the ledger")
 
 
 def _reason(outcome: Outcome) -> str:
@@ -324,6 +355,8 @@ def _json(
         "files": total,
         **{state.value: count for state, count in summary.counts.items()},
         "interrupted": summary.interrupted,
+        "lost": summary.lost,
+        "rotten": [str(outcome.result) for outcome in summary.rotten],
         "seconds": summary.seconds,
         "ledger": [outcome_json(outcome) for outcome in summary.outcomes],
         "ledger_file": str(places.ledger),

@@ -10,8 +10,8 @@ from pathlib import Path
 import h5py
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.content_digest import new_signed_file
 from jointbench.acquisition.netcdf import (
-    new_file,
     write_attributes,
     write_complex,
     write_flags,
@@ -47,9 +47,7 @@ def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None
         chain: what was found.
         inputs: files it was found in, named in the results by their SHA-256.
     """
-    with new_file(
-        path, schema=SCHEMA, title="Results of jointbench", overwrite=True
-    ) as file:
+    with new_signed_file(path, schema=SCHEMA, title="Results of jointbench") as file:
         write_attributes(
             file,
             {
