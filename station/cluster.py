@@ -23,6 +23,7 @@ from jointbench.station.recipe import Recipe
 INSTALL = "pip install 'jointbench[cluster]'"
 _CONNECT = 20.0
 """How long a scheduler may take to answer [s]."""
+_LOGS = ("distributed", "distributed.client", "tornado.application", "asyncio")
 _LOOK = 2.0
 """How often scheduler and workers are looked at while nothing finishes [s]."""
 _DESERTED = 60.0
@@ -130,13 +131,15 @@ def run_cluster(
 @contextmanager
 def _own_words() -> Iterator[None]:
     """Keep Dask's account of a lost connection off the screen; ours is one line."""
-    log = logging.getLogger("distributed")
-    before = log.level
-    log.setLevel(logging.CRITICAL + 1)
+    logs = [logging.getLogger(name) for name in _LOGS]
+    before = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL + 1)
     try:
         yield
     finally:
-        log.setLevel(before)
+        for log, level in zip(logs, before, strict=True):
+            log.setLevel(level)
 
 
 @dataclass(slots=True)

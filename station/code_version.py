@@ -67,7 +67,7 @@ def stage_sources(stage: str) -> frozenset[str]:
     """Return the full names of the modules that the version of a stage is made of."""
     modules = STAGE_MODULES.get(stage, STAGE_MODULES["result"])
     callers = {f"{PACKAGE}.{name}" for name in CALLERS}
-    return callers | sources_behind(*(f"{PACKAGE}.{name}" for name in modules))
+    return sources_behind(*(f"{PACKAGE}.{name}" for name in modules)) | callers
 
 
 def code_version(modules: Iterable[str]) -> str:
@@ -80,7 +80,7 @@ def code_version(modules: Iterable[str]) -> str:
     for name in LIBRARIES:
         digest.update(f"{name} {_library(name)}\n".encode())
     for name in sorted(modules):
-        digest.update(f"{name} {_digest(name)}\n".encode())
+        digest.update(f"{name} {source_digest(name)}\n".encode())
     return digest.hexdigest()
 
 
@@ -90,7 +90,7 @@ def sources_behind(*modules: str) -> frozenset[str]:
     waiting = list(modules)
     while waiting:
         name = waiting.pop()
-        if name not in found and _source(name) is not None:
+        if name not in found and source_of(name) is not None:
             found.add(name)
             waiting += imports_of(name)
     return frozenset(found)
@@ -99,13 +99,13 @@ def sources_behind(*modules: str) -> frozenset[str]:
 @cache
 def imports_of(name: str) -> tuple[str, ...]:
     """Return what a module of ours imports of us, wherever in it the import stands."""
-    return tuple(dict.fromkeys(_imported((_source(name) or b"").decode())))
+    return tuple(dict.fromkeys(_imported((source_of(name) or b"").decode())))
 
 
 def _imported(text: str) -> Iterator[str]:
     yield from _IMPORT.findall(text)
     for base, names in _FROM.findall(text):
-        if _source(base) is not None:
+        if source_of(base) is not None:
             yield base
             continue
         for word in re.findall(r"(\w+)(?:\s+as\s+\w+)?", re.sub(r"#.*", "", names)):
@@ -113,7 +113,7 @@ def _imported(text: str) -> Iterator[str]:
 
 
 @cache
-def _source(name: str) -> bytes | None:
+def source_of(name: str) -> bytes | None:
     """Return the source of a module; None for a folder of modules, and for none."""
     try:
         spec = find_spec(name)
@@ -125,8 +125,9 @@ def _source(name: str) -> bytes | None:
 
 
 @cache
-def _digest(name: str) -> str:
-    return sha256(_source(name) or b"").hexdigest()
+def source_digest(name: str) -> str:
+    """Return the SHA-256 of the source of a module, as hexadecimal text."""
+    return sha256(source_of(name) or b"").hexdigest()
 
 
 def _library(name: str) -> str:
