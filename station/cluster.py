@@ -120,8 +120,8 @@ def run_cluster(
             lost on the way; what was done until then is whole.
     """
     require_safe(settings)
+    client = _connect(settings)
     with _own_words():
-        client = _connect(settings)
         try:
             yield from _outcomes(_Cluster(client, recipe, settings), tasks)
         finally:
@@ -130,7 +130,10 @@ def run_cluster(
 
 @contextmanager
 def _own_words() -> Iterator[None]:
-    """Keep Dask's account of a lost connection off the screen; ours is one line."""
+    """Keep Dask's account of a lost connection off the screen; ours is one line.
+
+    Dask sets its own levels when it is imported: enter this afterwards.
+    """
     logs = [logging.getLogger(name) for name in _LOGS]
     before = [log.level for log in logs]
     for log in logs:
@@ -196,7 +199,9 @@ class _Cluster:
     def require_scheduler(self, cause: Exception | None = None) -> None:
         """Raise `InstrumentError` if the connection is not what it was."""
         if self.client.status != "running":
-            raise self._lost("stopped answering", "start it and its workers") from cause
+            raise self._lost(
+                "stopped answering", "start it and its workers again"
+            ) from cause
 
     def _require_workers(self) -> None:
         """Raise `InstrumentError` if there has been no worker for long.
@@ -219,7 +224,7 @@ class _Cluster:
     def _lost(self, what: str, way_out: str) -> InstrumentError:
         return InstrumentError(
             f"scheduler {self.settings.scheduler!r} {what}; results until then are "
-            f"whole: {way_out} and type the same command to go on"
+            f"whole: {way_out}, then type the same command to go on"
         )
 
 

@@ -85,7 +85,7 @@ def _run(folder: Path, backend) -> None:
 
 @pytest.mark.parametrize("killed", ["scheduler", "worker"])
 def test_a_cluster_that_is_lost_midway_is_one_line_and_gone_on_with(
-    make_session, tmp_path: Path, dask, monkeypatch, killed: str
+    make_session, tmp_path: Path, dask, monkeypatch, capfd, killed: str
 ) -> None:
     """Exit code 4; what was done is whole, blamed on no file, and not done again."""
     monkeypatch.setattr(cluster, "_DESERTED", 3.0)
@@ -105,6 +105,7 @@ def test_a_cluster_that_is_lost_midway_is_one_line_and_gone_on_with(
     with pytest.raises(InstrumentError, match="type the same command") as caught:
         _run(tmp_path, dying)
     assert code_of(caught.value) == EXIT_INSTRUMENT
+    assert "distributed" not in capfd.readouterr().err  # Dask's own account
     lines = read_ledger(tmp_path / "out" / "default.ledger.jsonl")
     assert lines[-1]["kind"] == "end"
     assert lines[-1]["lost"] == str(caught.value)
