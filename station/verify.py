@@ -39,7 +39,7 @@ def run_verify(file: Path, *, json_target: str | None) -> bool:
         BadData: it cannot be read at all.
     """
     check_outputs([file], [json_target])
-    problems = _problems(file)
+    problems = problems_of(file)
     session = read_session(file)
     screen = console(json_target)
     rows = [
@@ -130,7 +130,8 @@ def _live_content(file: Path) -> LiveContent | None:
         return read_live(opened)
 
 
-def _problems(file: Path) -> list[str]:
+def problems_of(file: Path) -> list[str]:
+    """Return what is wrong with a session, a line each, once all of it was read."""
     content = _live_content(file)
     if content is not None:
         state = "is being recorded right now" if is_held(file) else "was cut off"
