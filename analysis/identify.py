@@ -24,7 +24,7 @@ from jointbench.analysis.joint_search import Optimum, find_optima
 from jointbench.analysis.lumped import LumpedModel, incidence
 from jointbench.analysis.lumped_modes import solve_modes
 from jointbench.analysis.measured_modes import MeasuredModes
-from jointbench.signal.blas_threads import one_blas_thread
+from jointbench.signal.one_thread import one_thread
 
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
@@ -45,7 +45,7 @@ _Z = 1.959963984540054
 _LISTED = 7
 
 
-@one_blas_thread
+@one_thread()
 def identify_links(
     model: LumpedModel,
     measured: MeasuredModes,

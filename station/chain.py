@@ -14,9 +14,9 @@ from jointbench.signal.hits import HitCriteria, find_hits
 from jointbench.signal.kalman import KalmanSettings, smooth_recording
 from jointbench.signal.lscf import Progress
 from jointbench.signal.modes import ModalResult, ModalSettings, identify_modes
+from jointbench.signal.one_thread import one_thread
 from jointbench.signal.oscillator_bank import repair_dropouts
 from jointbench.signal.windows import WindowRequest, requested_window
-from jointbench.station.one_thread import one_thread
 
 # A gap spoils the modes that fill it; what a second round leaves is below the noise.
 _REPAIRS = 2

@@ -27,8 +27,8 @@ from jointbench.acquisition.netcdf_read import read_attribute
 from jointbench.acquisition.session import Session, software_version
 from jointbench.acquisition.session_file import damage_named, read_session
 from jointbench.acquisition.text_files import file_digest, file_size, named
+from jointbench.signal.one_thread import one_thread
 from jointbench.station.code_version import stage_version
-from jointbench.station.one_thread import one_thread
 from jointbench.station.process_session import process_session
 from jointbench.station.processed_file import Origin, write_processed
 from jointbench.station.recipe import Recipe, recipe_digest
