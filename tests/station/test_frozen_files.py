@@ -22,8 +22,9 @@ def differences(at: str, kept: Any, now: Any) -> list[str]:
             return [f"{at}: {len(kept)} kept, {len(now or [])} now"]
         pairs = [(str(k), a, b) for k, (a, b) in enumerate(zip(kept, now, strict=True))]
     else:
-        near = pytest.approx(kept, rel=CLOSE, abs=FLAT, nan_ok=True)
-        same = now == (kept if isinstance(kept, str) or now is None else near)
+        same = now == kept
+        if not isinstance(kept, str):
+            same = now == pytest.approx(kept, rel=CLOSE, abs=FLAT, nan_ok=True)
         return [] if same else [f"{at}: {kept} kept, {now} now"]
     return [x for k, a, b in pairs for x in differences(f"{at}/{k}", a, b)]
 
