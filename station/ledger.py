@@ -30,7 +30,7 @@ from jointbench.station.process_file import Outcome, State
 LEDGER_SCHEMA = "jointbench-ledger/1"
 MOST_BYTES = 2**30
 """Two million files' lines; a longer ledger is none [bytes]."""
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+_FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 
 
 @dataclass(slots=True)
@@ -173,12 +173,16 @@ def write_quarantine(path: Path, failed: Sequence[Outcome]) -> None:
     writer.writerow(("file", "reason", "comes again"))
     for outcome in sorted(failed, key=lambda o: o.path):
         again = "yes" if outcome.lasting else "perhaps not: run again"
-        writer.writerow(
-            [escaped(visible(str(outcome.path))), escaped(outcome.reason), again]
-        )
+        writer.writerow([escaped(str(outcome.path)), escaped(outcome.reason), again])
     write_text(path, buffer.getvalue())
 
 
 def escaped(cell: str) -> str:
-    """Return a cell that no spreadsheet takes for a formula."""
-    return f"'{cell}" if cell.startswith(_FORMULA) else cell
+    """Return a cell that shows all of itself and that no spreadsheet calculates.
+
+    Source:
+        OWASP, CSV Injection: a cell must not begin with ``= + - @``, tab or return;
+        spreadsheets of East Asian languages take the wide forms of these as well.
+    """
+    seen = visible(cell)
+    return f"'{seen}" if cell.lstrip().startswith(_FORMULA) else seen
