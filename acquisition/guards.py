@@ -40,6 +40,8 @@ class Limits:
         attribute_bytes: of one attribute [bytes].
         dimensions: axes of a dataset.
         chunks: pieces that a file is stored in.
+        chunk_bytes: that a chunk takes in the file at the least [bytes]; where it is
+            above zero, a file that is large enough may have more than `chunks`.
         unpacked_bytes: of all values [bytes].
         always_bytes: unpacked size that any file may have [bytes].
         unpacked_ratio: unpacked size of all values over the size of the file, above
@@ -54,6 +56,7 @@ class Limits:
     attribute_bytes: int = 65_536
     dimensions: int = 8
     chunks: int = 500_000
+    chunk_bytes: int = 0
     unpacked_bytes: int = 8 * 2**30
     always_bytes: int = 64 * 2**20
     unpacked_ratio: float = 64.0
@@ -246,7 +249,8 @@ def _check_size(
         tally.chunks += pieces
         values = max(values, pieces * math.prod(chunk) if pieces else 0)
     tally.unpacked += values * item_bytes
-    if tally.chunks > limits.chunks:
+    stored = tally.file_bytes // limits.chunk_bytes if limits.chunk_bytes else 0
+    if tally.chunks > max(limits.chunks, stored):
         raise tally.refuse(name, f"brings the file to {tally.chunks} chunks")
     allowed = max(limits.always_bytes, limits.unpacked_ratio * tally.file_bytes)
     if tally.unpacked > min(allowed, limits.unpacked_bytes):
