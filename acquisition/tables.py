@@ -36,7 +36,11 @@ _NAMES = {"\t": "tab", None: "blanks"}
 _COMMENT = ("#", "%", "//")
 MISSING_WORDS = frozenset({"", "nan", "bad", "n/a", "na", "null", "-", "--", "---"})
 NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.I)
-DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
+DECIMAL_COMMA = re.compile(r"[+-]?(?:\d+,\d*|,\d+)(?:[eE][+-]?\d+)?")
+_THOUSANDS = re.compile(r"(?<![\d,])[1-9]\d{0,2}(?:,\d{3})+(?![\d,])")
+_GROUPED = re.compile(r"\d(?:\.\d{3})+,\d|\d(?:,\d{3})+\.\d")
+# ``"0,5","1,5"``: the quotes say that these commas part no columns.
+_QUOTED = re.compile(r'"\s*([+-]?\d*),(\d*(?:[eE][+-]?\d+)?)\s*"')
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,6 +157,8 @@ def read_head(path: Path, count: int) -> bytes:
 
 def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
     """Find the numbers in the lines of a text and read them; see `read_table`."""
+    if any('"' in line for line in lines[: MAX_HEADER_LINES + 1]):
+        lines = [_QUOTED.sub(r"\1.\2", line) for line in lines]
     start = _find_start(lines, path)
     numbers = [i for i in range(start.line, len(lines)) if _is_row(lines[i])]
     if len(numbers) > MAX_ROWS or len(numbers) * start.columns > MAX_CELLS:
@@ -160,7 +166,7 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
             f"{named(path)} has {len(numbers)} rows of {start.columns} columns; "
             f"at most {MAX_ROWS} rows and {MAX_CELLS} cells are read: cut it"
         )
-    rows = [lines[i] for i in numbers]
+    rows = _with_points([lines[i] for i in numbers], numbers, start, path)
     values = _parse_fast(rows, start)
     if values is None:
         values = _parse_carefully(rows, numbers, start, path)
@@ -174,6 +180,37 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
         rows=rows,
         delimiter=start.delimiter,
     )
+
+
+def _with_points(
+    rows: list[str], numbers: Sequence[int], start: _Start, path: Path
+) -> list[str]:
+    """Return rows whose decimal commas, where they have such, are points.
+
+    A comma that parts no columns is a decimal comma, as most of Europe writes it.
+
+    Raises:
+        FormatError: points and commas stand in the same table, or every comma may
+            as well part thousands.
+    """
+    if start.delimiter == "," or not any("," in row for row in rows):
+        return rows
+    point = next((i for i, row in enumerate(rows) if "." in row), None)
+    if point is not None:
+        comma = next(row for row in rows if "," in row)
+        raise FormatError(
+            f"{named(path)}: line {numbers[point] + 1}: {shown(rows[point].strip())} "
+            f"has points, another row, {shown(comma.strip())}, has commas; write all "
+            "numbers with one decimal sign and without signs between thousands"
+        )
+    if all("," not in _THOUSANDS.sub("", row) for row in rows):
+        comma = next(i for i, row in enumerate(rows) if "," in row)
+        raise FormatError(
+            f"{named(path)}: line {numbers[comma] + 1}: {shown(rows[comma].strip())}: "
+            "the commas of this table may be decimal signs or part thousands; write "
+            "points, or numbers without signs between thousands"
+        )
+    return [row.replace(",", ".") for row in rows]
 
 
 def split_row(line: str, delimiter: str | None) -> list[str]:
@@ -201,14 +238,10 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
     if seen is not None:  # a table of one row
         return seen
     for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
-        if any(
-            DECIMAL_COMMA.fullmatch(cell)
-            for delimiter in ("\t", ";", None)
-            for cell in split_row(line, delimiter)
-        ):
+        if _GROUPED.search(line):
             raise FormatError(
-                f"{named(path)}: line {i + 1}: {shown(line.strip())} has decimal "
-                "commas; replace them by points and separate the columns by ';' or tab"
+                f"{named(path)}: line {i + 1}: {shown(line.strip())} has signs between "
+                "thousands; write numbers without them"
             )
     raise FormatError(
         f"{named(path)} holds no table of numbers: no line of its first "
@@ -239,11 +272,17 @@ def _numeric_layout(index: int, line: str) -> _Start | None:
         if delimiter is not None and delimiter not in line:
             continue
         cells = split_row(line, delimiter)
-        numeric = sum(NUMBER.fullmatch(cell) is not None for cell in cells)
+        numeric = sum(_is_number(cell, delimiter) for cell in cells)
         missing = sum(cell.lower() in MISSING_WORDS for cell in cells)
         if numeric and numeric + missing >= len(cells) and len(cells) <= MAX_COLUMNS:
             return _Start(index, delimiter, len(cells))
     return None
+
+
+def _is_number(cell: str, delimiter: str | None) -> bool:
+    if NUMBER.fullmatch(cell):
+        return True
+    return delimiter != "," and DECIMAL_COMMA.fullmatch(cell) is not None
 
 
 def _same_layout(one: _Start, other: _Start) -> bool:
@@ -290,8 +329,8 @@ def parse_cell(cell: str, line: int, path: Path) -> float:
         return float("nan")
     if DECIMAL_COMMA.fullmatch(cell):
         raise FormatError(
-            f"{named(path)}: line {line}: {shown(cell)} has a decimal comma; replace "
-            "commas by points and separate the columns by ';' or tab"
+            f"{named(path)}: line {line}: {shown(cell)} has a decimal comma, this "
+            "format has points; export it with points"
         )
     raise FormatError(
         f"{named(path)}: line {line}: {shown(cell)} is not a number; every line below "
@@ -316,9 +355,14 @@ def _load_array(path: Path, columns: int | None) -> Table:
     try:
         array = np.lib.format.open_memmap(path, mode="r")
     except (ValueError, OSError, OverflowError, TypeError, *_HEADER_ERRORS) as error:
+        if "Python objects" in str(error):  # np.save wrote them, by pickle
+            raise FormatError(
+                f"{named(path)} holds Python objects, which are never read because "
+                "that runs code; save numbers, as numpy.save(name, array.astype(float))"
+            ) from error
         raise FormatError(
             f"{named(path)} is not a whole .npy array of numbers "
-            f"({shown(error)}); save it again with numpy.save"
+            f"({shown(error)}); use another copy"
         ) from error
     if array.dtype.kind not in "fiu":
         raise FormatError(
