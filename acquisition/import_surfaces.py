@@ -84,7 +84,9 @@ def read_surface(
     if wanted is None and is_keyence(data):
         return parse_keyence(data, path, origin, label)
     text, encoding = decode(data, path)
+    del data  # as large as the file, as is the text
     lines = text_lines(text, path)
+    del text
     if wanted is None:
         for recognise, parse in _TEXTS:
             if recognise(lines):

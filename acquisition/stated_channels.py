@@ -89,7 +89,8 @@ def recording_of(
     _require_even(path, [channel for channel, _ in wanted])
     samples = np.empty((len(wanted), wanted[0][0].size))
     for row, (channel, column) in zip(samples, wanted, strict=True):
-        row[:] = _samples(path, channel, column)
+        row[:] = _samples(path, channel)
+        row *= column.factor
     origin = step(
         "import",
         file=path.name,
@@ -229,20 +230,20 @@ def _contradiction(channel: StatedChannel, column: Column, way: str) -> UnitErro
     )
 
 
-def _samples(path: Path, channel: StatedChannel, column: Column) -> FloatArray:
+def _samples(path: Path, channel: StatedChannel) -> FloatArray:
     values = np.asarray(channel.read(), dtype=np.float64).ravel()
     if values.size != channel.size:
         raise FormatError(
             f"{named(path)}: channel {shown(channel.name)} holds {values.size} of "
             f"{channel.size} samples; it is cut short: use another copy"
         )
-    bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
+    if not np.isfinite(values).all():
+        bad = np.flatnonzero(~np.isfinite(values))
         raise BadData(
             f"{named(path)}: channel {shown(channel.name)} holds {bad.size} values "
             f"that are not finite, the first at sample {bad[0]}; cut the record there"
         )
-    return np.asarray(values * column.factor)
+    return values
 
 
 def _channel(channel: StatedChannel, column: Column, point: str) -> Channel:

@@ -9,7 +9,11 @@ from pathlib import Path
 
 from jointbench.acquisition.errors import BadData, FormatError, HostileFile
 
-MAX_TEXT_BYTES = 256 * 2**20
+# A text takes up to six times its size in memory, a line 60 bytes beside its own.
+MAX_TEXT_BYTES = 128 * 2**20
+MAX_LINES = 3_000_000
+BYTES_A_LINE = 100
+"""A larger text may have one more line for so many of its characters."""
 MAX_LINE_CHARACTERS = 2**20
 _SHOWN = 60
 _SHOWN_PATH = 160
@@ -136,14 +140,18 @@ def decode(data: bytes, path: Path | str) -> tuple[str, str]:
             f"{named(path)} is an HDF5 file, not a table: a session needs no import, "
             "give it to 'jointbench modal' or 'jointbench report' directly"
         )
-    for encoding in _candidates(data):
+    candidates = _candidates(data)
+    if b"\r" in data and not candidates[0].startswith("utf-16"):
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    for encoding in candidates:
         try:
             text = data.decode(encoding)
         except UnicodeDecodeError:
             continue
-        junk = _BINARY.search(text)
-        if junk is None:
-            return text.replace("\r\n", "\n").replace("\r", "\n"), encoding
+        if _BINARY.search(text) is None:
+            if "\r" in text:
+                text = text.replace("\r\n", "\n").replace("\r", "\n")
+            return text, encoding
     raise FormatError(
         f"{named(path)} is not text in UTF-8, UTF-16 or Windows-1252; it looks like a "
         "binary file: export it as text, or convert it to .npy"
@@ -154,14 +162,21 @@ def text_lines(text: str, path: Path | str) -> list[str]:
     """Split a text into lines, none of them endless.
 
     Raises:
-        HostileFile: a line has more than a million characters.
+        HostileFile: a line has more than a million characters, or there are more
+            lines than any table of measured values has.
     """
-    lines = text.split("\n")
-    longest = max(range(len(lines)), key=lambda i: len(lines[i]))
-    if len(lines[longest]) > MAX_LINE_CHARACTERS:
+    count, most = text.count("\n"), MAX_LINES + len(text) // BYTES_A_LINE
+    if count > most:
         raise HostileFile(
-            f"{named(path)}: line {longest + 1} has {len(lines[longest])} characters; "
-            f"at most {MAX_LINE_CHARACTERS} are read: write one row a line"
+            f"{named(path)} has {count} lines, at most {most} are read of a text of "
+            "its size; split it, or save the numbers as .npy"
+        )
+    lines = text.split("\n")
+    lengths = list(map(len, lines))
+    if max(lengths) > MAX_LINE_CHARACTERS:
+        raise HostileFile(
+            f"{named(path)}: line {lengths.index(max(lengths)) + 1} has {max(lengths)} "
+            f"characters; at most {MAX_LINE_CHARACTERS} are read: write one row a line"
         )
     return lines
 

@@ -18,6 +18,7 @@ from jointbench.acquisition.errors import (
     UsageError,
 )
 from jointbench.acquisition.records import Recording
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.text_files import file_size, named, shown
 
@@ -53,12 +54,13 @@ def read_wave(
             "V@10mV/g' --full-scale 10"
         )
     scale = _scale(path, values, full_scale)
+    require_room(path, values.nbytes + 8 * values.size + 16 * len(values))
     stated = [
         StatedChannel(
             name=str(index + 1),
             unit="",
             size=values.shape[0],
-            read=partial(np.multiply, values[:, index].astype(np.float64), scale),
+            read=partial(np.multiply, values[:, index], scale, dtype=np.float64),
         )
         for index in range(values.shape[1])
     ]
@@ -129,8 +131,7 @@ def _read(path: Path) -> tuple[int, NDArray[Any]]:
             f"{named(path)} cannot be read as WAV ({shown(error)}); use another copy"
         ) from error
     if values.dtype.kind == "u":  # 8 bits are stored about 128
-        values = values.astype(np.int16) - 128
-        values = values.astype(np.int8)
+        values = (values ^ 0x80).view(np.int8)
     if values.size == 0:
         raise FormatError(f"{named(path)} holds no samples")
     return int(rate), values

@@ -28,7 +28,9 @@ from jointbench.station.process import outcome_json
 from jointbench.station.process_file import Outcome, State
 
 LEDGER_SCHEMA = "jointbench-ledger/1"
-MOST_BYTES = 2**30
+MOST_BYTES = 2**28
+MOST_LINES = 500_000
+"""Each becomes a record of about 500 bytes in memory."""
 """Two million files' lines; a longer ledger is none [bytes]."""
 _FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 
@@ -126,6 +128,12 @@ def read_ledger(path: Path) -> list[dict[str, Any]]:
         return []
     lines = []
     data = read_bytes(path, limit=MOST_BYTES) if file_size(path) else b""
+    brackets = data.count(b"[") + data.count(b"{")
+    if data.count(b"\n") > MOST_LINES or brackets > 10 * MOST_LINES:
+        raise UsageError(
+            f"{named(path)} has more than {MOST_LINES} lines, or more values in them "
+            "than a ledger; give --ledger another name"
+        )
     for text in data.decode("utf-8", errors="replace").split("\n"):
         try:
             line = json.loads(text)

@@ -20,6 +20,7 @@ from jointbench.acquisition.netcdf_read import (
     read_attribute,
     read_flags,
     read_texts,
+    require_rows,
 )
 from jointbench.acquisition.session_file import damage_named
 from jointbench.acquisition.text_files import named, shown
@@ -154,6 +155,7 @@ def _processed(file: h5py.File, path: Path) -> StoredResult:
 
 
 def _rows(group: h5py.Group) -> Iterator[Quantity]:
+    require_rows(group["value"])
     texts = [read_texts(group[n]) for n in ("part", "item", "name", "unit")]
     numbers = [read_array(group[n]).tolist() for n in ("value", "sd")]
     words, preloads = read_texts(group["word"]), read_array(group["preload"]).tolist()
@@ -164,6 +166,7 @@ def _rows(group: h5py.Group) -> Iterator[Quantity]:
 def _changes(group: h5py.Group | None) -> Iterator[VerdictChange]:
     if group is None:
         return
+    require_rows(group["time"])
     for row in zip(
         read_texts(group["recording"]),
         read_array(group["time"]).tolist(),

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""What a file may take in memory: known before it is read, whatever it claims.
+
+A reader of foreign bytes keeps to 500 MB and four times the file. Interpreter and
+libraries take 150 MB of these; the rest is here. Samples of one byte become doubles of
+eight, and packed ones more, so the size of the file alone bounds nothing.
+"""
+
+import os
+from pathlib import Path
+
+from jointbench.acquisition.errors import HostileFile
+from jointbench.acquisition.text_files import file_size, named
+
+ROOM = 350
+"""Beside four times the file [MB]."""
+VARIABLE = "JOINTBENCH_MEMORY_MB"
+"""Of the environment: what to allow in place of `ROOM`, for files one trusts."""
+MAX_ROWS = 200_000
+"""Of a table that becomes a record a row: hits, quantities, steps."""
+_MB = 10**6
+
+
+def room(size: int) -> int:
+    """Return what a file of `size` [bytes] may take in memory [bytes]."""
+    given = os.environ.get(VARIABLE, "")
+    floor = int(given) if given.isdecimal() else ROOM
+    return floor * _MB + 4 * size
+
+
+def require_room(path: Path, needed: float) -> None:
+    """Raise `HostileFile` where reading a file takes more memory than it may.
+
+    Args:
+        path: of the file.
+        needed: what it would take [bytes].
+    """
+    allowed = room(file_size(path))
+    if needed > allowed:
+        raise HostileFile(
+            f"{named(path)} would take {needed / _MB:.0f} MB of memory, a file of its "
+            f"size may take {allowed / _MB:.0f} MB; split it, or if you trust it set "
+            f"{VARIABLE}={needed / _MB:.0f}"
+        )
