@@ -6,6 +6,7 @@ scale of some of its formats is wrong by orders of magnitude.
 """
 
 import warnings
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +17,17 @@ from jointbench.acquisition.errors import FormatError, HostileFile, UnitError
 from jointbench.acquisition.even_steps import fit_even_steps
 from jointbench.acquisition.grids import masked
 from jointbench.acquisition.records import Step, step
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.surfaces import Areal, Profile, Surface
 from jointbench.acquisition.tables import MAX_CELLS
 from jointbench.acquisition.text_files import named, shown
 from jointbench.acquisition.units import to_si
 
 MOST_BYTES = 512 * 2**20
+_XML = (".xml", ".rels")
+_MOST_ENTRIES = 1000
+_NEEDED = 40
+"""Of each point: as it is stored, masked, scaled and turned [bytes]."""
 WIDEST = 1.0
 """No profilometer scans a metre: a larger map has a wrong scale [m]."""
 SUFFIXES = frozenset(
@@ -54,6 +60,7 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
     """
     if path.stat().st_size > MOST_BYTES:
         raise HostileFile(f"{named(path)} is larger than {MOST_BYTES} bytes; cut it")
+    _require_sane_container(path)
     topography, reader = _open(path)
     unit = topography.unit
     if unit is None:
@@ -77,6 +84,24 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
         missing_points=int((~valid).sum()),
     )
     return _surface(topography, plain, valid, sizes, scale, (origin, said), name, path)
+
+
+def _require_sane_container(path: Path) -> None:
+    """Refuse a ZIP container (X3P, XLSX, ...) that unpacks to more than a map.
+
+    Raises:
+        HostileFile: it does, or its XML is longer than any description.
+    """
+    try:
+        with zipfile.ZipFile(path) as container:
+            entries = container.infolist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError, OSError):
+        return  # no container, or one whose damage the reader will tell
+    # A parsed XML takes some thirty times its length.
+    xml = sum(e.file_size for e in entries if e.filename.lower().endswith(_XML))
+    require_room(path, 3 * sum(entry.file_size for entry in entries) + 30 * xml)
+    if len(entries) > _MOST_ENTRIES:
+        raise HostileFile(f"{named(path)} holds {len(entries)} files; export it again")
 
 
 def _open(path: Path) -> tuple[Any, str]:
@@ -107,8 +132,10 @@ def _open(path: Path) -> tuple[Any, str]:
 def _require_sane_grid(reader: Any, path: Path) -> None:
     """Refuse what declares more points than any map before it is read."""
     grid = reader.channels[0].nb_grid_pts if reader.channels else (0,)
-    if np.prod([float(n) for n in grid]) > MAX_CELLS:
+    points = np.prod([float(n) for n in grid])
+    if points > MAX_CELLS:
         raise HostileFile(f"{named(path)} declares {grid} points; cut it")
+    require_room(path, _NEEDED * points)
 
 
 def _surface(

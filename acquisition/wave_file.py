@@ -23,6 +23,7 @@ from jointbench.acquisition.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.text_files import file_size, named, shown
 
 _MOST_BYTES = 2**31
+_MOST_CHUNKS = 1000
 _HEADER = 12
 _HEADS = {b"RIFF": "<", b"RIFX": ">"}
 
@@ -106,8 +107,14 @@ def _require_whole(path: Path) -> None:
         order = _HEADS.get(head[:4])
         if order is None or head[8:12] != b"WAVE":
             raise FormatError(f"{named(path)} is no WAV file")
-        at = _HEADER
+        at, count = _HEADER, 0
         while at + 8 <= size:
+            count += 1
+            if count > _MOST_CHUNKS:
+                raise HostileFile(
+                    f"{named(path)} has more than {_MOST_CHUNKS} chunks; save its "
+                    "samples alone"
+                )
             file.seek(at)
             tag = file.read(8)
             length = struct.unpack(f"{order}I", tag[4:])[0]

@@ -34,7 +34,7 @@ from jointbench.station.verify import run_verify
 
 MAT = "time.t:s,force.F:N,acceleration.a1:m/s^2"
 TABLE = "time:s,force:N,acceleration:m/s^2"
-MB = 1_000_000
+Maker = Callable[[Path, float], None]
 
 READERS: dict[str, Callable[[Path], object]] = {
     "TOML: bench model": lambda p: read_toml(p, BenchModel),
@@ -81,7 +81,9 @@ class CostlyFile:
     make: Callable[[Path, float], object]
 
 
-def repeated(unit: bytes, size: float, *, head: bytes = b"", tail: bytes = b""):
+def repeated(
+    unit: bytes, size: float, *, head: bytes = b"", tail: bytes = b""
+) -> Maker:
     """Return what writes a text over and over."""
 
     def make(path: Path, scale: float) -> None:
@@ -100,7 +102,6 @@ def numbers(
         rows = max(10, int(size * scale / (11 * columns)))
         draw = np.random.default_rng(1)
         with path.open("w") as file:
-            file.write(head)
             for first in range(0, rows, 100_000):
                 step = np.arange(first, min(first + 100_000, rows))
                 rest = draw.normal(size=(columns - 1, step.size))
@@ -118,23 +119,28 @@ def numbers(
 
 
 def dots(path: Path, scale: float) -> None:
+    """Write one key of very many parts."""
     path.write_text("a" + ".a" * int(50_000 * scale) + "=1\n")
 
 
 def dotted_header(path: Path, scale: float) -> None:
+    """Write one table of very many parts."""
     path.write_text("[a" + ".a" * int(50_000 * scale) + "]\n")
 
 
 def dotted_lines(path: Path, scale: float) -> None:
+    """Write many keys of many parts."""
     one = "a" + ".b" * 400
     path.write_text("".join(f"{one}.k{i}=1\n" for i in range(int(1100 * scale))))
 
 
 def inline_dots(path: Path, scale: float) -> None:
+    """Write a key of very many parts inside braces."""
     path.write_text("x = {a" + ".a" * int(50_000 * scale) + " = 1}\n")
 
 
 def array_tables(path: Path, scale: float) -> None:
+    """Write many tables of arrays."""
     path.write_text("[[a.b.c.d]]\n" * int(80_000 * scale))
 
 
@@ -157,7 +163,7 @@ def session(path: Path, *, shape: tuple[int, ...], dtype: str, chunks=None) -> N
             "stream/r/samples",
             shape=shape,
             dtype=dtype,
-            chunks=chunks or (1, 2**20),
+            chunks=chunks or (1, min(2**20, shape[1])),
             compression="gzip",
             shuffle=True,
         )[...] = 0
@@ -170,6 +176,7 @@ def bomb(path: Path, scale: float) -> None:
 
 
 def pad(path: Path, size: int) -> None:
+    """Add what does not pack."""
     with h5py.File(path, "a") as file:
         file.create_dataset("pad", data=np.random.default_rng(1).bytes(1), dtype="S1")
         values = np.random.default_rng(1).integers(0, 255, max(1, size), np.uint8)
@@ -177,10 +184,12 @@ def pad(path: Path, size: int) -> None:
 
 
 def many_chunks(path: Path, scale: float) -> None:
+    """Write a session of a chunk for each sample."""
     session(path, shape=(2, int(240_000 * scale)), dtype="i1", chunks=(1, 1))
 
 
 def many_groups(path: Path, scale: float) -> None:
+    """Write nothing but groups and attributes."""
     with h5py.File(path, "w") as file:
         file.attrs["schema"] = "jointbench-session/1"
         for i in range(int(19_000 * scale)):
@@ -190,6 +199,7 @@ def many_groups(path: Path, scale: float) -> None:
 
 
 def rattlesnake(path: Path, scale: float) -> None:
+    """Write a stream of a chunk for each sample."""
     count = int(500_000 * scale)
     with h5py.File(path, "w") as file:
         file.attrs["sample_rate"] = 1e4
@@ -234,6 +244,7 @@ def campaign(path: Path, scale: float) -> None:
 
 
 def array(path: Path, count: float, dtype: str, rows: int = 3) -> None:
+    """Write an array of small numbers."""
     values = np.zeros((rows, int(count / rows)), dtype)
     values[0] = np.arange(values.shape[1]) % 100
     np.save(path, values)
@@ -262,16 +273,19 @@ def uff_values(path: Path, scale: float) -> None:
 
 
 def uff_edges(path: Path, scale: float) -> None:
+    """Write nothing but edges of data sets."""
     path.write_bytes(b"    -1\n" * (int(30e6 * scale) // 7 // 2 * 2))
 
 
 def mat_many(path: Path, scale: float) -> None:
+    """Write very many variables."""
     import scipy.io
 
     scipy.io.savemat(path, {f"v{i}": np.zeros(1) for i in range(int(100_000 * scale))})
 
 
 def mat_bomb(path: Path, scale: float) -> None:
+    """Write zeros, packed."""
     import scipy.io
 
     rows = np.zeros((1, int(15e6 * scale)))
@@ -279,6 +293,7 @@ def mat_bomb(path: Path, scale: float) -> None:
 
 
 def mat_cells(path: Path, scale: float) -> None:
+    """Write cells, packed."""
     import scipy.io
 
     cells = np.empty(int(300_000 * scale), dtype=object)
@@ -305,6 +320,7 @@ def wave_long(path: Path, scale: float) -> None:
 
 
 def tdms_segments(path: Path, scale: float) -> None:
+    """Write very many segments."""
     from nptdms import ChannelObject, TdmsWriter
 
     about = {"unit_string": "N", "wf_increment": 1e-3}
@@ -315,6 +331,7 @@ def tdms_segments(path: Path, scale: float) -> None:
 
 
 def tdms_channels(path: Path, scale: float) -> None:
+    """Write very many channels."""
     from nptdms import ChannelObject, TdmsWriter
 
     about = {"unit_string": "N", "wf_increment": 1e-3}
@@ -327,11 +344,13 @@ def tdms_channels(path: Path, scale: float) -> None:
 
 
 def ledger_deep(path: Path, scale: float) -> None:
+    """Write lines of nested lists."""
     first = json.dumps({"kind": "run", "schema": "jointbench-ledger/1"})
     path.write_text(first + "\n" + ("[" * 900 + "]" * 900 + "\n") * int(30_000 * scale))
 
 
 def ledger_many(path: Path, scale: float) -> None:
+    """Write very many lines."""
     first = json.dumps({"kind": "run", "schema": "jointbench-ledger/1"})
     path.write_text(first + "\n" + "{}\n" * int(20e6 * scale))
 
@@ -359,6 +378,7 @@ def entities(path: Path, scale: float) -> None:
 
 
 def mtx_claim(path: Path, scale: float) -> None:
+    """Write one value of a vast matrix."""
     count = int(1e9 * scale)
     path.write_text(
         f"%%MatrixMarket matrix coordinate real general\n{count} {count} 1\n1 1 1.0\n"
@@ -366,11 +386,13 @@ def mtx_claim(path: Path, scale: float) -> None:
 
 
 def mtx_array(path: Path, scale: float) -> None:
+    """Claim a vast full matrix."""
     count = int(30_000 * scale)
     path.write_text(f"%%MatrixMarket matrix array real general\n{count} {count}\n1.0\n")
 
 
 def inp(path: Path, scale: float) -> None:
+    """Write very many nodes."""
     with path.open("w") as file:
         file.write("*NODE\n")
         for i in range(1, int(2e6 * scale)):
@@ -384,18 +406,20 @@ def keyence(path: Path, scale: float) -> None:
     head = (
         '"Measurement Data"\n"Horizontal","1024"\n"Vertical","768"\n'
         '"XY Calibration","1000","nm"\n"Output image data","Height"\n"Unit","um"\n'
-        f'"Height"\n'
+        '"Height"\n'
     )
     path.write_text(head + ("1," * 5999 + "1\n") * rows)
 
 
 def gwyddion(path: Path, scale: float) -> None:
+    """Write a Gwyddion text of single digits."""
     rows = int(2500 * scale)
     head = "# Channel: Height\n# Width: 10 um\n# Height: 10 um\n# Value units: m\n"
     path.write_text(head + ("1\t" * 9999 + "1\n") * rows)
 
 
 def surfcom(path: Path, scale: float) -> None:
+    """Write a Surfcom trace of single digits."""
     path.write_text("4.0\n0.3\n1\n" + "1\n" * int(30e6 * scale))
 
 
@@ -420,7 +444,7 @@ FILES = (
     CostlyFile("hits", "240 MB of numbers", "h.csv", numbers(240e6, columns=3)),
     CostlyFile("hits", "120 MB of numbers", "h.csv", numbers(120e6, columns=3)),
     CostlyFile(
-        "hits", "120 MB, gaps all over", "h.csv", numbers(120e6, columns=3, gap="")
+        "hits", "120 MB, gaps all over", "h.csv", numbers(120e6, columns=3, gap=" ")
     ),
     CostlyFile(
         "hits",
