@@ -123,7 +123,7 @@ def _stated(
     def read(row: int) -> FloatArray:
         if not rows:
             rows.append(_samples(path, data))
-        return rows[0][row]
+        return np.asarray(rows[0][row])
 
     for row, (node, way, unit) in enumerate(zip(*texts, strict=True)):
         yield StatedChannel(

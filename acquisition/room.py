@@ -18,7 +18,16 @@ VARIABLE = "JOINTBENCH_MEMORY_MB"
 """Of the environment: what to allow in place of `ROOM`, for files one trusts."""
 MAX_ROWS = 200_000
 """Of a table that becomes a record a row: hits, quantities, steps."""
+MAX_JSON = 4_000_000
+"""Characters of JSON in a file: lists of nothing take twenty times their text."""
 _MB = 10**6
+
+
+def require_short_json(*texts: str) -> None:
+    """Raise `HostileFile` where texts of JSON are longer than any of ours."""
+    length = sum(map(len, texts))
+    if length > MAX_JSON:
+        raise HostileFile(f"it holds {length} characters of JSON, at most {MAX_JSON}")
 
 
 def room(size: int) -> int:

@@ -218,9 +218,9 @@ def _with_points(
             "numbers with one decimal sign and without signs between thousands"
         )
     if all("," not in _THOUSANDS.sub("", row) for row in rows):
-        comma = next(i for i, row in enumerate(rows) if "," in row)
+        first = next(i for i, row in enumerate(rows) if "," in row)
         raise FormatError(
-            f"{named(path)}: line {numbers[comma] + 1}: {shown(rows[comma].strip())}: "
+            f"{named(path)}: line {numbers[first] + 1}: {shown(rows[first].strip())}: "
             "the commas of this table may be decimal signs or part thousands; write "
             "points, or numbers without signs between thousands"
         )

@@ -5,6 +5,7 @@ Its 40 readers are not repeated here; what comes out of them is checked, because
 scale of some of its formats is wrong by orders of magnitude.
 """
 
+import math
 import warnings
 import zipfile
 from pathlib import Path
@@ -132,7 +133,7 @@ def _open(path: Path) -> tuple[Any, str]:
 def _require_sane_grid(reader: Any, path: Path) -> None:
     """Refuse what declares more points than any map before it is read."""
     grid = reader.channels[0].nb_grid_pts if reader.channels else (0,)
-    points = np.prod([float(n) for n in grid])
+    points = math.prod(float(n) for n in grid)
     if points > MAX_CELLS:
         raise HostileFile(f"{named(path)} declares {grid} points; cut it")
     require_room(path, _NEEDED * points)

@@ -122,8 +122,9 @@ def _figures(report: Report) -> str:
 
 def _seen(value: object) -> object:
     """Return what the template prints: texts visible, our own markup as it is."""
-    own = not isinstance(value, str) or hasattr(value, "__html__")
-    return value if own else visible(value)
+    if isinstance(value, str) and not hasattr(value, "__html__"):
+        return visible(value)
+    return value
 
 
 def _seen_below(value: object) -> object:

@@ -22,6 +22,7 @@ from jointbench.acquisition.netcdf_read import (
     read_texts,
     require_rows,
 )
+from jointbench.acquisition.room import require_short_json
 from jointbench.acquisition.session_file import damage_named
 from jointbench.acquisition.text_files import named, shown
 from jointbench.station.judge_again import VerdictChange
@@ -135,6 +136,8 @@ def _number(file: h5py.File, name: str) -> float | None:
 
 def _processed(file: h5py.File, path: Path) -> StoredResult:
     stages = file["stages"]
+    recipe = "".join(read_texts(file["recipe/text"]))
+    require_short_json(recipe)
     remarks = find_group(file, "remarks")
     return StoredResult(
         path=path,
@@ -144,7 +147,7 @@ def _processed(file: h5py.File, path: Path) -> StoredResult:
         preload=_number(file, "preload"),
         quantities=tuple(_rows(file["quantities"])),
         changes=tuple(_changes(find_group(file, "hits"))),
-        recipe=json.loads("".join(read_texts(file["recipe/text"]))),
+        recipe=json.loads(recipe),
         stages=dict(
             zip(
                 read_texts(stages["stage_name"]), read_texts(stages["key"]), strict=True

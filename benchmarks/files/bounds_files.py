@@ -27,6 +27,7 @@ from jointbench.station.geometry import Geometry
 from jointbench.station.identify import describes_structure
 from jointbench.station.ledger import read_ledger
 from jointbench.station.measure_plan import read_plan
+from jointbench.station.processed_file import PROCESSED_SCHEMA
 from jointbench.station.recipe import read_recipe
 from jointbench.station.results_read import read_result
 from jointbench.station.toml_file import read_toml
@@ -175,6 +176,17 @@ def bomb(path: Path, scale: float) -> None:
     pad(path, int(120e6 * scale / 62))
 
 
+def results_json(path: Path, scale: float) -> None:
+    """Write a recipe of nothing but empty lists."""
+    data = np.frombuffer(b"[" + b"[]," * int(20e6 * scale) + b"[]]", "S1")
+    with h5py.File(path, "w") as file:
+        file.attrs["schema"] = PROCESSED_SCHEMA
+        file.create_group("stages")
+        file.create_dataset(
+            "recipe/text", data=data[None, :], compression="gzip", chunks=True
+        )
+
+
 def pad(path: Path, size: int) -> None:
     """Add what does not pack."""
     with h5py.File(path, "a") as file:
@@ -224,7 +236,7 @@ def rattlesnake(path: Path, scale: float) -> None:
 def campaign(path: Path, scale: float) -> None:
     """Records that hold next to nothing and claim much."""
     with h5py.File(path, "w") as file:
-        file.attrs["schema"] = "jointbench-gap-campaign/1"
+        file.attrs["schema"] = "two-body-campaign/1"
         file.attrs["fs_hz"] = 1e4
         for i in range(64):
             group = file.create_group(f"records/{i:03d}")
@@ -529,6 +541,7 @@ FILES = (
     CostlyFile(
         "results", "19,000 groups of 20 attributes", "r.results.h5", many_groups
     ),
+    CostlyFile("results", "a recipe of empty lists", "r.results.h5", results_json),
     CostlyFile("campaign", "bytes that become doubles", "c.h5", campaign),
     CostlyFile("Rattlesnake", "500,000 chunks", "r.nc4", rattlesnake),
     CostlyFile("MAT", "100,000 variables", "m.mat", mat_many),
