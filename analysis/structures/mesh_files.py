@@ -14,6 +14,7 @@ from jointbench.acquisition.room import require_room
 from jointbench.analysis.structures.assembly import Sparse
 from jointbench.analysis.structures.elements import ElementKind
 from jointbench.analysis.structures.mesh import Mesh, merge_nodes
+from jointbench.analysis.structures.mesh_child import read_with_meshio
 from jointbench.analysis.structures.parts import (
     Body,
 )
@@ -42,24 +43,18 @@ def read_mesh(path: Path, *, unit: float = 1.0) -> Mesh:
     """
     if importlib.util.find_spec("meshio") is None:
         raise UsageError(f"{path} needs meshio: pip install 'jointbench[meshes]'")
-    import meshio
-
     _require_size(path)
-    try:
-        found = meshio.read(path)
-    except (Exception, SystemExit) as error:
-        raise FormatError(f"{path}: meshio cannot read it ({error})") from error
-    solids = [block for block in found.cells if block.type in _KINDS]
-    kinds = {block.type for block in solids}
+    nodes, blocks = read_with_meshio(path)
+    solids = [(kind, data) for kind, data in blocks if kind in _KINDS]
+    kinds = {kind for kind, _ in solids}
     if len(kinds) != 1:
-        types = sorted({block.type for block in found.cells})
+        types = sorted({kind for kind, _ in blocks})
         raise FormatError(
             f"{path}: elements are {types}; one kind of hexahedron20 or tetra10 is "
             "needed: mesh with quadratic solids"
         )
-    cells = np.concatenate([block.data for block in solids]).astype(np.int64)
-    nodes = np.asarray(found.points, float) * unit
-    return merge_nodes(Mesh(nodes, cells, _KINDS[kinds.pop()]))
+    cells = np.concatenate([data for _, data in solids])
+    return merge_nodes(Mesh(nodes * unit, cells, _KINDS[kinds.pop()]))
 
 
 def read_matrix(path: Path) -> Sparse:
