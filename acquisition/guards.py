@@ -41,7 +41,7 @@ class Limits:
         attributes: of one object.
         attribute_bytes: of one attribute [bytes].
         dimensions: axes of a dataset.
-        chunks: pieces that a file is stored in.
+        chunks: pieces that a file is stored in; HDF5 takes 4 kB of memory for each.
         chunk_bytes: that a chunk takes in the file at the least [bytes]; where it is
             above zero, a file that is large enough may have more than `chunks`.
         unpacked_bytes: of all values [bytes].
@@ -58,7 +58,7 @@ class Limits:
     attributes: int = 256
     attribute_bytes: int = 65_536
     dimensions: int = 8
-    chunks: int = 500_000
+    chunks: int = 60_000
     chunk_bytes: int = 0
     unpacked_bytes: int = 8 * 2**30
     always_bytes: int = 64 * 2**20

@@ -37,6 +37,7 @@ _LIMITS = Limits(variable_texts=MOST_CHANNELS, chunk_bytes=32)
 _STREAM = re.compile(r"time_data(?:_(\d{1,6}))?")
 _MOST_STREAMS = 1000
 _PIECE = 2**18  # chunks that are copied at once
+_COLUMNS = 10_000  # samples that HDF5 reads at once: it takes 4 kB a chunk
 _LONGEST_TEXT = 1000
 _MATRIX = 2
 
@@ -140,7 +141,11 @@ def _samples(path: Path, data: h5py.Dataset) -> FloatArray:
     """Return a stream, shape (n_channels, n_samples)."""
     plain = data.dtype.kind == "f" and not data.compression and not data.shuffle
     if data.chunks != (data.shape[0], 1) or not plain or data.fletcher32:
-        return np.asarray(data[...], dtype=np.float64)
+        found = np.empty(data.shape)
+        for first in range(0, data.shape[1], _COLUMNS):
+            some = slice(first, first + _COLUMNS)
+            found[:, some] = data[:, some]
+        return found
     places = array("q")
     data.id.chunk_iter(
         lambda chunk: places.extend((chunk.chunk_offset[1], chunk.byte_offset))

@@ -9,6 +9,8 @@ eight, and packed ones more, so the size of the file alone bounds nothing.
 import os
 from pathlib import Path
 
+import numpy as np
+
 from jointbench.acquisition.errors import HostileFile
 from jointbench.acquisition.text_files import file_size, named
 
@@ -21,6 +23,7 @@ MAX_ROWS = 200_000
 MAX_JSON = 4_000_000
 """Characters of JSON in a file: lists of nothing take twenty times their text."""
 _MB = 10**6
+_PIECE = 2**24
 
 
 def require_short_json(*texts: str) -> None:
@@ -35,6 +38,17 @@ def room(size: int) -> int:
     given = os.environ.get(VARIABLE, "")
     floor = int(given) if given.isdecimal() else ROOM
     return floor * _MB + 4 * size
+
+
+def count_cells(data: bytes) -> int:
+    """Return how many words blanks, tabs, commas, semicolons and line ends part."""
+    marks = np.zeros(256, dtype=bool)
+    marks[[*b" \t\n,;"]] = True
+    found = 0
+    for first in range(0, len(data), _PIECE):
+        part = marks[np.frombuffer(data[first : first + _PIECE], np.uint8)]
+        found += int(np.count_nonzero(part[1:] & ~part[:-1])) + 1
+    return found
 
 
 def require_room(path: Path, needed: float) -> None:

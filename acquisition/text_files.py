@@ -10,7 +10,7 @@ from pathlib import Path
 from jointbench.acquisition.errors import BadData, FormatError, HostileFile
 
 # A text takes up to six times its size in memory, a line 60 bytes beside its own.
-MAX_TEXT_BYTES = 128 * 2**20
+MAX_TEXT_BYTES = 100_000_000
 MAX_LINES = 3_000_000
 BYTES_A_LINE = 100
 """A larger text may have one more line for so many of its characters."""

@@ -26,7 +26,7 @@ from jointbench.acquisition.units import to_si
 
 MOST_BYTES = 512 * 2**20
 _XML = (".xml", ".rels")
-_MOST_ENTRIES = 1000
+_MOST_ENTRIES, _MOST_LINES = 1000, 1_000_000
 _NEEDED = 40
 """Of each point: as it is stored, masked, scaled and turned [bytes]."""
 WIDEST = 1.0
@@ -61,6 +61,7 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
     """
     if path.stat().st_size > MOST_BYTES:
         raise HostileFile(f"{named(path)} is larger than {MOST_BYTES} bytes; cut it")
+    _require_few_lines(path)
     _require_sane_container(path)
     topography, reader = _open(path)
     unit = topography.unit
@@ -85,6 +86,25 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
         missing_points=int((~valid).sum()),
     )
     return _surface(topography, plain, valid, sizes, scale, (origin, said), name, path)
+
+
+def _require_few_lines(path: Path) -> None:
+    """Refuse a text of more lines than its reader takes in a few seconds.
+
+    Raises:
+        HostileFile: it has more.
+    """
+    lines = 0
+    with path.open("rb") as file:
+        while piece := file.read(2**20):
+            if b"\x00" in piece:
+                return  # no text
+            lines += piece.count(b"\n")
+            if lines > _MOST_LINES:
+                raise HostileFile(
+                    f"{named(path)} has more than {_MOST_LINES} lines; export it as a "
+                    "table of x, y and z"
+                )
 
 
 def _require_sane_container(path: Path) -> None:

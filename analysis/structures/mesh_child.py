@@ -14,7 +14,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.acquisition.errors import FormatError, HostileFile
-from jointbench.acquisition.room import room
+from jointbench.acquisition.room import VARIABLE, room
 from jointbench.acquisition.text_files import file_size, named, shown
 
 CPU = 10
@@ -83,6 +83,6 @@ def read_with_meshio(path: Path) -> tuple[FloatArray, list[tuple[str, IntArray]]
 def _too_much(path: Path) -> HostileFile:
     return HostileFile(
         f"{named(path)} takes meshio more than {CPU} s or "
-        f"{room(file_size(path)) / 1e6:.0f} MB; thin the mesh, or save it in a binary "
-        "format"
+        f"{room(file_size(path)) / 1e6:.0f} MB; thin the mesh, save it in a binary "
+        f"format, or allow more by {VARIABLE}"
     )
