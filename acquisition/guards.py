@@ -39,6 +39,7 @@ class Limits:
         objects: groups and datasets in a file.
         depth: groups inside each other.
         attributes: of one object.
+        all_attributes: of all objects; each takes 25 us to look at.
         attribute_bytes: of one attribute [bytes].
         dimensions: axes of a dataset.
         chunks: pieces that a file is stored in; HDF5 takes 4 kB of memory for each.
@@ -56,6 +57,7 @@ class Limits:
     objects: int = 20_000
     depth: int = 16
     attributes: int = 256
+    all_attributes: int = 200_000
     attribute_bytes: int = 65_536
     dimensions: int = 8
     chunks: int = 60_000
@@ -75,6 +77,7 @@ class _Tally:
     file_bytes: int
     objects: int = 0
     chunks: int = 0
+    attributes: int = 0
     unpacked: int = 0
     groups: set[int] = field(default_factory=set)
 
@@ -272,8 +275,11 @@ def _check_attributes(
     target: h5g.GroupID | h5d.DatasetID, name: str, tally: _Tally
 ) -> None:
     count = h5a.get_num_attrs(target)
+    tally.attributes += count
     if count > tally.limits.attributes:
         raise tally.refuse(name, f"has {count} attributes")
+    if tally.attributes > tally.limits.all_attributes:
+        raise tally.refuse(name, f"brings the file to {tally.attributes} attributes")
     for i in range(count):
         attribute = h5a.open(target, index=i)
         if attribute.name in _SCALE_ATTRIBUTES:

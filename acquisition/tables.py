@@ -38,6 +38,8 @@ _COMMENT = ("#", "%", "//")
 _FIRST_OF_NUMBER = frozenset("0123456789+-.")
 _BLOCK, _FEW = 65_536, 1024
 """Rows that are parsed at once, and again in fewer where one has no number."""
+_TEXT_NEEDED, _CELL_NEEDED = 3, 20
+"""Of each character of a text, and of each number in it [bytes]."""
 _NEEDED = 24
 """Of each number of an array: as it is read, laid in rows, and in its unit [bytes]."""
 MAX_SLOW_CELLS = 3_000_000
@@ -182,6 +184,10 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
             f"{named(path)} has {len(numbers)} rows of {start.columns} columns; "
             f"at most {MAX_ROWS} rows and {MAX_CELLS} cells are read: cut it"
         )
+    text = sum(map(len, lines))
+    require_room(
+        path, _TEXT_NEEDED * text + _CELL_NEEDED * numbers.size * start.columns
+    )
     rows = _with_points([lines[i] for i in numbers], numbers, start, path)
     values = _parse(rows, numbers, start, path)
     delimiter = _NAMES.get(start.delimiter, start.delimiter)
