@@ -28,8 +28,9 @@ def profiles_along(areal: Areal, angle: float) -> tuple[Profile, ...]:
         angle: from the rows towards the columns [rad], any.
 
     Returns:
-        Lines of one spacing, through points of the grid; the angle that was met is in
-        their provenance. Pool them with `pool_profiles`.
+        Lines of one spacing, through points of the grid, each beside the one before
+        it; the angle that was met is in their provenance. Neighbouring lines are not
+        independent: `structure_along` takes that into account.
 
     Raises:
         UsageError: no line of the map has 16 points in that direction.
@@ -38,11 +39,13 @@ def profiles_along(areal: Areal, angle: float) -> tuple[Profile, ...]:
     rows, columns = areal.heights.shape
     met = atan2(down * areal.spacing[0], across * areal.spacing[1])
     note = step("profiles_along", asked_rad=angle, met_rad=met)
+    starts = [
+        (row, column)
+        for row, column in product(range(rows), range(columns))
+        if not (0 <= row - down < rows and 0 <= column - across < columns)
+    ]
     lines = []
-    for row, column in product(range(rows), range(columns)):
-        before = row - down, column - across
-        if 0 <= before[0] < rows and 0 <= before[1] < columns:
-            continue
+    for row, column in sorted(starts, key=lambda s: s[0] * across - s[1] * down):
         length = min(_room(row, down, rows), _room(column, across, columns))
         index = np.arange(length)
         lines.append((row + down * index, column + across * index))

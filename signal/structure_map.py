@@ -24,6 +24,8 @@ REACH = 0.1
 """Longest lag of a map over its sides, by default [-]."""
 DIRECTIONS = ((0, 1), (1, 1), (1, 0), (1, -1))
 """Steps along rows and columns of the directions that are compared [-]."""
+COMPARED_LAGS = 12
+"""Lags at which directions are compared [-]."""
 CLEAR_LAY = 0.25
 """Difference of ln S between directions that makes a lay [-]."""
 
@@ -130,12 +132,16 @@ class Isotropy:
     Attributes:
         angle: of the directions compared, from the rows [rad], shape (4,).
         ratio: S in each direction over the geometric mean of all [-], same shape.
+        lag: at which they are compared [m], shape (n_lags,), ascending.
+        value: S in each direction at these lags [m^2], shape (4, n_lags).
         isotropic: whether S differs by less than 25 % between them.
         reason: one line with the numbers.
     """
 
     angle: FloatArray
     ratio: FloatArray
+    lag: FloatArray
+    value: FloatArray
     isotropic: bool
     reason: str
 
@@ -150,6 +156,10 @@ def isotropy(areal: Areal, *, reach: float = REACH) -> Isotropy:
     Returns:
         Directions and their S at equal lags, from one step of the coarsest to the
         reach of the shortest.
+
+    Raises:
+        UsageError: the map is too small, or too full of gaps, to compare them.
+        SurfaceTooSmall: too few measured points.
     """
     found = structure_map(areal, reach=reach)
     middle = (found.value.shape[1] - 1) // 2
@@ -163,7 +173,13 @@ def isotropy(areal: Areal, *, reach: float = REACH) -> Isotropy:
         )
         curves.append((lag, found.value[down * steps, middle + across * steps]))
     low, high = max(c[0][0] for c in curves), min(c[0][-1] for c in curves)
-    lags = np.geomspace(low, high, 12)
+    if not high > low or any(np.isnan(value).any() for _, value in curves):
+        rows, columns = areal.heights.shape
+        raise UsageError(
+            f"map {areal.name!r} of {rows} x {columns} points is too small or has too "
+            "many gaps to compare directions; measure a larger map"
+        )
+    lags = np.geomspace(low, high, COMPARED_LAGS)
     logs = np.array(
         [
             np.interp(np.log(lags), np.log(lag), np.log(np.maximum(value, 1e-300)))
@@ -180,4 +196,4 @@ def isotropy(areal: Areal, *, reach: float = REACH) -> Isotropy:
         f"S is largest at {np.degrees(angle[top]):.0f} degrees from the rows, "
         f"{np.exp(gap[top]):.2f} times the mean of four directions"
     )
-    return Isotropy(angle, np.exp(gap), alike, reason)
+    return Isotropy(angle, np.exp(gap), lags, np.exp(logs), alike, reason)

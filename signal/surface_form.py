@@ -85,7 +85,7 @@ def mask_outliers(surface: Surface, *, limit: float = OUTLIER_LIMIT) -> Surface:
     """
     if not limit > 1:
         raise UsageError(f"limit is {limit!r}, it must be above 1, for example 6")
-    filled = np.where(surface.valid, surface.heights, np.median(_known(surface)))
+    filled = _filled(surface)
     others = np.ones((NEIGHBOURHOOD,) * filled.ndim, dtype=np.bool_)
     others[(NEIGHBOURHOOD // 2,) * filled.ndim] = False
     middle = scipy.ndimage.median_filter(filled, footprint=others, mode="nearest")
@@ -102,14 +102,24 @@ def mask_outliers(surface: Surface, *, limit: float = OUTLIER_LIMIT) -> Surface:
     )
 
 
-def _known(surface: Surface) -> FloatArray:
-    known = surface.heights[surface.valid]
-    if known.size < MINIMUM_VALID_POINTS:
+def _filled(surface: Surface) -> FloatArray:
+    """Return heights with the nearest measured one where a point is missing.
+
+    One height for all gaps would make outliers of their edges on a tilted surface.
+    """
+    known = int(np.count_nonzero(surface.valid))
+    if known < MINIMUM_VALID_POINTS:
         raise SurfaceTooSmall(
-            f"surface {surface.name!r} has {known.size} measured points, at least "
+            f"surface {surface.name!r} has {known} measured points, at least "
             f"{MINIMUM_VALID_POINTS} are needed; measure a longer line or a larger map"
         )
-    return known
+    if surface.valid.all():
+        return surface.heights
+    nearest = scipy.ndimage.distance_transform_edt(
+        ~surface.valid, return_distances=False, return_indices=True
+    )
+    filled: FloatArray = surface.heights[tuple(nearest)]
+    return filled
 
 
 def _terms(surface: Surface, degree: int) -> list[FloatArray]:

@@ -23,22 +23,28 @@ from jointbench.station.options import (
     Band,
     Columns,
     Debug,
+    Direction,
+    Directions,
     Drop,
     EstimatorName,
     Files,
     Force,
+    Form,
     FullScale,
     GeometryFile,
     Json,
     Keep,
     Model,
     Order,
+    Outliers,
     OutputOnly,
     Page,
     Point,
+    Pool,
     Preload,
     Results,
     Universal,
+    WaveRatio,
 )
 from jointbench.station.process_commands import mount
 from jointbench.station.profile_command import profile_command
@@ -176,15 +182,31 @@ def modal_command(
 
 @app.command(name="surface")
 def surface_command(
-    files: Files, columns: Columns = None, json: Json = None, debug: Debug = False
+    files: Files,
+    columns: Columns = None,
+    form: Form = None,
+    outliers: Outliers = None,
+    direction: Direction = None,
+    directions: Directions = False,
+    pool: Pool = False,
+    weierstrass: WaveRatio = None,
+    json: Json = None,
+    debug: Debug = False,
 ) -> None:
     """Fit the fractal parameters D and G of measured surfaces.
 
     Example: jointbench surface face-a.csv face-b.csv --json surfaces.json
     """
     from jointbench.station.surface import run_surface
+    from jointbench.station.surface_options import surface_options
 
-    run_surface(files, columns=columns, json_target=json)
+    options = surface_options(
+        (form, outliers, direction),
+        pool=pool,
+        directions=directions,
+        weierstrass=weierstrass,
+    )
+    run_surface(files, columns=columns, json_target=json, options=options)
 
 
 app.command(name="measure")(measure_command)

@@ -9,7 +9,8 @@ from jointbench.acquisition.height_facts import cautions
 from jointbench.acquisition.records import Step
 from jointbench.acquisition.surfaces import Surface
 from jointbench.signal.fractal import fit_fractal
-from jointbench.signal.structure_function import StructureFunction, structure_function
+from jointbench.signal.structure_function import StructureFunction
+from jointbench.signal.surface_treatment import treated_structure
 from jointbench.signal.surface_verdict import FractalFit
 from jointbench.station.inputs import read_surfaces
 from jointbench.station.output import (
@@ -27,6 +28,16 @@ from jointbench.station.roughness_words import (
     roughness_json,
     roughness_words,
 )
+from jointbench.station.surface_options import (
+    NOTHING_BESIDE,
+    PLAIN,
+    Beside,
+    SurfaceOptions,
+    beside_the_fit,
+    pooled_beside,
+    pooled_structure,
+    require_suited,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,35 +47,73 @@ class SurfaceChain:
     surface: Surface
     structure: StructureFunction
     fit: FractalFit
+    beside: Beside = NOTHING_BESIDE
 
 
-def analyse_surface(surface: Surface) -> SurfaceChain:
-    """Take a surface to its fractal parameters, or to the reason why it has none."""
-    structure = structure_function(surface)
-    return SurfaceChain(surface, structure, fit_fractal(structure))
+@dataclass(frozen=True, slots=True, eq=False)
+class Pooled:
+    """Several profiles as one structure function, and what it says."""
+
+    structure: StructureFunction
+    fit: FractalFit
+    beside: Beside
+
+
+def analyse_surface(surface: Surface, options: SurfaceOptions = PLAIN) -> SurfaceChain:
+    """Take a surface to its fractal parameters, or to the reason why it has none.
+
+    Raises:
+        UsageError: an option does not suit the surface.
+        SurfaceTooSmall: too few measured points.
+    """
+    flat, structure = treated_structure(surface, options.treatment)
+    beside = beside_the_fit(flat, structure, options)
+    return SurfaceChain(flat, structure, fit_fractal(structure), beside)
 
 
 def run_surface(
-    files: Sequence[Path], *, columns: str | None, json_target: str | None
+    files: Sequence[Path],
+    *,
+    columns: str | None,
+    json_target: str | None,
+    options: SurfaceOptions = PLAIN,
 ) -> tuple[SurfaceChain, ...]:
-    """Fit every surface in `files` and show the verdicts."""
+    """Fit every surface in `files` and show the verdicts.
+
+    Raises:
+        UsageError: an option does not suit a surface.
+        BadData: a file cannot be read, or a surface is too small.
+    """
     check_outputs(files, [json_target])
+    read = read_surfaces(files, columns=columns)
+    given = [surface for _, surface in read]
+    require_suited(given, options)
     chains = []
     results: list[dict[str, object]] = []
-    for path, surface in read_surfaces(files, columns=columns):
+    for path, surface in read:
         with working(f"fitting {surface.name}"):
-            chain = analyse_surface(surface)
+            chain = analyse_surface(surface, options)
         chains.append(chain)
         results.append({"file": str(path)} | surface_json(chain))
-    show_surfaces(chains, json_target)
-    write_json(json_target, {"files": results})
+    pooled = _pooled(given, chains) if options.pool else None
+    show_surfaces(chains, json_target, pooled)
+    found: dict[str, object] = {"files": results}
+    if pooled is not None:
+        found["pooled"] = _pooled_json(pooled, chains)
+    write_json(json_target, found)
     return tuple(chains)
 
 
-def show_surfaces(chains: Sequence[SurfaceChain], json_target: str | None) -> None:
-    """Print verdict, D, G and the reason of each surface."""
+def show_surfaces(
+    chains: Sequence[SurfaceChain],
+    json_target: str | None,
+    pooled: Pooled | None = None,
+) -> None:
+    """Print verdict, D, G and the reason of each surface, and what else was asked."""
     screen = console(json_target)
     rows = [(chain.surface.name, *_numbers(chain.fit)) for chain in chains]
+    if pooled is not None:
+        rows.append((pooled.structure.name, *_numbers(pooled.fit)))
     columns = ("surface", "verdict", "D [-]", HEADING, "fit band")
     screen.print(table("Surfaces (D ± one standard deviation)", columns, rows))
     for chain in chains:
@@ -72,6 +121,30 @@ def show_surfaces(chains: Sequence[SurfaceChain], json_target: str | None) -> No
             screen.print(f"  {said}", markup=False)
         screen.print(f"  {chain.surface.name}: {chain.fit.reason}", markup=False)
         screen.print(f"  {chain.surface.name}: {_origin(chain)}", markup=False)
+        for line in chain.beside.lines:
+            screen.print(f"  {chain.surface.name}: {line}", markup=False)
+    if pooled is not None:
+        for line in (pooled.fit.reason, *pooled.beside.lines):
+            screen.print(f"  {pooled.structure.name}: {line}", markup=False)
+
+
+def _pooled(given: Sequence[Surface], chains: Sequence[SurfaceChain]) -> Pooled:
+    """Fit all profiles as one."""
+    with working("fitting all profiles as one"):
+        structure = pooled_structure(given, [chain.surface for chain in chains])
+        fit = fit_fractal(structure)
+    dimensions = [chain.fit.dimension for chain in chains]
+    return Pooled(structure, fit, pooled_beside(structure, dimensions))
+
+
+def _pooled_json(pooled: Pooled, chains: Sequence[SurfaceChain]) -> dict[str, object]:
+    """Return what is told of all profiles as one."""
+    said = dict.fromkeys(s for c in chains for s in cautions(c.surface.provenance))
+    return {
+        **_fit_json(pooled.structure.name, pooled.fit, tuple(said)),
+        "profiles": [chain.surface.name for chain in chains],
+        **dict(pooled.beside.keys),
+    }
 
 
 def _numbers(fit: FractalFit) -> tuple[str, str, str, str]:
@@ -107,12 +180,19 @@ def _why(recognised: Step) -> str:
 
 def surface_json(chain: SurfaceChain) -> dict[str, object]:
     """Return what the contract promises of ``surface``, and more."""
-    fit = chain.fit
+    said = cautions(chain.surface.provenance)
     return {
-        "surface": chain.surface.name,
+        **_fit_json(chain.surface.name, chain.fit, said),
+        **dict(chain.beside.keys),
+    }
+
+
+def _fit_json(name: str, fit: FractalFit, said: Sequence[str]) -> dict[str, object]:
+    return {
+        "surface": name,
         "verdict": fit.verdict.value,
         "reason": fit.reason,
-        "cautions": list(cautions(chain.surface.provenance)),
+        "cautions": list(said),
         "dimension": fit.dimension,
         "dimension_sd": fit.dimension_sd,
         **roughness_json(fit.scaling),

@@ -3,6 +3,7 @@
 import ast
 import subprocess
 import sys
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,38 @@ def imported(path: Path) -> set[str]:
     return names
 
 
+def modules() -> dict[str, Path]:
+    """Return every product module by its full name, each package by its folder's."""
+    paths = [path.relative_to(ROOT) for room in ROOMS for path in sources(room)]
+    named = {".".join(["jointbench", *p.with_suffix("").parts]): p for p in paths}
+    return {name.removesuffix(".__init__"): ROOT / p for name, p in named.items()}
+
+
+def imported_modules(path: Path, known: Collection[str]) -> set[str]:
+    """Return the product modules that a module imports anywhere, functions included.
+
+    `from package import name` may mean a module of the package or a name in it, so
+    both are looked up; importing a module also imports the packages that hold it.
+    """
+    names = imported(path)
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names |= {f"{node.module}.{alias.name}" for alias in node.names}
+    parts = [name.split(".") for name in names]
+    holders = {".".join(p[:k]) for p in parts for k in range(1, len(p) + 1)}
+    return holders & set(known)
+
+
+def reached(start: str, known: Mapping[str, Path]) -> set[str]:
+    """Return the modules that importing `start` and calling all of it may import."""
+    found, open_ = {start}, [start]
+    while open_:
+        new = imported_modules(known[open_.pop()], known) - found
+        found |= new
+        open_ += new
+    return found
+
+
 def rooms_of(names: set[str]) -> set[str]:
     """Return the rooms among imported names."""
     return {n.split(".")[1] for n in names if n.startswith("jointbench.")}
@@ -70,6 +103,13 @@ def test_a_room_imports_only_what_stands_to_its_left(room: str) -> None:
     for path in modules:
         foreign = rooms_of(imported(path)) - {room}
         assert foreign <= MAY_IMPORT[room], f"{path.name} imports {foreign}"
+
+
+def test_every_product_module_is_reached_from_the_command_line() -> None:
+    """What no command imports is not in use: it needs an option, or goes to tests."""
+    known = modules()
+    unreached = set(known) - reached("jointbench.station.main", known)
+    assert not unreached, sorted(unreached)
 
 
 @pytest.mark.parametrize("package", sorted(ONE_HOME))

@@ -6,7 +6,9 @@ python benchmarks/structures/race.py [--cells 16 10 2] [--members 50] [--generat
 
 import argparse
 import resource
+import sys
 import time
+from pathlib import Path
 
 import numpy as np
 from cases import TRUTH, two_plates
@@ -15,16 +17,20 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.measured_modes import MeasuredModes
 from jointbench.analysis.structures.evidence import Evidence
 from jointbench.analysis.structures.full_modes import solve_full
-from jointbench.analysis.structures.genetic import (
-    evolve_differentially,
-    genetic_algorithm,
-    squared_frequency_errors,
-)
 from jointbench.analysis.structures.problem import pose_problem
 from jointbench.analysis.structures.reduced import solve_reduced
 from jointbench.analysis.structures.reduction import reduce_structure
 from jointbench.analysis.structures.search import find_optima
 from jointbench.analysis.structures.structure import Structure
+
+# Generators and second methods that the tests use as well.
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
+
+from genetic import (
+    evolve_differentially,
+    genetic_algorithm,
+    squared_frequency_errors,
+)
 
 RIGID, ELASTIC = 6, 6
 LOW, HIGH = np.full(3, np.log(1e6)), np.full(3, np.log(1e11))

@@ -7,18 +7,24 @@ takes part where it is installed (pip install --no-deps FracDimPy).
 
 import importlib.util
 import resource
+import sys
 import time
+from pathlib import Path
 
 import numpy as np
 from SurfaceTopography import UniformLineScan
 
 from jointbench.acquisition.surfaces import Areal, Profile, all_valid
 from jointbench.signal.fractal import fit_fractal
-from jointbench.signal.papers_recipe import fit_papers_recipe
 from jointbench.signal.structure_function import structure_function
 from jointbench.signal.structure_map import structure_map
 from jointbench.simulators.brownian import brownian_lines
 from jointbench.simulators.rough_surface import rough_profile
+
+# Generators and second methods that the tests use as well.
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
+
+from papers_recipe import fit_papers_recipe
 
 POINTS, REPEATS, SIDE = 1_000_000, 3, 4096
 FITTED, PROFILES = 20_000, 30

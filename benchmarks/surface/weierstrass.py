@@ -5,12 +5,18 @@ python -m benchmarks.surface.weierstrass --profiles 100 prints a table.
 """
 
 import argparse
+import sys
+from pathlib import Path
 
 import numpy as np
 
 from jointbench.signal.structure_function import structure_function
 from jointbench.signal.weierstrass_fit import fit_weierstrass
-from jointbench.simulators.weierstrass import weierstrass_profile
+
+# Generators and second methods that the tests use as well.
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
+
+from weierstrass_surfaces import weierstrass_profile
 
 POINTS, LENGTH, ROUGHNESS = 8192, 2e-3, 1e-10  # [-], [m], [m]
 DIMENSIONS = (1.2, 1.3, 1.4, 1.54, 1.7, 1.85)

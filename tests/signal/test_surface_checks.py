@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
+from papers_recipe import fit_papers_recipe
+from weierstrass_surfaces import weierstrass_map, weierstrass_profile
+from whittle import fit_whittle
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.signal.fractal import fit_fractal
-from jointbench.signal.papers_recipe import fit_papers_recipe
 from jointbench.signal.structure_function import structure_function
 from jointbench.signal.weierstrass_fit import band_integral, fit_weierstrass
-from jointbench.signal.whittle import fit_whittle
 from jointbench.simulators.rough_surface import rough_profile
-from jointbench.simulators.weierstrass import weierstrass_map, weierstrass_profile
 
 
 @pytest.mark.parametrize(("dimension", "bound"), [(1.3, 0.00732), (1.7, 0.00626)])

@@ -3,15 +3,17 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
+from weierstrass_surfaces import weierstrass_map
 
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.surfaces import Areal, Profile, all_valid
+from jointbench.signal.fractal import fit_fractal
 from jointbench.signal.lattice_profiles import profiles_along
+from jointbench.signal.structure_along import structure_along
 from jointbench.signal.structure_function import structure_function
 from jointbench.signal.structure_map import isotropy, structure_map
 from jointbench.signal.surface_form import mask_outliers, remove_form
 from jointbench.simulators.rough_surface import rough_map, rough_profile
-from jointbench.simulators.weierstrass import weierstrass_map
 
 
 def profile(heights):
@@ -61,6 +63,47 @@ def test_outliers_are_masked_and_counted():
     assert set(spikes) <= set(gone)
     assert gone.size <= 4
     assert dict(cleaned.provenance[-1].detail)["masked"] == gone.size
+
+
+def test_a_point_between_gaps_of_a_tilted_profile_is_no_outlier():
+    """Gaps are filled from their nearest points, so that a tilt makes no outlier."""
+    truth = rough_profile(2000, spacing=1e-6, dimension=1.5, roughness=1e-9, seed=1)
+    tilted = truth.heights + 1e-3 * np.linspace(-1, 1, 2000)
+    valid = np.ones(2000, dtype=bool)
+    valid[[300, 301, 303, 304, 1500, 1501, 1503, 1504]] = False
+    cleaned = mask_outliers(Profile("p", np.where(valid, tilted, 0.0), 1e-6, valid))
+    assert_array_equal(cleaned.valid, valid)
+
+
+def test_the_scatter_along_a_diagonal_is_what_is_stated():
+    """Twelve isotropic maps at 45 degrees: errors of D over their stated deviations.
+
+    The sum of their squares is below 32.9 in 99.9 % (chi-squared, 12 degrees of
+    freedom); with the lines taken as independent profiles it is 99, one map left out.
+    """
+    fits = [
+        fit_fractal(structure_along(one, np.pi / 4))
+        for one in (
+            rough_map(200, 300, spacing=1e-6, dimension=1.5, roughness=1e-9, seed=s)
+            for s in range(12)
+        )
+    ]
+    errors = [(fit.dimension - 1.5) / fit.dimension_sd for fit in fits]
+    assert np.sum(np.square(errors)) < 32.9
+
+
+@pytest.mark.parametrize(("angle", "direction"), [(0.0, "x"), (np.pi / 2, "y")])
+def test_along_rows_and_columns_it_is_the_structure_function_of_the_map(
+    angle, direction
+):
+    """To the last digit: the lines of the grid are its rows and columns there."""
+    surface = rough_map(60, 80, spacing=1e-6, dimension=1.5, roughness=1e-9, seed=3)
+    along, known = (
+        structure_along(surface, angle),
+        structure_function(surface, direction=direction),
+    )
+    assert_array_equal(along.value, known.value)
+    assert along.faces[0].row_distance == known.faces[0].row_distance
 
 
 def test_all_lags_of_a_profile_agree_with_direct_sums_beside_an_offset():

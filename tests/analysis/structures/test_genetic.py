@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-
-from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.structures.genetic import (
+from genetic import (
     evolve_differentially,
     genetic_algorithm,
     squared_frequency_errors,
 )
+
+from jointbench.acquisition.errors import UsageError
 
 LOW, HIGH = np.full(2, -3.0), np.full(2, 3.0)
 

@@ -10,18 +10,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from second_route.laws import (
+    ContinuousLaw,
+    has_law,
+    law_of,
+    values_by_name,
+)
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
 from jointbench.analysis.gap.assembly import Action
 from jointbench.analysis.gap.forward import Excitation
 from jointbench.analysis.gap.model import LumpedModel
-from jointbench.analysis.gap.verify_laws import (
-    ContinuousLaw,
-    has_law,
-    law_of,
-    values_by_name,
-)
 
 LINEAR = (
     "added_mass",
@@ -201,7 +201,7 @@ def _change(
     if name not in LINEAR:
         raise UsageError(
             f"effect {name!r} has no second route; write what it does to the "
-            "matrices in jointbench.analysis.gap.verify_system beside "
+            "matrices in second_route.system beside "
             f"{', '.join(LINEAR)}"
         )
     e = _ends(model, at, matrices.mass.shape[1])

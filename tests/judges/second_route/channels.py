@@ -7,13 +7,13 @@ import numpy as np
 import scipy.fft
 from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
+from second_route.laws import values_by_name
+from second_route.motion import UPSAMPLING
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
 from jointbench.analysis.gap.assembly import Action
 from jointbench.analysis.gap.forward import Excitation
-from jointbench.analysis.gap.verify_laws import values_by_name
-from jointbench.analysis.gap.verify_motion import UPSAMPLING
 
 Values = Mapping[str, float]
 AT_SAMPLES = ("saturation", "hum")
@@ -77,7 +77,7 @@ def through_channels(
         else:
             raise UsageError(
                 f"effect {name!r} has no second route; write what it does to a "
-                "signal in jointbench.analysis.gap.verify_channels"
+                "signal in second_route.channels"
             )
     return out
 

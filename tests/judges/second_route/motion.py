@@ -12,11 +12,11 @@ import numpy as np
 import scipy.fft
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
+from second_route.system import System
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
 from jointbench.analysis.gap.forward import Excitation, undamped
-from jointbench.analysis.gap.verify_system import System
 
 UPSAMPLING = 16
 """Points per sample between which a cubic spline carries the force: 2e-6 of a line at

@@ -9,6 +9,12 @@ from types import ModuleType
 import gap_bench as made
 import numpy as np
 import pytest
+from second_route.verify import (
+    Verification,
+    second_response,
+    verify_fit,
+    verify_response,
+)
 
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.analysis.gap.assembly import Action
@@ -24,12 +30,6 @@ from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import noise_sd
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.screening import screen
-from jointbench.analysis.gap.verify import (
-    Verification,
-    second_response,
-    verify_fit,
-    verify_response,
-)
 
 
 def load(path: Path) -> ModuleType:

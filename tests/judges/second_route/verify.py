@@ -11,6 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from second_route.channels import (
+    anti_alias,
+    through_channels,
+    through_converter,
+)
+from second_route.motion import UPSAMPLING, integrate_motion
+from second_route.system import make_system
 
 from jointbench.acquisition.arrays import FloatArray, freeze
 from jointbench.analysis.gap.assembly import Action
@@ -19,13 +26,6 @@ from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.forward import Excitation, respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.model import LumpedModel
-from jointbench.analysis.gap.verify_channels import (
-    anti_alias,
-    through_channels,
-    through_converter,
-)
-from jointbench.analysis.gap.verify_motion import UPSAMPLING, integrate_motion
-from jointbench.analysis.gap.verify_system import make_system
 
 TOLERANCE = 1e-9
 BEYOND = 64

@@ -2,7 +2,7 @@
 """Force laws of links in continuous time, written anew for the second route.
 
 Nothing here is shared with the compiled march: a law gives its force and the rates of
-its own states at one instant, and `jointbench.analysis.gap.verify_motion` integrates.
+its own states at one instant, and `second_route.motion` integrates.
 """
 
 from collections.abc import Callable, Mapping
@@ -176,7 +176,7 @@ def law_of(action: Action) -> ContinuousLaw:
     if law is None or law.kind != CURVES:
         raise UsageError(
             f"effect {name!r} has no second route; write its law in "
-            f"jointbench.analysis.gap.verify_laws beside {', '.join(sorted(LAWS))}"
+            f"second_route.laws beside {', '.join(sorted(LAWS))}"
         )
     return _of_curves(law)
 
