@@ -5,13 +5,13 @@ One sample at a time is all a Kalman filter can do, and in Python that costs som
 compiled it is below 0.1 us. The gains come from `kalman_gains`.
 """
 
-import numba
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.compiled import compiled
 
 
-@numba.njit(cache=True)
+@compiled()
 def _forward_two(
     transition: FloatArray,
     observation: FloatArray,
@@ -41,7 +41,7 @@ def _forward_two(
         states[i, 0], states[i, 1], innovations[i] = first, second, innovation
 
 
-@numba.njit(cache=True)
+@compiled()
 def forward(
     transition: FloatArray,
     observation: FloatArray,
@@ -93,7 +93,7 @@ def forward(
     return states, innovations
 
 
-@numba.njit(cache=True)
+@compiled()
 def _backward_two(
     transition: FloatArray,
     smoother: FloatArray,
@@ -120,7 +120,7 @@ def _backward_two(
         smoothed[i, 0], smoothed[i, 1] = first, second
 
 
-@numba.njit(cache=True)
+@compiled()
 def backward(
     transition: FloatArray, smoother: FloatArray, states: FloatArray
 ) -> FloatArray:
