@@ -9,8 +9,8 @@ noise takes a third off). The same zero-phase filter on force and response cance
 their ratio. So by default the stage is a fixed-interval (Rauch-Tung-Striebel) smoother
 applied to all channels alike, and what it does at each mode is recorded.
 
-`kalman_reference` runs the same models in filterpy, which defines them; here the gains,
-which do not depend on the data, are computed once for all channels.
+filterpy's filter gives the gains, which do not depend on the data, once for each
+configuration (`kalman_gains`); compiled loops apply them to all channels.
 
 Source:
     Rauch, Tung and Striebel, AIAA J. 3 (1965) 1445; Harvey, Forecasting, Structural
@@ -25,7 +25,8 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import ChannelMissing
 from jointbench.acquisition.records import Provenance, Recording, step
-from jointbench.signal.kalman_loops import backward, forward, gains
+from jointbench.signal.kalman_gains import gains
+from jointbench.signal.kalman_loops import backward, forward
 from jointbench.signal.kalman_model import (
     KalmanModel,
     KalmanSettings,

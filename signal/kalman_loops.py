@@ -1,64 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The loops of the Kalman stage: gains once, then samples one by one, compiled.
+"""The loops of the Kalman stage: samples one by one, compiled.
 
 One sample at a time is all a Kalman filter can do, and in Python that costs some 90 us;
-compiled it is below 0.1 us. Gains do not depend on the samples: they are computed until
-they stand still and then reused for every sample and channel.
+compiled it is below 0.1 us. The gains come from `kalman_gains`.
 """
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.compiled import compiled
-
-# Gains that change by less than this share of themselves stand still.
-_STILL = 1e-15
-# Rounding may keep the last digit alive for ever; by then nothing else moves.
-_MOST = 50_000
-
-
-def gains(
-    transition: FloatArray,
-    process: FloatArray,
-    observation: FloatArray,
-    start: FloatArray,
-    most: int = _MOST,
-) -> tuple[FloatArray, FloatArray]:
-    """Compute filter and smoother gains until they stand still.
-
-    Args:
-        transition: shape (n, n).
-        process: covariance of the process noise, shape (n, n).
-        observation: shape (n,); the measurement noise is 1.
-        start: covariance before the first prediction, shape (n, n).
-        most: samples after which to stop in any case.
-
-    Returns:
-        Filter gains, shape (m, n), and smoother gains, shape (m, n, n), m <= `most`;
-        the last of each holds for all further samples.
-    """
-    eye = np.eye(observation.size)
-    predicted = transition @ start @ transition.T + process
-    filters: list[FloatArray] = []
-    smoothers: list[FloatArray] = []
-    for _ in range(min(most, _MOST)):
-        crossed = predicted @ observation
-        gain: FloatArray = crossed / float(observation @ crossed + 1.0)
-        kept = eye - np.outer(gain, observation)
-        # Joseph's form, as filterpy has it: symmetric whatever the rounding.
-        covariance = kept @ predicted @ kept.T + np.outer(gain, gain)
-        predicted = transition @ covariance @ transition.T + process
-        filters.append(gain)
-        ahead = np.linalg.solve(predicted, transition @ covariance).T
-        smoothers.append(np.asarray(ahead, np.float64))
-        if len(filters) > 1 and _still(filters) and _still(smoothers):
-            break
-    return np.array(filters), np.array(smoothers)
-
-
-def _still(steps: list[FloatArray]) -> bool:
-    moved = float(np.abs(steps[-1] - steps[-2]).max())
-    return moved <= _STILL * float(np.abs(steps[-1]).max())
 
 
 @compiled()

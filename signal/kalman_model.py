@@ -8,7 +8,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, freeze
 from jointbench.acquisition.errors import UsageError
-from jointbench.signal.kalman_loops import gains
+from jointbench.signal.kalman_gains import gains
 
 # The smoother halves what lies at this share of the sample rate, unless told.
 _CUTOFF_SHARE = 0.25

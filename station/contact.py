@@ -12,10 +12,10 @@ import numpy as np
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.units import parse_value
 from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.case import ContactCase
 from jointbench.analysis.contact.curve import require_surface
-from jointbench.analysis.contact.damping import DampingChoice
+from jointbench.analysis.contact.draws import StiffnessInterval
 from jointbench.analysis.contact.inverse import preload_of
-from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, Mode
 from jointbench.analysis.contact.predict import (
     ContactState,
@@ -23,7 +23,6 @@ from jointbench.analysis.contact.predict import (
     predict_contact,
 )
 from jointbench.analysis.contact.preload import Preload
-from jointbench.analysis.contact.spread import StiffnessInterval
 from jointbench.analysis.contact.surface import ContactSurface, contact_surface
 from jointbench.analysis.contact.uncertainty import (
     JointUncertainty,
@@ -65,19 +64,7 @@ def predict_request(
 ) -> tuple[ContactPoint, ...]:
     """Predict every model at every preload of a request."""
     return tuple(
-        predict_point(
-            model,
-            surface,
-            request.material,
-            preload.value,
-            preload_sd=preload.sd,
-            hardness_sd=request.hardness_sd,
-            friction_factor_sd=request.friction_factor_sd,
-            damping=request.damping,
-            tangential_load=request.tangential_load,
-            friction=request.friction,
-            nominal_area=request.nominal_area,
-        )
+        predict_point(ContactCase(model, surface, preload, request.conditions))
         for model in request.models
         for preload in request.preloads or (_reaching(request, model, surface),)
     )
@@ -87,66 +74,30 @@ def _reaching(
     request: ContactRequest, model: ContactModel, surface: ContactSurface
 ) -> Preload:
     """Return the preload that gives a model the stiffness or real area asked for."""
+    material = request.conditions.material
     fractal = FractalSurface(
         np.array(surface.dimension_for(model)),
         np.array(surface.roughness),
-        np.array(request.material.hardness),
+        np.array(material.hardness),
     )
     require_surface(model, fractal)
     value = preload_of(
         model,
         fractal,
-        request.material,
+        material,
         real_area=request.real_area,
         stiffness=request.stiffness,
     )
     return Preload(float(value), 0.0)
 
 
-def predict_point(
-    model: ContactModel,
-    surface: ContactSurface,
-    material: ContactMaterial,
-    preload: float,
-    *,
-    preload_sd: float = 0.0,
-    hardness_sd: float = 0.0,
-    friction_factor_sd: float = 0.0,
-    damping: DampingChoice | None = None,
-    tangential_load: float = 0.0,
-    friction: float = 0.3,
-    nominal_area: float | None = None,
-) -> ContactPoint:
-    """Predict one model at one preload [N], with the interval the inputs leave."""
-    dimension = surface.dimension_for(model)
-    state = predict_contact(
-        model,
-        dimension=dimension,
-        roughness=surface.roughness,
-        material=material,
-        preload=preload,
-        damping=damping,
-        tangential_load=tangential_load,
-        friction=friction,
-        nominal_area=nominal_area,
-    )
-    if model.mode is Mode.AS_PRINTED:
+def predict_point(case: ContactCase) -> ContactPoint:
+    """Predict one model at one preload, with the interval the inputs leave."""
+    state = predict_contact(case)
+    if case.model.mode is Mode.AS_PRINTED:
         return ContactPoint(state, None)
-    uncertainty = predict_uncertainty(
-        model,
-        dimension=dimension,
-        roughness=surface.roughness,
-        material=material,
-        preload=preload,
-        spread=replace(
-            surface.spread,
-            preload=preload_sd,
-            hardness=hardness_sd,
-            friction=friction_factor_sd,
-        ),
-        damping=damping if state.damping is not None else None,
-    )
-    return ContactPoint(state, uncertainty)
+    known = case if state.damping is not None else case.without_damping()
+    return ContactPoint(state, predict_uncertainty(known))
 
 
 def equivalent_surface(structures: Sequence[StructureFunction]) -> ContactSurface:
@@ -197,7 +148,8 @@ def swept(
 ) -> tuple[ContactRequest, ContactSurface]:
     """Return request and surface with one swept input at `value`, spreads left out."""
     plain = ContactSurface(surface.dimension, surface.roughness)
-    bare = replace(request, hardness_sd=0.0, friction_factor_sd=0.0)
+    conditions = replace(request.conditions, hardness_sd=0.0, friction_factor_sd=0.0)
+    bare = replace(request, conditions=conditions)
     if name == "load":
         return replace(bare, preloads=(Preload(value, 0.0),)), plain
     if bare.preloads:

@@ -5,10 +5,10 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from jointbench.acquisition.errors import UnitError, UsageError
 from jointbench.acquisition.units import STANDARD_GRAVITY, parse_value
+from jointbench.analysis.contact.case import ContactConditions
 from jointbench.analysis.contact.damping import (
     DampingChoice,
     EnergyForm,
@@ -18,6 +18,7 @@ from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, Mode, contact_model
 from jointbench.analysis.contact.preload import Preload, preload_from_torque
 from jointbench.analysis.contact.terms import Term, with_term
+from jointbench.station.contact_options import ContactOptions
 
 DEFAULT_MODEL = "ke_3d_modified"
 _HARDNESS_NUMBER = re.compile(r"\s*(\d+\.?\d*)\s*(HB|HBW|HV)\s*", re.IGNORECASE)
@@ -45,70 +46,17 @@ class ContactRequest:
 
     Attributes:
         models: in the mode asked for, terms taken out.
-        material: of both bodies.
         preloads: [N], each with its standard deviation.
-        hardness_sd: [Pa].
-        friction_factor_sd: of k_mu [-].
-        damping: what a damping coefficient is made of, or None.
-        tangential_load: [N].
-        friction: coefficient of friction [-].
-        nominal_area: [m^2], or None.
+        conditions: what holds for every model and preload.
         stiffness: normal stiffness to reach [N/m], in place of preloads, or None.
         real_area: real area to reach [m^2], in place of preloads, or None.
     """
 
     models: tuple[ContactModel, ...]
-    material: ContactMaterial
     preloads: tuple[Preload, ...]
-    hardness_sd: float = 0.0
-    friction_factor_sd: float = 0.0
-    damping: DampingChoice | None = None
-    tangential_load: float = 0.0
-    friction: float = 0.3
-    nominal_area: float | None = None
+    conditions: ContactConditions
     stiffness: float | None = None
     real_area: float | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ContactOptions:
-    """The options of the command line, by name, as they were typed."""
-
-    modulus: str
-    hardness: str
-    load: list[str] | None
-    torque: list[str] | None
-    stiffness: str | None
-    real_area: float | None
-    bolt_diameter: str | None
-    bolts: int
-    nut_factor: float
-    nut_factor_sd: float
-    dimension: float | None
-    dimension_sd: float
-    roughness: str | None
-    roughness_sd: str
-    surface: list[Path] | None
-    columns: str | None
-    poisson: float
-    yield_strength: str | None
-    hardness_sd: str
-    friction_factor: float
-    friction_factor_sd: float
-    friction: float
-    tangential_load: str
-    nominal_area: float | None
-    model: list[str] | None
-    mode: str
-    without: str | None
-    mass: str | None
-    frequency: str | None
-    loss_form: str
-    loss_convention: str
-    sweep: str | None
-    plot: Path | None
-    json: str | None
-    debug: bool
 
 
 def parse_request(given: ContactOptions) -> ContactRequest:
@@ -122,18 +70,19 @@ def parse_request(given: ContactOptions) -> ContactRequest:
         BadData: a number no joint can have, or without its unit.
     """
     hard = parse_hardness(given.hardness)
-    return ContactRequest(
-        models=parse_models(given.model or [DEFAULT_MODEL], given.mode, given.without),
-        material=_material(given, hard),
-        preloads=parse_preloads(
-            given.load or [],
-            given.torque or [],
-            diameter=given.bolt_diameter,
-            bolts=given.bolts,
-            nut_factor=given.nut_factor,
-            nut_factor_sd=given.nut_factor_sd,
-            targets=(given.stiffness is not None) + (given.real_area is not None),
-        ),
+    models = parse_models(given.model or [DEFAULT_MODEL], given.mode, given.without)
+    material = _material(given, hard)
+    preloads = parse_preloads(
+        given.load or [],
+        given.torque or [],
+        diameter=given.bolt_diameter,
+        bolts=given.bolts,
+        nut_factor=given.nut_factor,
+        nut_factor_sd=given.nut_factor_sd,
+        targets=(given.stiffness is not None) + (given.real_area is not None),
+    )
+    conditions = ContactConditions(
+        material,
         hardness_sd=hard * parse_value(given.hardness_sd, "ratio"),
         friction_factor_sd=given.friction_factor_sd,
         damping=parse_damping(
@@ -142,6 +91,11 @@ def parse_request(given: ContactOptions) -> ContactRequest:
         tangential_load=parse_value(given.tangential_load, "force"),
         friction=given.friction,
         nominal_area=given.nominal_area,
+    )
+    return ContactRequest(
+        models,
+        preloads,
+        conditions,
         stiffness=None
         if given.stiffness is None
         else parse_value(given.stiffness, "stiffness"),

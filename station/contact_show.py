@@ -15,12 +15,8 @@ from jointbench.station.contact import (
     surface_of,
     swept,
 )
-from jointbench.station.contact_request import (
-    ContactOptions,
-    ContactRequest,
-    Sweep,
-    parse_sweep,
-)
+from jointbench.station.contact_options import ContactOptions
+from jointbench.station.contact_request import ContactRequest, Sweep, parse_sweep
 from jointbench.station.figures import PALETTE, axis, figure, line
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
@@ -216,7 +212,7 @@ def _show(
         screen.print(f"  {said}", markup=False)
     for reason in _reasons(points):
         screen.print(f"  {reason}", markup=False)
-    if request.damping is None:
+    if request.conditions.damping is None:
         screen.print(f"  {DAMPING_REASON}", markup=False)
 
 

@@ -2,13 +2,15 @@
 """The joint twice: as the contact law predicts it, and as the modes identify it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.errors import BadData
+from jointbench.analysis.contact.case import ContactCase, ContactConditions
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.signal.structure_function import StructureFunction
 from jointbench.station.bench_model import ContactTable
@@ -61,10 +63,18 @@ def predict_joint(
     material = ContactMaterial(
         effective_modulus=table.modulus, hardness=table.hardness, poisson=table.poisson
     )
-    model = contact_model(table.model)
+    case = ContactCase(
+        contact_model(table.model),
+        surface,
+        Preload(table.preload, 0.0),
+        ContactConditions(material),
+    )
     preloads = table.preload * np.logspace(-CURVE_DECADES, CURVE_DECADES, CURVE_POINTS)
     return ContactPrediction(
         surface,
-        predict_point(model, surface, material, table.preload),
-        tuple(predict_point(model, surface, material, float(p)) for p in preloads),
+        predict_point(case),
+        tuple(
+            predict_point(replace(case, preload=Preload(float(p), 0.0)))
+            for p in preloads
+        ),
     )

@@ -11,6 +11,7 @@ from enum import StrEnum
 import numpy as np
 
 from jointbench.acquisition.errors import BadData
+from jointbench.analysis.contact.case import ContactCase, ContactConditions
 from jointbench.analysis.contact.damping import DampingChoice
 from jointbench.analysis.contact.models import contact_model
 from jointbench.analysis.contact.surface import ContactSurface
@@ -201,18 +202,17 @@ def predict_state(
     model: str, state: IdentifiedState, surface: ContactSurface, table: TheoryTable
 ) -> ContactPoint:
     """Predict one model at the preload of one state."""
-    preload = table.spread_preload(state.preload)
     damping = None
     if state.frequency is not None:
         damping = DampingChoice(frequency=state.frequency)
-    return predict_point(
-        contact_model(model, table.mode),
-        surface,
+    conditions = ContactConditions(
         table.material,
-        preload.value,
-        preload_sd=preload.sd,
         hardness_sd=table.hardness_sd * table.hardness,
         damping=damping,
+    )
+    preload = table.spread_preload(state.preload)
+    return predict_point(
+        ContactCase(contact_model(model, table.mode), surface, preload, conditions)
     )
 
 

@@ -142,7 +142,7 @@ class ContactModel:
     """One contact model: every field is a term that can be exchanged by itself.
 
     Attributes:
-        name: as `predict_contact` takes it.
+        name: as `contact_model` takes it.
         topography: profile (2D) or surface (3D).
         yielding: what sets the critical interference.
         elastic: law of contacts above the critical area.

@@ -10,22 +10,11 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
-from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve
-from jointbench.analysis.contact.damping import (
-    DampingChoice,
-    damping_coefficient,
-    loss_factor,
-)
+from jointbench.analysis.contact.damping import damping_coefficient, loss_factor
 from jointbench.analysis.contact.inverse import approach_stiffness
-from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import (
-    REGIMES,
-    ContactModel,
-    Mode,
-    Regime,
-    contact_model,
-)
+from jointbench.analysis.contact.models import REGIMES, Mode, Regime
 from jointbench.analysis.contact.printed import (
     printed_stiffness_parts,
     printed_warnings,
@@ -96,35 +85,12 @@ class ContactState:
     reasons: tuple[str, ...]
 
 
-def predict_contact(
-    model: str | ContactModel,
-    *,
-    dimension: float,
-    roughness: float,
-    material: ContactMaterial,
-    preload: float,
-    gamma: float = 1.5,
-    mode: str = Mode.CORRECTED,
-    nominal_area: float | None = None,
-    damping: DampingChoice | None = None,
-    tangential_load: float = 0.0,
-    friction: float = 0.3,
-) -> ContactState:
+def predict_contact(case: ContactCase) -> ContactState:
     """Predict one joint.
 
     Args:
-        model: name or record; see `CONTACT_MODELS`.
-        dimension: fractal dimension, between 1 and 2 for a profile model (2D),
-            between 2 and 3 for a surface model (3D) [-].
-        roughness: fractal roughness G of the equivalent surface [m].
-        material: composite modulus, hardness and so on.
-        preload: normal force on the joint [N].
-        gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
-        mode: ``corrected`` or ``as-printed``, for a model given by name.
-        nominal_area: apparent area of the joint [m^2]; only guards the real one.
-        damping: what a damping coefficient is made of; None for no damping.
-        tangential_load: already on the joint [N].
-        friction: coefficient of friction [-]; matters under a tangential load only.
+        case: model, surface, preload and conditions; how uncertain they are is not
+            looked at.
 
     Returns:
         Stiffness, areas, parts by regime, verdict with reasons. As printed, the
@@ -137,48 +103,48 @@ def predict_contact(
     Source:
         `sums.joint_sums`; tangential: Mindlin 1949.
     """
-    model = contact_model(model, mode) if isinstance(model, str) else model
-    surface = {"dimension": dimension, "roughness": roughness, "gamma": gamma}
-    sums = contact_curve(model, material=material, preload=preload, **surface)
+    conditions, preload = case.conditions, case.preload.value
+    sums = contact_curve(
+        case.model,
+        dimension=case.dimension,
+        roughness=case.surface.roughness,
+        material=case.material,
+        preload=preload,
+        gamma=case.gamma,
+    )
+    nominal_area = conditions.nominal_area
     if nominal_area is not None and not 0 < nominal_area < math.inf:
         raise BadData(
             f"nominal area is {nominal_area:g} m^2, it must be finite and positive; "
             "give e.g. 0.01"
         )
     tangential = tangential_stiffness(
-        model, sums, material, tangential_load=tangential_load, friction=friction
-    )
-    fractal = FractalSurface(
-        np.array(dimension), np.array(roughness), np.array(material.hardness), gamma
+        case.model,
+        sums,
+        case.material,
+        tangential_load=conditions.tangential_load,
+        friction=conditions.friction,
     )
     verdict, reasons = _judge(sums, nominal_area)
-    if tangential_load and float(tangential) == 0 < float(sums.stiffness[-1]):
+    slides = float(tangential) == 0 < float(sums.stiffness[-1])
+    if conditions.tangential_load and slides:
         reasons.append("the tangential load exceeds friction times preload: it slides")
-    state = _state(
-        model, fractal, material, sums, tangential=float(tangential), preload=preload
-    )
+    state = _state(case, sums, tangential=float(tangential))
     state = replace(state, verdict=verdict, reasons=tuple(reasons))
-    if model.mode is Mode.AS_PRINTED:
-        state = _to_the_letter(state, material, **surface)
-    return _with_damping(state, model, fractal, material, damping)
+    if case.model.mode is Mode.AS_PRINTED:
+        state = _to_the_letter(state, case)
+    return _with_damping(state, case)
 
 
-def _state(
-    model: ContactModel,
-    surface: FractalSurface,
-    material: ContactMaterial,
-    sums: JointSums,
-    *,
-    tangential: float,
-    preload: float,
-) -> ContactState:
+def _state(case: ContactCase, sums: JointSums, *, tangential: float) -> ContactState:
     """Return the sums of one joint as a state, not judged, without damping."""
+    approach = approach_stiffness(case.model, case.fractal, case.material, sums)
     return ContactState(
-        model=model.name,
-        mode=model.mode,
-        preload=float(preload),
+        model=case.model.name,
+        mode=case.model.mode,
+        preload=float(case.preload.value),
         normal_stiffness=float(sums.stiffness.sum()),
-        approach_stiffness=float(approach_stiffness(model, surface, material, sums)),
+        approach_stiffness=float(approach),
         tangential_stiffness=tangential,
         loss_factor=None,
         damping=None,
@@ -192,22 +158,19 @@ def _state(
     )
 
 
-def _to_the_letter(
-    state: ContactState,
-    material: ContactMaterial,
-    *,
-    dimension: float,
-    roughness: float,
-    gamma: float,
-) -> ContactState:
+def _to_the_letter(state: ContactState, case: ContactCase) -> ContactState:
     """Put the printed sums in place of the mended ones, and say what is wrong."""
-    surface = {"dimension": dimension, "roughness": roughness, "gamma": gamma}
+    surface = {
+        "dimension": case.dimension,
+        "roughness": case.surface.roughness,
+        "gamma": case.gamma,
+    }
     warnings = printed_warnings(
-        state.model, material=material, preload=state.preload, **surface
+        state.model, material=case.material, preload=state.preload, **surface
     )
     state = replace(state, reasons=state.reasons + warnings)
     literal = printed_stiffness_parts(
-        state.model, material=material, largest_area=state.largest_area, **surface
+        state.model, material=case.material, largest_area=state.largest_area, **surface
     )
     if literal is None:
         return state
@@ -220,20 +183,15 @@ def _to_the_letter(
     )
 
 
-def _with_damping(
-    state: ContactState,
-    model: ContactModel,
-    surface: FractalSurface,
-    material: ContactMaterial,
-    choice: DampingChoice | None,
-) -> ContactState:
+def _with_damping(state: ContactState, case: ContactCase) -> ContactState:
     """Add loss factor and damping, where they are asked for."""
+    choice = case.conditions.damping
     if choice is None:
         return state
     factor = loss_factor(
-        model,
-        surface,
-        material,
+        case.model,
+        case.fractal,
+        case.material,
         np.log(state.largest_area),
         form=choice.form,
         convention=choice.convention,

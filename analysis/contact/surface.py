@@ -71,7 +71,7 @@ class ContactSurface:
 
     def dimension_for(self, model: ContactModel) -> float:
         """Return D as `model` wants it: of a line (2D) or of the surface, D + 1."""
-        return self.dimension + model.topography.lowest_dimension - 1
+        return self.dimension + (model.topography.lowest_dimension - 1)
 
 
 def contact_surface(fit: FractalFit) -> ContactSurface:

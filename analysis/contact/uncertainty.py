@@ -9,16 +9,10 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve
-from jointbench.analysis.contact.damping import (
-    DampingChoice,
-    damping_coefficient,
-    loss_factor,
-)
-from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import ContactModel, contact_model
-from jointbench.analysis.contact.spread import (
-    ContactSpread,
+from jointbench.analysis.contact.damping import damping_coefficient, loss_factor
+from jointbench.analysis.contact.draws import (
     DrawnInputs,
     StiffnessInterval,
     central_interval,
@@ -70,29 +64,13 @@ class JointUncertainty:
 
 
 def predict_uncertainty(
-    model: str | ContactModel,
-    *,
-    dimension: float,
-    roughness: float,
-    material: ContactMaterial,
-    preload: float,
-    spread: ContactSpread,
-    gamma: float = 1.5,
-    damping: DampingChoice | None = None,
-    draws: int = 2000,
-    seed: int = 0,
+    case: ContactCase, *, draws: int = 2000, seed: int = 0
 ) -> JointUncertainty:
     """Propagate what is not sure of the inputs, by draws and to first order.
 
     Args:
-        model: name or record.
-        dimension: fractal dimension as the model wants it [-].
-        roughness: fractal roughness G [m].
-        material: composite modulus, hardness and so on.
-        preload: [N]; its spread holds the nut factor's.
-        spread: how uncertain these are.
-        gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
-        damping: what a damping coefficient is made of; None for none.
+        case: the joint, with how uncertain its inputs are; the spread of the preload
+            holds the nut factor's.
         draws: how many.
         seed: of the draws.
 
@@ -102,76 +80,57 @@ def predict_uncertainty(
     Raises:
         BadData: a number outside the model's range.
     """
-    model = contact_model(model) if isinstance(model, str) else model
-    drawn = draw_inputs(
-        model,
-        dimension=dimension,
-        roughness=roughness,
-        material=material,
-        preload=preload,
-        spread=spread,
-        draws=draws,
-        seed=seed,
-    )
-    steps = _steps(dimension, roughness, material, preload)
-    by_draw = _evaluate(model, drawn, material, gamma, damping)
-    by_step = _evaluate(model, steps, material, gamma, damping)
+    drawn = draw_inputs(case, draws=draws, seed=seed)
+    by_draw, by_step = _evaluate(case, drawn), _evaluate(case, _steps(case))
     found = [
-        _uncertainty(many, few, spread, material, preload, drawn.outside)
+        _uncertainty(many, few, case, drawn.outside)
         for many, few in zip(by_draw, by_step, strict=True)
     ]
     return JointUncertainty(
-        found[0], found[1], found[2] if damping is not None else None
+        found[0], found[1], found[2] if case.conditions.damping is not None else None
     )
 
 
-def _steps(
-    dimension: float, roughness: float, material: ContactMaterial, preload: float
-) -> DrawnInputs:
+def _steps(case: ContactCase) -> DrawnInputs:
     """Return the centre, then a step up and down of each input."""
     steps = np.zeros((5, 11))
     for row in range(5):
         steps[row, 1 + 2 * row : 3 + 2 * row] = _STEP, -_STEP
     factors = np.exp(steps)
     return DrawnInputs(
-        dimension=dimension + steps[0],
-        roughness=roughness * factors[1],
-        preload=preload * factors[2],
-        hardness=material.hardness * factors[3],
-        friction=material.friction_factor * factors[4],
+        dimension=case.dimension + steps[0],
+        roughness=case.surface.roughness * factors[1],
+        preload=case.preload.value * factors[2],
+        hardness=case.material.hardness * factors[3],
+        friction=case.material.friction_factor * factors[4],
         outside=0.0,
     )
 
 
-def _evaluate(
-    model: ContactModel,
-    inputs: DrawnInputs,
-    material: ContactMaterial,
-    gamma: float,
-    damping: DampingChoice | None,
-) -> list[FloatArray]:
+def _evaluate(case: ContactCase, inputs: DrawnInputs) -> list[FloatArray]:
     """Return both stiffnesses, and damping where it is asked for, of all inputs."""
     sums = contact_curve(
-        model,
+        case.model,
         dimension=inputs.dimension,
         roughness=inputs.roughness,
-        material=material,
+        material=case.material,
         preload=inputs.preload,
         hardness=inputs.hardness,
         friction=inputs.friction,
-        gamma=gamma,
+        gamma=case.gamma,
     )
     stiffness = sums.stiffness.sum(axis=0)
-    both = [stiffness, tangential_stiffness(model, sums, material)]
+    both = [stiffness, tangential_stiffness(case.model, sums, case.material)]
+    damping = case.conditions.damping
     if damping is None:
         return both
     surface = FractalSurface(
-        inputs.dimension, inputs.roughness, inputs.hardness, gamma, inputs.friction
+        inputs.dimension, inputs.roughness, inputs.hardness, case.gamma, inputs.friction
     )
     factor = loss_factor(
-        model,
+        case.model,
         surface,
-        material,
+        case.material,
         np.log(sums.largest_area),
         form=damping.form,
         convention=damping.convention,
@@ -180,14 +139,10 @@ def _evaluate(
 
 
 def _uncertainty(
-    by_draw: FloatArray,
-    by_step: FloatArray,
-    spread: ContactSpread,
-    material: ContactMaterial,
-    preload: float,
-    outside: float,
+    by_draw: FloatArray, by_step: FloatArray, case: ContactCase, outside: float
 ) -> Uncertainty:
     """Return intervals and shares of one quantity."""
+    spread, material = case.spread, case.material
     interval = central_interval(by_draw, level=_Z_LEVEL, outside=outside)
     centre = float(by_step[0])
     if not np.all(by_step > 0):
@@ -196,7 +151,7 @@ def _uncertainty(
     first, second = slopes[0] * spread.dimension, slopes[1] * spread.log_roughness
     parts = {
         SURFACE_INPUT: first**2 + second**2 + 2 * spread.correlation * first * second,
-        "preload": (slopes[2] * spread.preload / preload) ** 2,
+        "preload": (slopes[2] * spread.preload / case.preload.value) ** 2,
         "hardness": (slopes[3] * spread.hardness / material.hardness) ** 2,
         "friction": (slopes[4] * spread.friction / material.friction_factor) ** 2,
     }

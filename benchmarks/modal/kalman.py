@@ -36,7 +36,6 @@ from jointbench.signal.kalman import (
     stage_gain,
     state_model,
 )
-from jointbench.signal.kalman_reference import reference_states
 from jointbench.signal.modes import ModalSettings, identify_modes
 
 FREQUENCY = np.array([48.7, 166.5, 310.7])
@@ -160,18 +159,25 @@ def least_cpu(run: Callable[[], object], repeats: int) -> float:
     return min(took)
 
 
-def filterpy_states(model: StateModel, samples: FloatArray) -> FloatArray:
-    """Return the filtered states of one channel, by predict and update alone."""
+def filterpy_run(
+    model: StateModel, samples: FloatArray
+) -> tuple[KalmanFilter, FloatArray, FloatArray]:
+    """Return filterpy's filter, and its states and covariances after each sample."""
     kalman = KalmanFilter(dim_x=2, dim_z=1)
     kalman.F, kalman.Q = model.transition.copy(), model.process.copy()
     kalman.H, kalman.R = model.observation[None, :].copy(), np.eye(1)
     kalman.P, kalman.x = model.start.copy(), (samples[0] * model.observation)[:, None]
-    states = np.empty((samples.size, 2))
+    states, covariances = np.empty((samples.size, 2)), np.empty((samples.size, 2, 2))
     for i, sample in enumerate(samples):
         kalman.predict()
         kalman.update(sample)
-        states[i] = kalman.x[:, 0]
-    return states
+        states[i], covariances[i] = kalman.x[:, 0], kalman.P
+    return kalman, states, covariances
+
+
+def filterpy_states(model: StateModel, samples: FloatArray) -> FloatArray:
+    """Return the filtered states of one channel by filterpy."""
+    return filterpy_run(model, samples)[1]
 
 
 def cost() -> list[str]:
@@ -199,7 +205,8 @@ def cost() -> list[str]:
 
 def smoothed_reference(model: StateModel, samples: FloatArray) -> FloatArray:
     """Return the smoothed states of one channel by filterpy."""
-    return reference_states(model, samples)[1]
+    kalman, states, covariances = filterpy_run(model, samples)
+    return np.asarray(kalman.rts_smoother(states[:, :, None], covariances)[0])[:, :, 0]
 
 
 def main() -> None:

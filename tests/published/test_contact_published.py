@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.asperity import FractalSurface
@@ -42,11 +43,13 @@ def test_three_joint_stiffnesses_stay_as_a_second_program_found_them(
 ):
     """Values of an independent implementation by direct summation, Poisson 0.25."""
     found = predict_contact(
-        model,
-        dimension=dimension,
-        roughness=roughness,
-        material=ContactMaterial(modulus, hardness, 0.25),
-        preload=load,
+        joint_case(
+            model,
+            dimension=dimension,
+            roughness=roughness,
+            material=ContactMaterial(modulus, hardness, 0.25),
+            preload=load,
+        )
     )
     assert_allclose(found.normal_stiffness, stiffness, rtol=1e-9)
 
@@ -62,11 +65,13 @@ def test_kogut_etsion_profile_joint_without_interaction(load, largest_area, stif
     """D 1.7, G 1 nm, E 69.3 GPa, H 231 HB, yield by hardness: a frozen evaluation."""
     model = replace(contact_model("modified_2d"), interaction=Interaction.NONE)
     found = predict_contact(
-        model,
-        dimension=1.7,
-        roughness=1e-9,
-        material=ContactMaterial(69.3e9, 2265336150.0, 0.25),
-        preload=load,
+        joint_case(
+            model,
+            dimension=1.7,
+            roughness=1e-9,
+            material=ContactMaterial(69.3e9, 2265336150.0, 0.25),
+            preload=load,
+        )
     )
     assert_allclose(found.largest_area, largest_area, rtol=1e-9)
     assert_allclose(found.normal_stiffness, stiffness, rtol=1e-9)
@@ -142,11 +147,13 @@ def test_critical_area_of_the_2023_profile_model():
     model = contact_model("modified_2d")
     assert model.yielding is YieldCriterion.HARDNESS
     found = predict_contact(
-        model,
-        dimension=1.5,
-        roughness=1e-10,
-        material=ContactMaterial(69.3e9, 2.265e9, 0.25),
-        preload=1e3,
+        joint_case(
+            model,
+            dimension=1.5,
+            roughness=1e-10,
+            material=ContactMaterial(69.3e9, 2.265e9, 0.25),
+            preload=1e3,
+        )
     )
     printed = 1e-20 / (2.265e9 / 69.3e9 / 2) ** (2 / 0.5)
     assert_allclose(found.critical_area, printed, rtol=1e-12)

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: MIT
 """The Kalman stage against filterpy and against its own transfer function."""
 
+import subprocess
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import pytest
+from kalman_reference import reference_process_noise, reference_states
+from scipy.linalg import solve_discrete_are
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import ChannelMissing, UsageError
 from jointbench.acquisition.records import Recording
 from jointbench.signal.frf import estimate_frf
@@ -22,10 +27,7 @@ from jointbench.signal.kalman import (
     stage_gain_of,
     state_model,
 )
-from jointbench.signal.kalman_reference import (
-    reference_process_noise,
-    reference_states,
-)
+from jointbench.signal.kalman_gains import gains
 
 RATE = 5000.0
 STAGES = {
@@ -38,6 +40,11 @@ STAGES = {
 }
 
 
+def parts_of(model: StateModel) -> tuple[FloatArray, ...]:
+    """Return what `gains` takes of a model."""
+    return model.transition, model.process, model.observation, model.start
+
+
 @pytest.mark.parametrize("stage", STAGES)
 def test_filter_and_smoother_agree_with_filterpy(stage: str) -> None:
     """1e-12 of the largest state, from the first sample to the last."""
@@ -47,6 +54,49 @@ def test_filter_and_smoother_agree_with_filterpy(stage: str) -> None:
     size = np.abs(filtered).max()
     assert np.abs(filter_states(model, walk)[1] - filtered).max() < 1e-12 * size
     assert np.abs(smooth_states(model, walk)[1] - smoothed).max() < 1e-12 * size
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_the_last_gains_are_those_of_the_algebraic_riccati_equation(stage: str) -> None:
+    """What filterpy converges to, from SciPy's solver: 1e-9 of each gain."""
+    model = state_model(STAGES[stage], RATE)
+    filters, smoothers = gains(*parts_of(model))
+    row = model.observation[None, :]
+    predicted = solve_discrete_are(model.transition.T, row.T, model.process, np.eye(1))
+    wanted = predicted @ model.observation / (row @ predicted @ row.T + 1.0)[0, 0]
+    kept = predicted - np.outer(wanted, model.observation @ predicted)
+    ahead = np.linalg.solve(predicted, model.transition @ kept).T
+    assert np.allclose(filters[-1], wanted, rtol=1e-9, atol=0.0)
+    assert np.allclose(smoothers[-1], ahead, rtol=1e-9, atol=1e-9 * np.abs(ahead).max())
+
+
+def test_filterpy_is_imported_with_the_first_gain_and_no_sooner() -> None:
+    """The import takes about a second in a fresh process."""
+    code = (
+        "import sys\n"
+        "from jointbench.signal.kalman import *\n"
+        "model = state_model(KalmanSettings(), 1000.0)\n"
+        "assert 'filterpy' not in sys.modules\n"
+        "import numpy\n"
+        "smooth_states(model, numpy.zeros((1, 10)))\n"
+        "assert 'filterpy' in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_gains_are_computed_once_for_a_configuration_and_cut_to_the_record() -> None:
+    """Records of 600 and 1000 samples share a run; 1 sample has one gain."""
+    model = state_model(STAGES["slow trend"], RATE)
+    short, long = gains(*parts_of(model), 600)[0], gains(*parts_of(model), 1000)[0]
+    assert np.shares_memory(short, long)
+    assert (len(short), len(gains(*parts_of(model), 1)[0])) == (600, 1)
+    assert np.array_equal(short, long[:600])
+
+
+def test_rounding_that_goes_in_a_circle_ends_the_run() -> None:
+    """With the default cutoff the last digit never rests; 20 gains, not 50,000."""
+    model = state_model(KalmanSettings(), RATE)
+    assert len(gains(*parts_of(model))[0]) < 100
 
 
 def test_level_and_slope_carry_the_process_noise_of_filterpy() -> None:

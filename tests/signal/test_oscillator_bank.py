@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from kalman_reference import reference_states
 
 from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.acquisition.records import Channel, Quantity, Recording
 from jointbench.signal.frf import estimate_frf
-from jointbench.signal.kalman_reference import reference_states
 from jointbench.signal.oscillator_bank import (
     bank_model,
     find_dropouts,

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 import pytest
+from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.predict import predict_contact
@@ -154,11 +155,13 @@ def test_the_prediction_is_that_of_the_contact_law() -> None:
     for name, found in row.predicted.items():
         dimension = 1.54 if name == "ke_2d" else 2.54
         wanted = predict_contact(
-            name,
-            dimension=dimension,
-            roughness=1e-9,
-            material=TABLE.material,
-            preload=25e3,
+            joint_case(
+                name,
+                dimension=dimension,
+                roughness=1e-9,
+                material=TABLE.material,
+                preload=25e3,
+            )
         ).normal_stiffness
         assert found is not None
         assert found.low is not None

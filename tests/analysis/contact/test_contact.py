@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.errors import BadData, UsageError
@@ -72,16 +73,16 @@ def test_interaction_stiffens_a_joint_of_given_load():
         "material": IRON,
         "preload": 5e3,
     }
-    with_it = predict_contact("ke_3d_modified", **options).normal_stiffness
-    without = predict_contact("ke_3d", **options).normal_stiffness
+    with_it = predict_contact(joint_case("ke_3d_modified", **options)).normal_stiffness
+    without = predict_contact(joint_case("ke_3d", **options)).normal_stiffness
     assert 1.1 < with_it / without < 1.35
 
 
 def test_interaction_changes_nothing_while_no_contact_is_elastic():
     """A very rough surface: the largest contact is below the critical area."""
     options = {"dimension": 2.54, "roughness": 5e-5, "material": IRON, "preload": 50.0}
-    with_it = predict_contact("ke_3d_modified", **options)
-    without = predict_contact("ke_3d", **options)
+    with_it = predict_contact(joint_case("ke_3d_modified", **options))
+    without = predict_contact(joint_case("ke_3d", **options))
     assert_allclose(with_it.normal_stiffness, without.normal_stiffness, rtol=1e-12)
     assert with_it.tangential_stiffness == 0
     assert any("no contact is elastic" in reason for reason in with_it.reasons)
@@ -90,7 +91,9 @@ def test_interaction_changes_nothing_while_no_contact_is_elastic():
 def test_parts_by_regime_add_up_to_the_preload_and_the_stiffness():
     """What the regimes carry is what was put on the joint."""
     state = predict_contact(
-        "friction_3d", dimension=2.6, roughness=1e-9, material=IRON, preload=777.0
+        joint_case(
+            "friction_3d", dimension=2.6, roughness=1e-9, material=IRON, preload=777.0
+        )
     )
     assert_allclose(sum(state.load_parts.values()), 777.0, rtol=1e-12)
     assert_allclose(sum(state.stiffness_parts.values()), state.normal_stiffness)
@@ -99,7 +102,7 @@ def test_parts_by_regime_add_up_to_the_preload_and_the_stiffness():
 def test_tangential_to_normal_stiffness_is_mindlins_ratio_in_hertz_geometry():
     """2 (1 - nu)/(2 - nu) = 6/7 at Poisson 0.25, elastic contacts, no slip."""
     state = predict_contact(
-        "ke_3d", dimension=2.5, roughness=1e-10, material=IRON, preload=1e3
+        joint_case("ke_3d", dimension=2.5, roughness=1e-10, material=IRON, preload=1e3)
     )
     elastic = state.stiffness_parts[Regime.ELASTIC]
     assert_allclose(state.tangential_stiffness / elastic, 6 / 7, rtol=1e-12)
@@ -108,13 +111,13 @@ def test_tangential_to_normal_stiffness_is_mindlins_ratio_in_hertz_geometry():
 def test_tangential_stiffness_of_given_contacts_ignores_normal_interaction():
     """It depends on the contact radii: rescaled by the largest area's growth only."""
     options = {"dimension": 2.5, "roughness": 1e-10, "material": IRON}
-    state = predict_contact("ke_3d_modified", preload=1e3, **options)
+    state = predict_contact(joint_case("ke_3d_modified", preload=1e3, **options))
     model = replace(contact_model("ke_3d_modified"), interaction=Interaction.NONE)
     # The load at which the model without interaction has the same largest area.
     loads = np.logspace(2, 5, 2000)
     sums = contact_curve(model, preload=loads, **options)
     same = float(np.interp(state.largest_area, sums.largest_area, loads))
-    other = predict_contact(model, preload=same, **options)
+    other = predict_contact(joint_case(model, preload=same, **options))
     assert_allclose(other.largest_area, state.largest_area, rtol=1e-5)
     assert_allclose(state.tangential_stiffness, other.tangential_stiffness, rtol=1e-5)
 
@@ -122,7 +125,9 @@ def test_tangential_stiffness_of_given_contacts_ignores_normal_interaction():
 def test_a_joint_of_plastic_contacts_has_no_stiffness_and_says_so():
     """Dimension near its lower end: every contact is beyond the second stage."""
     state = predict_contact(
-        "modified_2d", dimension=1.1, roughness=1e-9, material=IRON, preload=1e3
+        joint_case(
+            "modified_2d", dimension=1.1, roughness=1e-9, material=IRON, preload=1e3
+        )
     )
     assert state.normal_stiffness == 0
     assert state.verdict is ContactVerdict.FULLY_PLASTIC
@@ -132,8 +137,8 @@ def test_a_joint_of_plastic_contacts_has_no_stiffness_and_says_so():
 def test_a_real_area_above_the_nominal_one_is_a_verdict():
     """The model does not know the joint's size; the guard does."""
     options = {"dimension": 1.5, "roughness": 1e-9, "material": IRON, "preload": 1e3}
-    fine = predict_contact("ke_2d", nominal_area=1e-2, **options)
-    over = predict_contact("ke_2d", nominal_area=1e-7, **options)
+    fine = predict_contact(joint_case("ke_2d", nominal_area=1e-2, **options))
+    over = predict_contact(joint_case("ke_2d", nominal_area=1e-7, **options))
     assert fine.verdict is ContactVerdict.USABLE
     assert over.verdict is ContactVerdict.OVER_NOMINAL
 
@@ -141,7 +146,7 @@ def test_a_real_area_above_the_nominal_one_is_a_verdict():
 def test_a_real_area_far_above_the_largest_contact_is_remarked():
     """Near the upper end of the dimension a_r / a_l diverges."""
     state = predict_contact(
-        "ke_2d", dimension=1.99, roughness=1e-9, material=IRON, preload=1e3
+        joint_case("ke_2d", dimension=1.99, roughness=1e-9, material=IRON, preload=1e3)
     )
     assert any("times the largest contact" in reason for reason in state.reasons)
 
@@ -156,7 +161,9 @@ def test_a_dimension_of_the_other_kind_is_refused_with_the_way_out(
     """Profile and surface dimensions differ by one: the message says which is meant."""
     with pytest.raises(BadData, match=hint):
         predict_contact(
-            model, dimension=dimension, roughness=1e-9, material=IRON, preload=1e3
+            joint_case(
+                model, dimension=dimension, roughness=1e-9, material=IRON, preload=1e3
+            )
         )
 
 
@@ -174,7 +181,7 @@ def test_a_number_no_joint_can_have_is_refused(name, value):
     """The message names the quantity."""
     options = {"dimension": 1.5, "roughness": 1e-9, "preload": 1e3, name: value}
     with pytest.raises(BadData, match=name):
-        predict_contact("ke_2d", material=IRON, **options)
+        predict_contact(joint_case("ke_2d", material=IRON, **options))
 
 
 def test_an_unknown_model_answers_with_the_nearest_name():
@@ -224,7 +231,7 @@ def test_a_number_beyond_every_joint_is_refused(changed, match):
     """Not answered with infinite areas that call themselves usable."""
     usual = {"dimension": 1.5, "roughness": 1e-9, "preload": 4e3}
     with pytest.raises(BadData, match=match) as caught:
-        predict_contact("modified_2d", material=IRON, **(usual | changed))
+        predict_contact(joint_case("modified_2d", material=IRON, **usual | changed))
     assert "\n" not in str(caught.value)
 
 

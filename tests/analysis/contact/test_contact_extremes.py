@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.errors import BadData
@@ -107,11 +108,13 @@ def test_no_joint_of_metal_near_the_lower_end_is_called_usable(name):
     model = CONTACT_MODELS[name]
     for excess in (1e-9, 1e-4, 1e-3, 0.0066, 0.0067):
         state = predict_contact(
-            name,
-            dimension=model.topography.lowest_dimension + excess,
-            roughness=1e-9,
-            material=CAST_IRON,
-            preload=4000.0,
+            joint_case(
+                name,
+                dimension=model.topography.lowest_dimension + excess,
+                roughness=1e-9,
+                material=CAST_IRON,
+                preload=4000.0,
+            )
         )
         assert state.normal_stiffness == 0.0
         assert state.tangential_stiffness == 0.0

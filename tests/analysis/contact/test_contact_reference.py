@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 import pytest
+from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.material import ContactMaterial
@@ -34,11 +35,13 @@ def test_a_joint_state_equals_the_independent_implementation(model, state):
     row = rows[model, state]
     inputs = row["inputs"]
     found = predict_contact(
-        model,
-        dimension=inputs["D"],
-        roughness=inputs["G"],
-        material=ContactMaterial(inputs["E"], inputs["H"], inputs["nu"]),
-        preload=inputs["load"],
+        joint_case(
+            model,
+            dimension=inputs["D"],
+            roughness=inputs["G"],
+            material=ContactMaterial(inputs["E"], inputs["H"], inputs["nu"]),
+            preload=inputs["load"],
+        )
     )
     areas = (found.critical_area, found.largest_area, found.real_area)
     wanted = (row["critical_area"], row["largest_area"], row["real_area"])

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from contact_cases import joint_case
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
@@ -144,9 +145,9 @@ def test_a_tangential_load_softens_until_the_joint_slides():
         "preload": 1e3,
         "friction": 0.2,
     }
-    stuck = predict_contact("ke_3d", **options).tangential_stiffness
-    partly = predict_contact("ke_3d", tangential_load=100.0, **options)
-    slides = predict_contact("ke_3d", tangential_load=201.0, **options)
+    stuck = predict_contact(joint_case("ke_3d", **options)).tangential_stiffness
+    partly = predict_contact(joint_case("ke_3d", tangential_load=100.0, **options))
+    slides = predict_contact(joint_case("ke_3d", tangential_load=201.0, **options))
     assert_allclose(partly.tangential_stiffness / stuck, 0.5 ** (1 / 3))
     assert slides.tangential_stiffness == 0
     assert any("slides" in reason for reason in slides.reasons)
@@ -258,12 +259,14 @@ def test_damping_needs_one_of_mass_and_frequency(bad):
 def test_damping_of_a_joint_is_there_when_it_is_asked_for():
     """Loss factor times sqrt(M K)."""
     state = predict_contact(
-        "ke_3d",
-        dimension=2.5,
-        roughness=1e-9,
-        material=IRON,
-        preload=1e3,
-        damping=DampingChoice(mass=10.0),
+        joint_case(
+            "ke_3d",
+            dimension=2.5,
+            roughness=1e-9,
+            material=IRON,
+            preload=1e3,
+            damping=DampingChoice(mass=10.0),
+        )
     )
     wanted = state.loss_factor * math.sqrt(10.0 * state.normal_stiffness)
     assert_allclose(state.damping, wanted)
@@ -279,8 +282,8 @@ def test_every_model_is_there_as_printed_and_names_its_faults(name):
         "material": IRON,
         "preload": 1e3,
     }
-    mended = predict_contact(name, **options)
-    printed = predict_contact(name, mode="as-printed", **options)
+    mended = predict_contact(joint_case(name, **options))
+    printed = predict_contact(joint_case(name, mode="as-printed", **options))
     assert printed.mode is Mode.AS_PRINTED
     assert abs(printed.normal_stiffness / mended.normal_stiffness - 1) > 1e-3
     faults = printed_warnings(name, **options)
@@ -293,12 +296,14 @@ def test_a_printed_formula_without_a_value_is_refused():
     """Eq. (28) and its kin divide by zero at some dimensions; (27) at 309/184."""
     with pytest.raises(BadData, match="mode 'corrected'"):
         predict_contact(
-            "modified_2d",
-            mode="as-printed",
-            dimension=20 / 17,
-            roughness=1e-9,
-            material=IRON,
-            preload=1e3,
+            joint_case(
+                "modified_2d",
+                mode="as-printed",
+                dimension=20 / 17,
+                roughness=1e-9,
+                material=IRON,
+                preload=1e3,
+            )
         )
 
 
@@ -318,5 +323,5 @@ def test_verdicts_do_not_depend_on_the_mode():
     """A plastic joint is plastic in both."""
     options = {"dimension": 2.05, "roughness": 1e-9, "material": IRON, "preload": 1e3}
     for mode in Mode:
-        state = predict_contact("ke_3d", mode=mode, **options)
+        state = predict_contact(joint_case("ke_3d", mode=mode, **options))
         assert state.verdict is ContactVerdict.FULLY_PLASTIC

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The Kalman models as filterpy runs them: slow, and the measure of `kalman`.
+"""The Kalman models run by filterpy sample by sample: the reference for `kalman`.
 
-filterpy keeps its state in public attributes of changing shape; here that ends: arrays
-of fixed shape in, arrays of fixed shape out. This is the only file that imports it.
+The product takes its gains from filterpy and applies them in loops of its own; here
+filterpy does all of it, missing samples and the smoother included.
 """
 
 import numpy as np
