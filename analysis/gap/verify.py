@@ -18,7 +18,6 @@ from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.forward import Excitation, respond
 from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.verify_channels import (
     anti_alias,
     through_channels,
@@ -26,6 +25,7 @@ from jointbench.analysis.gap.verify_channels import (
 )
 from jointbench.analysis.gap.verify_motion import UPSAMPLING, integrate_motion
 from jointbench.analysis.gap.verify_system import make_system
+from jointbench.analysis.lumped import LumpedModel
 
 TOLERANCE = 1e-9
 BEYOND = 64
@@ -102,7 +102,7 @@ def _fine(
     """Return what the bodies under the channels do, between the samples as well."""
     system = make_system(model, theta, excitation, actions)
     motion = integrate_motion(system, excitation, beyond=BEYOND, tolerance=tolerance)
-    rows = [channel.body for channel in model.channels]
+    rows = [model.index(channel.body) for channel in model.channels]
     return np.asarray(motion.derivatives[int(model.output)][:, rows])
 
 

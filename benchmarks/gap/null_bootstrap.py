@@ -40,10 +40,10 @@ from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.naming import gate, noise_sd
 from jointbench.analysis.gap.screening import screen
 from jointbench.analysis.gap.verify import verify_fit
+from jointbench.analysis.lumped import LumpedModel
 from jointbench.simulators.campaign import make_campaign
 from jointbench.simulators.campaign_file import write_campaign
 

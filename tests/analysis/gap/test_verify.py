@@ -20,7 +20,6 @@ from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import noise_sd
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.screening import screen
@@ -30,6 +29,7 @@ from jointbench.analysis.gap.verify import (
     verify_fit,
     verify_response,
 )
+from jointbench.analysis.lumped import Output
 
 
 def load(path: Path) -> ModuleType:
