@@ -34,6 +34,10 @@ class HostileFile(BadData):
     """A file that asks for more than a measurement would: refused unread."""
 
 
+class RottenFile(FormatError):
+    """A file whose content is not what its own digest says."""
+
+
 class SamplingError(BadData):
     """Time stamps that jump, run backwards, or do not match between channels."""
 

@@ -35,7 +35,9 @@ from jointbench.acquisition.session_extras import (
 )
 from jointbench.acquisition.session_live import LIVE_SCHEMA
 from jointbench.acquisition.session_live_read import read_live
+from jointbench.acquisition.session_lock import locked
 from jointbench.acquisition.session_recover import session_from_live
+from jointbench.acquisition.session_replace import require_session
 from jointbench.acquisition.session_streams import (
     in_order,
     recording_from_group,
@@ -61,13 +63,11 @@ def write_session(
         overwrite: replace a file that is there.
 
     Raises:
-        UsageError: there is such a file and `overwrite` is off, or it cannot be
-            written there.
+        UsageError: there is such a file and `overwrite` is off, it is being recorded,
+            it is no session, or it cannot be written there.
         BadData: a record is empty, or holds a text that cannot be stored.
     """
-    with new_file(
-        path, schema=SESSION_SCHEMA, title=SESSION_TITLE, overwrite=overwrite
-    ) as file:
+    with locked(Path(path)), _own_file(Path(path), overwrite=overwrite) as file:
         write_head(file, session)
         for position, recording in enumerate(session.recordings):
             write_recording(file, recording, position)
@@ -81,6 +81,16 @@ def write_head(file: h5py.File, session: Session) -> None:
     write_attributes(file, {name: getattr(session, name) for name in _TEXTS})
     write_attributes(file, {"simulated": bool(session.simulated)})
     write_setup(file, session.joint)
+
+
+@contextmanager
+def _own_file(path: Path, *, overwrite: bool) -> Iterator[h5py.File]:
+    if overwrite:
+        require_session(path)
+    with new_file(
+        path, schema=SESSION_SCHEMA, title=SESSION_TITLE, overwrite=overwrite
+    ) as file:
+        yield file
 
 
 def read_session(path: Path | str) -> Session:

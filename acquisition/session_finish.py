@@ -31,7 +31,9 @@ from jointbench.acquisition.session_live_read import (
     read_live,
     read_pieces,
 )
+from jointbench.acquisition.session_lock import locked
 from jointbench.acquisition.session_recover import is_finished, outline_live
+from jointbench.acquisition.session_replace import require_session
 from jointbench.acquisition.session_streams import write_recording_in_pieces
 
 # The time axis packs to less than this share of a byte a sample.
@@ -77,8 +79,10 @@ def finish_live(source: Path, target: Path, *, overwrite: bool = False) -> Finis
         overwrite=overwrite,
         memory=False,
     )
+    if overwrite:
+        require_session(target)
     # The source is closed before the target takes its name.
-    with new as file, open_guarded(source) as live:
+    with locked(target), new as file, open_guarded(source) as live:
         with damage_named(source):
             require_schema(live, LIVE_SCHEMA, source)
         return _copy(source, live, file)

@@ -18,7 +18,7 @@ import queue
 import threading
 import time
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import IO
@@ -30,6 +30,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.disk_room import DiskRoom
 from jointbench.acquisition.errors import InstrumentError, UsageError
 from jointbench.acquisition.netcdf import write_attributes
+from jointbench.acquisition.records import Channel
 from jointbench.acquisition.session_lock import drop_lock, hold_lock
 from jointbench.acquisition.text_files import named
 
@@ -39,6 +40,22 @@ _LOG_CHUNK = 4096
 _BLOCKS_CHUNK = 256
 
 Entry = Mapping[str, object]
+
+
+def channel_rows(channels: Sequence[Channel]) -> list[dict[str, object]]:
+    """Return channels as the head of a recording states them."""
+    return [
+        {
+            "name": channel.name,
+            "quantity": channel.quantity.value,
+            "point": channel.point,
+            "direction": channel.direction,
+            "unit": channel.unit,
+            "sensitivity": channel.sensitivity,
+            "range": channel.range,
+        }
+        for channel in channels
+    ]
 
 
 class LiveSession:

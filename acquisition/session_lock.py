@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """One writer for one file: a lock that the system lets go of when its holder dies."""
 
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
@@ -31,6 +34,28 @@ def hold_lock(path: Path) -> IO[bytes]:
     Raises:
         UsageError: another process holds it, or the folder cannot be written.
     """
+    while True:
+        file = _grabbed(path)
+        if _is_there(file, path):
+            return file
+        file.close()
+
+
+@contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Hold the lock of a file meanwhile.
+
+    Raises:
+        UsageError: another process holds it, or the folder cannot be written.
+    """
+    file = hold_lock(path)
+    try:
+        yield
+    finally:
+        drop_lock(path, file)
+
+
+def _grabbed(path: Path) -> IO[bytes]:
     try:
         file = lock_path(path).open("ab")
     except OSError as error:
@@ -48,6 +73,17 @@ def hold_lock(path: Path) -> IO[bytes]:
     return file
 
 
+def _is_there(file: IO[bytes], path: Path) -> bool:
+    """Tell whether a lock just grabbed is still the one under its name.
+
+    Its last holder may have taken it away between our opening and our grabbing it.
+    """
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), lock_path(path).stat())
+    except FileNotFoundError:
+        return False
+
+
 def is_held(path: Path) -> bool:
     """Tell whether a process is recording into a session file right now."""
     if not lock_path(path).exists():
@@ -61,8 +97,11 @@ def is_held(path: Path) -> bool:
 
 def drop_lock(path: Path, file: IO[bytes]) -> None:
     """Let go of the lock of a session file, and take it away."""
+    if sys.platform != "win32":
+        # Taken away while it is held: nobody else's lock can go by mistake.
+        with suppress(OSError):
+            lock_path(path).unlink(missing_ok=True)
     file.close()
-    try:
-        lock_path(path).unlink(missing_ok=True)
-    except OSError:  # on Windows another process may just be looking at it
-        return
+    if sys.platform == "win32":  # there an open file stays, and others may look at it
+        with suppress(OSError):
+            lock_path(path).unlink(missing_ok=True)

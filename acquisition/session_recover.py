@@ -162,7 +162,7 @@ def _recording(
         samples=np.empty((len(channels), 0)),
         sample_rate=rate,
         channels=tuple(_at(channel, point) for channel in channels),
-        start_time=span.stored / rate,
+        start_time=_start_time(stretch, rate),
         hits=tuple(own),
         provenance=(
             step(
@@ -174,6 +174,14 @@ def _recording(
         ),
         preload=None if preload is None else float(preload),
     )
+
+
+def _start_time(stretch: _Stretch, rate: float) -> float:
+    """Return the time of the first sample [s]: by its run's own, if that says so."""
+    begun = stretch.run.get("start_time")
+    if begun is None:
+        return stretch.span.stored / rate
+    return float(begun) + (stretch.span.stored - int(stretch.run["stored"])) / rate
 
 
 def _at(channel: Channel, point: str) -> Channel:

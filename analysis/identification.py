@@ -26,8 +26,10 @@ class JointParameter:
 
     Attributes:
         name: ``"<link>.stiffness"`` or ``"<link>.damping"``.
-        value: of the best solution [unit].
-        sd: its standard deviation [unit]; None if nothing measured decides it.
+        value: of the best solution [unit]; one of many where it is not identifiable.
+        sd: its standard deviation [unit]; None where it is not identifiable.
+        interval: of 95 % [unit]; where it is not identifiable, the union over all
+            solutions that the measurement admits. An end is None where it is open.
         unit: ``"N/m"`` or ``"N s/m"``.
         identifiable: whether the measurement determines it.
         reason: why not, and what to measure; empty if it is.
@@ -39,6 +41,7 @@ class JointParameter:
     unit: str
     identifiable: bool
     reason: str = ""
+    interval: tuple[float | None, float | None] = (None, None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,7 +113,8 @@ def identification_json(result: Identification) -> dict[str, Any]:
         result: of `identify_links`.
 
     Returns:
-        ``parameters`` {name: {value, sd, unit, identifiable, reason}}, ``solutions``,
+        ``parameters`` {name: {value, sd, interval_95, unit, identifiable, reason}},
+        ``solutions``,
         ``verdict``, ``reasons``, ``modes``; nothing in it is NaN or infinite.
     """
     best = result.solutions[0]
@@ -121,6 +125,7 @@ def identification_json(result: Identification) -> dict[str, Any]:
             one.name: {
                 "value": one.value,
                 "sd": one.sd,
+                "interval_95": list(one.interval),
                 "unit": one.unit,
                 "identifiable": one.identifiable,
                 "reason": one.reason,

@@ -25,7 +25,7 @@ from jointbench.analysis.lumped import LumpedModel
 from jointbench.analysis.lumped_matrices import incidence
 from jointbench.analysis.lumped_modes import solve_modes
 from jointbench.analysis.measured_modes import MeasuredModes
-from jointbench.signal.blas_threads import one_blas_thread
+from jointbench.signal.one_thread import one_thread
 
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
@@ -39,12 +39,14 @@ _MISFIT = 1e-3
 _LARGEST_LOG_SD = 1.0
 # Beyond this one the number itself means nothing: no measurement decides it.
 _NO_SD = 1e3
+# 95 % of a normal distribution.
+_Z = 1.959963984540054
 # A search may end at many points of a continuum, or at poor local optima: list so many
 # rivals of the best, and as many that fell.
 _LISTED = 7
 
 
-@one_blas_thread
+@one_thread()
 def identify_links(
     model: LumpedModel,
     measured: MeasuredModes,
@@ -88,11 +90,18 @@ def identify_links(
     limit = best.chi2 + _SEPARATES * scale
     rivals = [one for one in optima[1:] if one.chi2 < limit]
     fallen = [one for one in optima[1:] if one.chi2 >= limit]
-    parameters = _parameters(problem, best, rivals, scale)
+    parameters = _parameters(problem, [best, *rivals], scale)
     verdict, reasons = _judge(problem, best, rivals, parameters, freedom)
     if verdict is IdentificationVerdict.INCONSISTENT:
         parameters = tuple(
-            replace(one, identifiable=False, reason=_NO_FIT) for one in parameters
+            replace(
+                one,
+                identifiable=False,
+                reason=_NO_FIT,
+                sd=None,
+                interval=(None, None),
+            )
+            for one in parameters
         )
     found = model_at(problem, best.unknowns)
     return Identification(
@@ -147,33 +156,53 @@ def _energy_share(problem: JointProblem, model: LumpedModel) -> FloatArray:
 
 
 def _parameters(
-    problem: JointProblem, best: Optimum, rivals: Sequence[Optimum], scale: float
+    problem: JointProblem, standing: Sequence[Optimum], scale: float
 ) -> tuple[JointParameter, ...]:
     """Return every parameter with its uncertainty and whether it is determined."""
-    values = _values(problem, best.unknowns)
-    others = [_values(problem, one.unknowns) for one in rivals]
-    sd = np.sqrt(scale * np.diag(best.covariance())[: values.size])
-    # The unknowns are ln stiffness and scaled damping: back to physical numbers.
-    unit = np.where(np.arange(sd.size) < problem.stiff.size, values, 0.0)
-    sd_values = sd * np.where(unit > 0, unit, problem.damping_scale)
+    values = np.array([_values(problem, one.unknowns) for one in standing])
+    spreads = np.array([_spreads(problem, one, scale) for one in standing])
     result = []
     for at, (name, symbol) in enumerate(_names(problem)):
-        value, spread = float(values[at]), float(sd_values[at])
+        value, spread = float(values[0, at]), float(spreads[0, at])
         reason = _undecided(value, spread, symbol, problem.damping_scale)
-        different = [
-            float(other[at])
-            for other in others
-            if abs(other[at] - value) > max(spread, 1e-3 * value)
-        ]
-        if different and not reason:
+        apart = np.abs(values[1:, at] - value) > max(spread, 1e-3 * value)
+        if apart.any() and not reason:
+            different = values[1:, at][apart].tolist()
             reason = _rivals(problem, [value, *different], symbol)
-        known = spread < _NO_SD * max(value, problem.damping_scale * (symbol != "N/m"))
-        result.append(
-            JointParameter(
-                name, value, spread if known else None, symbol, not reason, reason
-            )
+        count = len(standing) if reason else 1
+        ends = _interval(
+            values[:count, at], spreads[:count, at], symbol, problem.damping_scale
         )
+        sd = None if reason else spread
+        result.append(JointParameter(name, value, sd, symbol, not reason, reason, ends))
     return tuple(result)
+
+
+def _spreads(problem: JointProblem, end: Optimum, scale: float) -> FloatArray:
+    """Return the standard deviation of every parameter around a solution [SI]."""
+    values = _values(problem, end.unknowns)
+    sd = np.sqrt(scale * np.diag(end.covariance())[: values.size])
+    # The unknowns are ln stiffness and scaled damping: back to physical numbers.
+    unit = np.where(np.arange(sd.size) < problem.stiff.size, values, 0.0)
+    return np.asarray(sd * np.where(unit > 0, unit, problem.damping_scale))
+
+
+def _interval(
+    values: FloatArray, spreads: FloatArray, unit: str, scale: float
+) -> tuple[float | None, float | None]:
+    """Return the range of the 95 % intervals of solutions; None where it is open.
+
+    Stiffness is uncertain in its logarithm; damping is not, and it may be zero.
+    """
+    if unit == "N/m":
+        if np.any(spreads >= _LARGEST_LOG_SD * values):
+            return (None, None)
+        factor = np.exp(_Z * spreads / values)
+        return (float((values / factor).min()), float((values * factor).max()))
+    low = float(np.maximum(values - _Z * spreads, 0.0).min())
+    if np.any(spreads >= _NO_SD * np.maximum(values, scale)):
+        return (0.0, None)
+    return (low, float((values + _Z * spreads).max()))
 
 
 def _undecided(value: float, sd: float, unit: str, scale: float) -> str:

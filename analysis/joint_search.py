@@ -22,6 +22,10 @@ _FAR = 1e6
 _FLAT = 1e-8
 # A direction this uncertain in ln, 1e5, is open: solutions form a continuum.
 _OPEN = 1e-5
+# An end is no optimum if the next step promises a chi2 lower by more than this ...
+_STILL_FALLS = 1e-3
+# ... or than this share of it.
+_STILL_FALLS_SHARE = 1e-3
 # Two optima are one if the way between them is this short in standard deviations ...
 _SAME_DISTANCE = 1.0
 # ... or if all stiffnesses agree to this, whatever the uncertainty.
@@ -36,11 +40,14 @@ class Optimum:
         unknowns: see `JointProblem`, shape (size,).
         chi2: sum of the squared residuals [-].
         slopes: derivatives of the residuals, shape (n_rows, size).
+        arrived: whether no step leads further down; a search in a narrow valley may
+            run out of steps.
     """
 
     unknowns: FloatArray
     chi2: float
     slopes: FloatArray
+    arrived: bool = True
 
     @property
     def flat(self) -> bool:
@@ -84,7 +91,8 @@ def find_optima(
             "link a body to the ground, or narrow the band"
         )
     kept: list[Optimum] = []
-    for optimum in sorted(found, key=lambda one: one.chi2):
+    ranked = sorted(found, key=lambda one: one.chi2)
+    for optimum in [ranked[0], *(one for one in ranked[1:] if one.arrived)]:
         if not any(_same(problem, optimum, other) for other in kept):
             kept.append(optimum)
     return tuple(kept)
@@ -161,7 +169,16 @@ def _descend(problem: JointProblem, start: FloatArray) -> Optimum | None:
     ended = residuals(problem, result.x)
     if ended is None:
         return None
-    return Optimum(result.x, float(ended[0] @ ended[0]), ended[1])
+    free = (result.x > lower) & (result.x < upper)
+    arrived = _arrived(ended[0], ended[1][:, free])
+    return Optimum(result.x, float(ended[0] @ ended[0]), ended[1], arrived)
+
+
+def _arrived(left: FloatArray, slopes: FloatArray) -> bool:
+    """Tell whether a Gauss-Newton step would not lower chi2 by what counts."""
+    directions, size, _ = np.linalg.svd(slopes, full_matrices=False)
+    falls = float(np.sum((directions[:, size > _OPEN].T @ left) ** 2))
+    return falls <= _STILL_FALLS + _STILL_FALLS_SHARE * float(left @ left)
 
 
 def _remember_last(

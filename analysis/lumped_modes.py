@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.lumped import LumpedModel, require_tested_masses
@@ -13,9 +14,9 @@ from jointbench.analysis.lumped_matrices import (
     stiffness_matrix,
 )
 
-# A pole nearer to zero than this share of the largest is a rigid-body one; a double
-# pole at zero is only found to the square root of rounding.
-_RIGID = 1e-5
+# The pull of springs on a piece of the bench as a whole, relative to their size: below,
+# it is rounding, and the piece is free.
+_FREE = 1e-12
 # Above this damping ratio a pole pair counts as two decays: it has no frequency left.
 _OVERDAMPED = 1 - 1e-9
 
@@ -85,19 +86,38 @@ def modes_of(
     Returns:
         Oscillating modes, by natural frequency.
     """
-    n = mass.size
-    state = np.zeros((2 * n, 2 * n))
-    state[:n, n:] = np.eye(n)
-    state[n:, :n] = -stiffness / mass[:, None]
-    state[n:, n:] = -damping / mass[:, None]
+    root = np.sqrt(mass)
+    moving = _straining(stiffness, root)
+    n, m = moving.shape
+    # Displacements that strain, then all velocities: motions that no spring holds have
+    # no displacement here, and leave no double pole at zero.
+    state = np.zeros((m + n, m + n))
+    state[:m, m:] = moving.T
+    state[m:, :m] = -(stiffness / np.outer(root, root)) @ moving
+    state[m:, m:] = -damping / np.outer(root, root)
     poles, vectors = np.linalg.eig(state)
     size = np.abs(poles)
-    wanted = (size > _RIGID * size.max()) & (poles.imag > 0)
-    wanted &= -poles.real < _OVERDAMPED * size
+    wanted = (poles.imag > 0) & (-poles.real < _OVERDAMPED * size)
     order = np.flatnonzero(wanted)[np.argsort(size[wanted])]
     chosen = poles[order].astype(complex)
-    shapes = vectors[:n, order].T.astype(complex)
+    # Shapes are those of the velocities: pole times displacement.
+    shapes = (vectors[m:, order] / root[:, None] / chosen).T.astype(complex)
     return ComplexModes(chosen, _normalised(chosen, shapes, mass, damping))
+
+
+def _straining(stiffness: FloatArray, root: FloatArray) -> FloatArray:
+    """Return the motions that strain springs, times the root of mass, orthonormal.
+
+    Free are the pieces of the bench that no spring ties to the ground, as a whole: a
+    soft spring beside a stiff one ties as well.
+    """
+    count, piece = connected_components(stiffness != 0.0, directed=False)
+    own = (piece == np.arange(count)[:, None]).astype(float)
+    pull = np.abs(np.einsum("pi,ij,pj->p", own, stiffness, own))
+    size = np.einsum("pi,ij,pj->p", own, np.abs(stiffness), own)
+    free = (own[pull <= _FREE * size] * root).T
+    turn, _ = np.linalg.qr(free, mode="complete")
+    return np.asarray(turn[:, free.shape[1] :])
 
 
 def _normalised(

@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray
-from jointbench.signal.blas_threads import one_blas_thread
 from jointbench.signal.fractal_bands import FEWEST_LAGS, find_band
 from jointbench.signal.fractal_choice import Choice, choose, spans_decade
 from jointbench.signal.fractal_judgement import Judgement, judge
@@ -14,6 +13,7 @@ from jointbench.signal.fractal_kink import Kink, find_kink
 from jointbench.signal.fractal_problem import FractalProblem, pose
 from jointbench.signal.fractal_result import accepted_fit, rejected_fit
 from jointbench.signal.local_slope import local_slope
+from jointbench.signal.one_thread import one_thread
 from jointbench.signal.structure_constant import (
     DEFAULT_GAMMA,
     ConstantForm,
@@ -78,7 +78,7 @@ def fractal_from_line(
     return FractalLine(dimension, float(10 ** (level / (2 * (dimension - 1)))))
 
 
-@one_blas_thread
+@one_thread()
 def fit_fractal(
     estimate: StructureFunction,
     *,

@@ -6,10 +6,10 @@ compiled it is below 0.1 us. Gains do not depend on the samples: they are comput
 they stand still and then reused for every sample and channel.
 """
 
-import numba
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.compiled import compiled
 
 # Gains that change by less than this share of themselves stand still.
 _STILL = 1e-15
@@ -61,7 +61,7 @@ def _still(steps: list[FloatArray]) -> bool:
     return moved <= _STILL * float(np.abs(steps[-1]).max())
 
 
-@numba.njit(cache=True)
+@compiled()
 def _forward_two(
     transition: FloatArray,
     observation: FloatArray,
@@ -91,7 +91,7 @@ def _forward_two(
         states[i, 0], states[i, 1], innovations[i] = first, second, innovation
 
 
-@numba.njit(cache=True)
+@compiled()
 def forward(
     transition: FloatArray,
     observation: FloatArray,
@@ -143,7 +143,7 @@ def forward(
     return states, innovations
 
 
-@numba.njit(cache=True)
+@compiled()
 def _backward_two(
     transition: FloatArray,
     smoother: FloatArray,
@@ -170,7 +170,7 @@ def _backward_two(
         smoothed[i, 0], smoothed[i, 1] = first, second
 
 
-@numba.njit(cache=True)
+@compiled()
 def backward(
     transition: FloatArray, smoother: FloatArray, states: FloatArray
 ) -> FloatArray:

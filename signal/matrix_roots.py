@@ -11,10 +11,10 @@ Source:
     (2013) 1130 (matrix polynomials).
 """
 
-import numba
 import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray
+from jointbench.acquisition.compiled import compiled
 
 # Convergence is cubic: the step after one this small is lost in rounding.
 _SMALL_STEP = 1e-9
@@ -75,7 +75,7 @@ def _grown(start: ComplexArray, size: int) -> ComplexArray:
     return np.array(roots, np.complex128)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _polish(
     denominator: ComplexArray, roots: ComplexArray, small: float, sweeps: int
 ) -> bool:
@@ -109,7 +109,7 @@ def _polish(
     return False
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _slope(denominator: ComplexArray, root: complex) -> complex:
     """Return d/du log det B(u), B(u) = u^n I + A_1 u^(n - 1) + ... + A_n.
 
@@ -133,7 +133,7 @@ def _slope(denominator: ComplexArray, root: complex) -> complex:
     return complex(point * (order * width - point * trace))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _log_slope(value: ComplexArray, slope: ComplexArray) -> complex:
     """Return trace(value^-1 slope) by elimination; both are used up."""
     width = value.shape[0]

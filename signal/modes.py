@@ -9,7 +9,6 @@ from jointbench.acquisition.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.errors import NoModeFound, UsageError
 from jointbench.acquisition.records import Step, step
 from jointbench.signal.band import choose_band
-from jointbench.signal.blas_threads import one_blas_thread
 from jointbench.signal.choices import Choices, overrule
 from jointbench.signal.frf import Frf
 from jointbench.signal.kalman import stage_gain_of
@@ -18,6 +17,7 @@ from jointbench.signal.line_weights import weights_of
 from jointbench.signal.lscf import Progress, fit_poles
 from jointbench.signal.lsfd import Lines, lines_of
 from jointbench.signal.modal_model import ModalModel, build_model
+from jointbench.signal.one_thread import one_thread
 from jointbench.signal.selection import FittedModes, fit_modes
 from jointbench.signal.stabilisation import (
     Stabilisation,
@@ -83,7 +83,7 @@ class ModalResult:
         freeze(self, "synthesis_error")
 
 
-@one_blas_thread
+@one_thread()
 def identify_modes(
     frf: Frf,
     settings: ModalSettings | None = None,

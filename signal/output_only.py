@@ -25,9 +25,9 @@ from jointbench.acquisition.arrays import (
 )
 from jointbench.acquisition.errors import NoModeFound, UsageError
 from jointbench.acquisition.records import Provenance, Recording, response_rows, step
-from jointbench.signal.blas_threads import one_blas_thread
 from jointbench.signal.correlations import Correlations, correlate_responses
 from jointbench.signal.harmonics import sine_like
+from jointbench.signal.one_thread import one_thread
 from jointbench.signal.pole_jackknife import correlation_poles, judge_poles
 from jointbench.signal.stabilisation import (
     Stabilisation,
@@ -119,7 +119,7 @@ class OutputOnlyModes:
         freeze(self, "natural_frequency", "shapes")
 
 
-@one_blas_thread
+@one_thread()
 def identify_output_only(
     recording: Recording, settings: OutputOnlySettings | None = None
 ) -> OutputOnlyModes:

@@ -12,9 +12,9 @@ from math import sqrt, tanh
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.compiled import compiled
 from jointbench.simulators.sliders import (
     TABLE_POINTS,
     UNKNOWN,
@@ -106,7 +106,7 @@ def resting_sliders(laws: LawArrays) -> FloatArray:
     return memory
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def elastic_force(kind: int, p: Sequence[float], r: float, time: float) -> float:
     """Return the part of a law's force that depends on the elongation r [m] only."""
     if kind == LawKind.ODD_POWER:
@@ -124,7 +124,7 @@ def elastic_force(kind: int, p: Sequence[float], r: float, time: float) -> float
     return 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def viscous_force(kind: int, p: Sequence[float], r: float, v: float, w: float) -> float:
     """Return the part that depends on the elongation rate v [m/s] or the state w."""
     if kind == LawKind.COULOMB:
@@ -142,7 +142,7 @@ def viscous_force(kind: int, p: Sequence[float], r: float, v: float, w: float) -
     return 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def law_force(
     kind: int, p: Sequence[float], r: float, v: float, w: float, time: float
 ) -> float:
@@ -150,7 +150,7 @@ def law_force(
     return elastic_force(kind, p, r, time) + viscous_force(kind, p, r, v, w)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def state_rate(kind: int, p: Sequence[float], v: float, w: float) -> float:
     """Return dw/dt of a law with a state."""
     if kind == LawKind.MAXWELL:

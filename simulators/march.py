@@ -4,9 +4,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.compiled import compiled
 from jointbench.simulators.joint_laws import (
     LawArrays,
     LawKind,
@@ -24,7 +24,7 @@ class LinearPart(NamedTuple):
     damping: FloatArray  # (n_bodies, n_bodies)
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def march(
     linear: LinearPart,
     laws: LawArrays,
@@ -86,7 +86,7 @@ def march(
     return acceleration
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _advance(
     step: float, slopes: FloatArray, state: FloatArray, change: FloatArray
 ) -> None:
@@ -97,7 +97,7 @@ def _advance(
         state[i] += change[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _linear_rate(
     inverse_mass: FloatArray,
     stiffness: FloatArray,
@@ -117,7 +117,7 @@ def _linear_rate(
         rate[size + i] = total * inverse_mass[i]
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _difference(values: FloatArray, first: int, second: int) -> float:
     """Return how much further body `second` is than body `first`, or the ground."""
     if first < 0:
@@ -125,7 +125,7 @@ def _difference(values: FloatArray, first: int, second: int) -> float:
     return float(values[second] - values[first])
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _bank_force(
     moved: float,
     bank: IntArray,
@@ -144,7 +144,7 @@ def _bank_force(
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _move_bank(
     moved: float,
     bank: IntArray,

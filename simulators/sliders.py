@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
 from jointbench.acquisition.arrays import FloatArray, freeze, read_only
+from jointbench.acquisition.compiled import compiled
 from jointbench.acquisition.errors import UsageError
 
 TABLE_POINTS = 2048
@@ -93,7 +93,7 @@ def loading_table(sharpness: float) -> tuple[FloatArray, float]:
     return read_only(np.stack((value, rise), axis=1)), step
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _tabulate(sharpness: float, step: float) -> FloatArray:
     parts = 8  # eight Runge-Kutta steps between table points: error below 1e-14
     h = step / parts
@@ -110,7 +110,7 @@ def _tabulate(sharpness: float, step: float) -> FloatArray:
     return table
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def curve_value(place: float, table: FloatArray, step: float) -> float:
     """Return u at a place s >= 0 of the loading curve, by Hermite interpolation."""
     position = place / step
@@ -127,7 +127,7 @@ def curve_value(place: float, table: FloatArray, step: float) -> float:
     return float(left) + t * (float(rise_left) + t * (float(bend) + t * float(twist)))
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def curve_place(u: float, table: FloatArray, step: float) -> float:
     """Return the place s on the loading curve at which it has the value 0 <= u < 1."""
     low, high = 0, len(table) - 1
@@ -149,7 +149,7 @@ def curve_place(u: float, table: FloatArray, step: float) -> float:
     return place
 
 
-@njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def move_slider(
     u: float, place: float, distance: float, table: FloatArray, step: float
 ) -> tuple[float, float]:

@@ -9,6 +9,8 @@ from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.keyence_words import LANGUAGES, MARK
 from jointbench.acquisition.surfaces import Areal, Profile
 
+DATE = "2025-03-21 11:43:55"
+"""That simulated maps were measured at, unless told otherwise."""
 ENCODINGS = {
     "English": "utf-8-sig",
     "German": "cp1252",
@@ -33,7 +35,7 @@ def write_keyence_csv(
     areal: Areal,
     path: Path,
     *,
-    date: str = "2025-03-21 11:43:55",
+    date: str = DATE,
     language: str = "English",
     delimiter: str = ",",
 ) -> None:

@@ -34,6 +34,29 @@ def result_files(patterns: Sequence[str]) -> tuple[Path, ...]:
     return _files(patterns, results=True)
 
 
+def archive_files(patterns: Sequence[str], endings: Sequence[str]) -> tuple[Path, ...]:
+    """Return sessions, results and files of other endings that patterns name.
+
+    Args:
+        patterns: as for `session_files`.
+        endings: of further names, for example ``(".ledger.jsonl",)``.
+
+    Raises:
+        UsageError: a pattern names nothing.
+    """
+    found: dict[Path, Path] = {}
+    for pattern in patterns:
+        here = sorted(_named(pattern, endings), key=lambda one: (one.is_symlink(), one))
+        if not here:
+            raise UsageError(
+                f"{shown(pattern)} names no session or results; quote the pattern, for "
+                "example 'archive/**/*.h5'"
+            )
+        for path in here:
+            found.setdefault(path.resolve(), path)
+    return tuple(sorted(found.values()))
+
+
 def _files(patterns: Sequence[str], *, results: bool) -> tuple[Path, ...]:
     found: dict[Path, Path] = {}
     for pattern in patterns:
@@ -60,7 +83,7 @@ def is_results_name(path: Path) -> bool:
     return path.name.endswith(RESULTS_SUFFIX)
 
 
-def _named(pattern: str) -> Iterator[Path]:
+def _named(pattern: str, endings: Sequence[str] = ()) -> Iterator[Path]:
     """Yield the files of a pattern; hidden folders, where stages are, stay out."""
     place = Path(pattern)
     if place.is_dir():
@@ -69,7 +92,8 @@ def _named(pattern: str) -> Iterator[Path]:
         yield place
         return
     for path in _matching(pattern):
-        if path.suffix.lower() in SESSION_SUFFIXES and not path.is_dir():
+        meant = path.suffix.lower() in SESSION_SUFFIXES
+        if (meant or path.name.endswith(tuple(endings))) and not path.is_dir():
             yield path
 
 

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from jointbench.acquisition.content_digest import new_signed_file
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.acquisition.netcdf import new_file, write_texts, write_variable
+from jointbench.acquisition.netcdf import write_texts, write_variable
 from jointbench.acquisition.text_files import named
 from jointbench.station.export_tables import Column, Table, write_mat
 from jointbench.station.ledger import escaped
@@ -172,7 +173,7 @@ def _number(value: float) -> str:
 
 def _write_netcdf(path: Path, rows: Sequence[Row]) -> None:
     title = "jointbench: all results of an archive, one row a number"
-    with new_file(path, schema=TABLE_SCHEMA, title=title, overwrite=True) as file:
+    with new_signed_file(path, schema=TABLE_SCHEMA, title=title) as file:
         for name, values in _columns(rows).items():
             if isinstance(values[0], str):
                 write_texts(file, name, values, "row", long_name=name)

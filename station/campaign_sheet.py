@@ -3,8 +3,11 @@
 
 from jointbench.simulators.campaign_design import NOMINAL_SIGMA, CampaignDesign
 
-TEMPLATE = """\
-# Two bodies, weighed, on a support and a joint known from their drawings.
+HEAD = "# Two bodies, weighed, on a support and a joint known from their drawings."
+"""How every sheet begins."""
+TEMPLATE = (
+    f"{HEAD}\n"
+    + """\
 # Serves `jointbench identify` and `jointbench gap` alike; sd is one sigma.
 [bodies.m1]
 mass = "{m1:.6g} kg"
@@ -37,6 +40,7 @@ joint = true
 output = "acceleration"
 preload_reference = "{preload:.6g} N"
 """
+)
 
 
 def sheet_text(design: CampaignDesign) -> str:

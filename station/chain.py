@@ -14,6 +14,7 @@ from jointbench.signal.hits import HitCriteria, find_hits
 from jointbench.signal.kalman import KalmanSettings, smooth_recording
 from jointbench.signal.lscf import Progress
 from jointbench.signal.modes import ModalResult, ModalSettings, identify_modes
+from jointbench.signal.one_thread import one_thread
 from jointbench.signal.oscillator_bank import repair_dropouts
 from jointbench.signal.windows import WindowRequest, requested_window
 
@@ -106,7 +107,13 @@ def run_chain(
     Raises:
         BadData: no usable hit, channels missing, or no mode above the noise.
     """
-    settings = settings or ChainSettings()
+    with one_thread():
+        return _run(recordings, settings or ChainSettings(), progress)
+
+
+def _run(
+    recordings: Sequence[Recording], settings: ChainSettings, progress: Progress | None
+) -> ModalChain:
     judged = judge_hits(recordings, settings)
     frf = chain_frf([smoothed(r, settings) for r in judged], settings)
     try:

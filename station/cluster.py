@@ -6,8 +6,11 @@ machine must be spoken to by TLS with a certificate on both sides, or not at all
 """
 
 import ipaddress
+import logging
+import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from contextlib import contextmanager
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,6 +23,11 @@ from jointbench.station.recipe import Recipe
 INSTALL = "pip install 'jointbench[cluster]'"
 _CONNECT = 20.0
 """How long a scheduler may take to answer [s]."""
+_LOGS = ("distributed", "distributed.client", "tornado.application", "asyncio")
+_LOOK = 2.0
+"""How often scheduler and workers are looked at while nothing finishes [s]."""
+_DESERTED = 60.0
+"""How long a scheduler may be without workers; a nanny needs some to start one [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,56 +116,160 @@ def run_cluster(
 
     Raises:
         UsageError: Dask is not installed, or the scheduler is not safe.
-        InstrumentError: the scheduler does not answer, or has no worker.
+        InstrumentError: the scheduler does not answer, has no worker, or either is
+            lost on the way; what was done until then is whole.
     """
     require_safe(settings)
     client = _connect(settings)
-    try:
-        yield from _outcomes(client, tasks, recipe, settings)
-    finally:
-        client.close()
-
-
-def _outcomes(
-    client: Any, tasks: Sequence[Task], recipe: Recipe, settings: ClusterSettings
-) -> Iterator[Outcome]:
-    as_completed = import_module("distributed").as_completed
-    pending: dict[Any, Sequence[Task]] = {}
-    tries: dict[Task, int] = {}
-    waiting = [
-        tasks[i : i + settings.batch] for i in range(0, len(tasks), settings.batch)
-    ]
-    for batch in waiting:
-        pending[_submit(client, batch, recipe, settings)] = batch
-    futures = as_completed(list(pending))
-    for future in futures:
-        batch = pending.pop(future)
+    with _own_words():
         try:
-            outcomes = future.result()
-        except Exception as error:  # noqa: BLE001 - whatever a cluster may raise
-            reason = f"the cluster gave it up: {error}"
-            outcomes = tuple(_given_up(task, reason) for task in batch)
-        again = []
-        for task, outcome in zip(batch, outcomes, strict=True):
-            tries[task] = tries.get(task, 0) + 1
-            passing = not (outcome.lasting or outcome.unwritable)
-            failed = outcome.state is State.FAILED
-            if failed and passing and tries[task] <= settings.retries:
-                again.append(task)
-            else:
-                yield outcome
-        if again:
-            fresh = _submit(client, again, recipe, settings)
-            pending[fresh] = again
-            futures.add(fresh)
+            yield from _outcomes(_Cluster(client, recipe, settings), tasks)
+        finally:
+            client.close()
 
 
-def _submit(
-    client: Any, batch: Sequence[Task], recipe: Recipe, settings: ClusterSettings
-) -> Any:
-    return client.submit(
-        process_batch, batch, recipe, retries=settings.retries, pure=False
-    )
+@contextmanager
+def _own_words() -> Iterator[None]:
+    """Keep Dask's account of a lost connection off the screen; ours is one line.
+
+    Dask sets its own levels when it is imported: enter this afterwards.
+    """
+    logs = [logging.getLogger(name) for name in _LOGS]
+    before = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for log, level in zip(logs, before, strict=True):
+            log.setLevel(level)
+
+
+@dataclass(slots=True)
+class _Cluster:
+    """A connection, and what is in work through it."""
+
+    client: Any
+    recipe: Recipe
+    settings: ClusterSettings
+    pending: dict[Any, Sequence[Task]] = field(default_factory=dict)
+    deserted: float | None = None
+
+    def submit(self, batch: Sequence[Task]) -> None:
+        """Send a batch.
+
+        Raises:
+            InstrumentError: the scheduler is gone.
+        """
+        self.require_scheduler()
+        retries = self.settings.retries
+        try:
+            future = self.client.submit(
+                process_batch, batch, self.recipe, retries=retries, pure=False
+            )
+        except Exception as error:
+            self.require_scheduler(error)
+            raise
+        self.pending[future] = batch
+
+    def finished(self) -> list[Any]:
+        """Wait for batches that are finished; none after a while without.
+
+        Raises:
+            InstrumentError: the scheduler is gone, or has had no worker for long.
+        """
+        distributed = import_module("distributed")
+        try:
+            done = distributed.wait(
+                list(self.pending), timeout=_LOOK, return_when="FIRST_COMPLETED"
+            ).done
+        except TimeoutError:
+            done = set()
+        except Exception as error:
+            self.require_scheduler(error)
+            # A connection that came back has let go of what was asked through it.
+            done = {future for future in self.pending if future.done()}
+            if not done:
+                raise
+        self.require_scheduler()
+        if not done:
+            self._require_workers()
+        return [future for future in self.pending if future in done]
+
+    def require_scheduler(self, cause: Exception | None = None) -> None:
+        """Raise `InstrumentError` if the connection is not what it was."""
+        if self.client.status != "running":
+            raise self._lost(
+                "stopped answering", "start it and its workers again"
+            ) from cause
+
+    def _require_workers(self) -> None:
+        """Raise `InstrumentError` if there has been no worker for long.
+
+        A worker that is started again by its nanny is missed for a few seconds.
+        """
+        try:
+            alone = not self.client.scheduler_info()["workers"]
+        except Exception as error:
+            self.require_scheduler(error)
+            raise
+        now = time.monotonic()
+        if not alone:
+            self.deserted = None
+        elif self.deserted is None:
+            self.deserted = now
+        elif now - self.deserted > _DESERTED:
+            raise self._lost(f"has had no worker for {_DESERTED:g} s", "start workers")
+
+    def _lost(self, what: str, way_out: str) -> InstrumentError:
+        return InstrumentError(
+            f"scheduler {self.settings.scheduler!r} {what}; results until then are "
+            f"whole: {way_out}, then type the same command to go on"
+        )
+
+
+def _outcomes(cluster: _Cluster, tasks: Sequence[Task]) -> Iterator[Outcome]:
+    size = cluster.settings.batch
+    tries: dict[Task, int] = {}
+    for first in range(0, len(tasks), size):
+        cluster.submit(tasks[first : first + size])
+    while cluster.pending:
+        for future in cluster.finished():
+            again = []
+            batch = cluster.pending.pop(future)
+            for task, outcome in zip(
+                batch, _result(cluster, future, batch), strict=True
+            ):
+                tries[task] = tries.get(task, 0) + 1
+                if _may_pass(outcome) and tries[task] <= cluster.settings.retries:
+                    again.append(task)
+                else:
+                    yield outcome
+            if again:
+                cluster.submit(again)
+
+
+def _result(
+    cluster: _Cluster, future: Any, batch: Sequence[Task]
+) -> tuple[Outcome, ...]:
+    """Return what became of a batch; a cluster that is gone gave nothing up.
+
+    Raises:
+        InstrumentError: the scheduler is gone, and with it the answer.
+    """
+    try:
+        outcomes: tuple[Outcome, ...] = future.result(timeout=_CONNECT)
+    except Exception as error:  # noqa: BLE001 - whatever a cluster may raise
+        cluster.require_scheduler(error)
+        reason = f"the cluster gave it up: {error}"
+        return tuple(_given_up(task, reason) for task in batch)
+    return outcomes
+
+
+def _may_pass(outcome: Outcome) -> bool:
+    """Tell a failure that another try may mend."""
+    lasting = outcome.lasting or outcome.unwritable
+    return outcome.state is State.FAILED and not lasting
 
 
 def _given_up(task: Task, reason: str) -> Outcome:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
+from jointbench.acquisition.errors import BadData
 from jointbench.station.archive_files import result_files
 from jointbench.station.archive_table import left_out_words, read_results
 from jointbench.station.compare_results import (
@@ -34,8 +35,10 @@ def run_compare(
     check_outputs([*paths[0], *paths[1]], [json_target])
     with working("reading results"):
         (first, refused), (second, also) = (read_results(group) for group in paths)
-    found = compare_results(first, second)
     left_out = [*refused, *also]
+    if left_out and not (first and second):  # nothing is left to compare
+        raise BadData(left_out_words(*left_out[0]))
+    found = compare_results(first, second)
     screen = console(json_target)
     for line in _head(found):
         screen.print(line, soft_wrap=True)

@@ -5,9 +5,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.records import Verdict
 from jointbench.acquisition.session_file import read_session, write_session
+from jointbench.acquisition.session_replace import require_replaceable
 from jointbench.analysis.identification import identification_json
+from jointbench.simulators.surface_files import DATE
 from jointbench.station.bench_model import BenchModel
 from jointbench.station.contact import contact_json
 from jointbench.station.demo_bench import DemoVisit, visit_bench
@@ -25,7 +28,12 @@ from jointbench.station.modal import modal_json
 from jointbench.station.modal_notes import modal_notes
 from jointbench.station.modal_show import show_modal
 from jointbench.station.output import console, table, working, write_json
-from jointbench.station.outputs import check_folder, check_outputs, write_text
+from jointbench.station.outputs import (
+    check_folder,
+    check_outputs,
+    require_mark,
+    write_text,
+)
 from jointbench.station.report_command import compose, joint_link
 from jointbench.station.report_joint import side_by_side
 from jointbench.station.report_page import DataTable, Section, write_report
@@ -89,6 +97,7 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
         0, or 5 if an estimate misses the truth by more than the demo allows.
     """
     check_folder(out, FILES)
+    require_demo(out)
     check_outputs([], [json_target])
     out.mkdir(parents=True, exist_ok=True)
     screen = console(json_target)
@@ -112,6 +121,22 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     write_json(json_target, summary)
     screen.print(f"\nreport: {out / 'report.html'}   summary: {out / 'summary.json'}")
     return 0 if all(c.passed for c in comparisons) else EXIT_QUALITY
+
+
+def require_demo(out: Path) -> None:
+    """Refuse a folder in which files of the demo's names are somebody's own.
+
+    Raises:
+        UsageError: a session in it is none, is being recorded, or is of a real bench;
+            a model or a table of heights is none of the demo's.
+    """
+    require_mark(out / "bench.toml", MODEL_FILE.partition("\n")[0].encode(), "demo")
+    for name in ("face-a.csv", "face-b.csv"):
+        require_mark(out / name, DATE.encode(), "demo")
+    for path in (out / "session.h5", out / GAP_FILES[0]):
+        require_replaceable(path)
+        if path.exists() and not read_session(path).simulated:
+            raise UsageError(f"'{path}' was made by no demo; name another folder")
 
 
 def _write_model(path: Path, visit: DemoVisit) -> Path:

@@ -4,12 +4,14 @@
 import sys
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 
 import typer
 from typer.exceptions import TyperException
 
 from jointbench.acquisition.errors import InstrumentError, JointbenchError, UsageError
 from jointbench.acquisition.text_files import visible
+from jointbench.station.measure_interrupt import interruptible
 
 EXIT_INTERNAL = 1
 EXIT_USAGE = 2
@@ -21,13 +23,14 @@ EXIT_INTERRUPTED = 130
 
 def exit_code(command: Callable[..., object], *, debug: bool) -> int:
     """Call `command` and turn what it raises into the contract's exit code."""
-    if debug:
-        result = command(standalone_mode=False)
-        return result if isinstance(result, int) else 0
-    with warnings.catch_warnings():
-        # What a warning of a library means to the user is said by our own checks.
-        warnings.simplefilter("ignore")
-        return _quiet_exit_code(command)
+    with interruptible():
+        if debug:
+            result = command(standalone_mode=False)
+            return result if isinstance(result, int) else 0
+        with warnings.catch_warnings():
+            # What a warning of a library means to the user is said by our own checks.
+            warnings.simplefilter("ignore")
+            return _quiet_exit_code(command)
 
 
 def _quiet_exit_code(command: Callable[..., object]) -> int:
@@ -65,5 +68,6 @@ def code_of(error: JointbenchError) -> int:
 
 def _fail(message: str, code: int) -> int:
     line = visible(" ".join(message.split()))
-    sys.stderr.write(f"jointbench: error: {line}\n")
+    with suppress(OSError):  # the terminal may be gone
+        sys.stderr.write(f"jointbench: error: {line}\n")
     return code

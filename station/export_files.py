@@ -33,12 +33,19 @@ from jointbench.station.export_tables import (
 )
 from jointbench.station.export_universal import universal_tables
 from jointbench.station.output import console, write_json
-from jointbench.station.outputs import check_outputs, make_folder, write_text
+from jointbench.station.outputs import (
+    check_outputs,
+    make_folder,
+    require_mark,
+    write_text,
+)
 from jointbench.station.results_read import is_results
 from jointbench.station.universal_file import write_universal
 from jointbench.station.universal_samples import write_universal_samples
 
 KINDS = ("csv", "mat", "uff")
+UNIVERSAL_MARK = b"jointbench"
+"""What the first lines of a universal file of ours hold."""
 
 
 def run_export(
@@ -56,7 +63,8 @@ def run_export(
         The files written.
 
     Raises:
-        UsageError: another kind, or nothing in the file that the format takes.
+        UsageError: another kind, nothing in the file that the format takes, or a file
+            in the way that no export made.
         BadData: the file cannot be read.
     """
     if kind not in KINDS:
@@ -109,6 +117,7 @@ def _universal_session(file: Path, target: Path) -> Iterator[Path]:
     if not session.recordings:
         raise UsageError(f"'{file}' holds no samples for a universal file; use csv")
     path = target.with_name(f"{target.name}.uff")
+    require_mark(path, UNIVERSAL_MARK, "export")
     write_universal_samples(path, session)
     yield path
 
@@ -121,6 +130,7 @@ def _universal_results(file: Path, target: Path) -> Iterator[Path]:
     for name, frf, modes in found:
         own = f".{plain_name(name)}" if len(found) > 1 else ""
         path = target.with_name(f"{target.name}{own}.uff")
+        require_mark(path, UNIVERSAL_MARK, "export")
         write_universal(path, frf, modes)
         yield path
 

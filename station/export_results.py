@@ -9,7 +9,6 @@ import h5py
 import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
-from jointbench.acquisition.guards import open_guarded
 from jointbench.acquisition.netcdf_read import (
     dimension_names,
     is_dimension_only,
@@ -19,9 +18,9 @@ from jointbench.acquisition.netcdf_read import (
     read_flags,
     read_texts,
 )
-from jointbench.acquisition.session_file import damage_named
 from jointbench.signal.frf import Frf, FrfKind
 from jointbench.station.export_tables import Column, Table
+from jointbench.station.results_read import open_result
 
 JSON_GROUPS = ("recipe", "pages/contact", "pages/joint", "pages/gap")
 """Groups that hold JSON, which goes out as it is."""
@@ -48,7 +47,7 @@ def result_tables(path: Path) -> list[Table]:
     Raises:
         BadData: it is damaged, or asks for more than a result would.
     """
-    with open_guarded(path) as file, damage_named(path):
+    with open_result(path) as file:
         groups = [file, *_groups_below(file)]
         tables = [table for group in groups if (table := _table(group)).columns]
         facts = _facts(groups)
@@ -57,7 +56,7 @@ def result_tables(path: Path) -> list[Table]:
 
 def result_texts(path: Path) -> dict[str, str]:
     """Return the recipe and the pages of contact, joint and gap: JSON by its name."""
-    with open_guarded(path) as file, damage_named(path):
+    with open_result(path) as file:
         return {
             name.rpartition("/")[2]: "".join(read_texts(file[f"{name}/text"]))
             for name in JSON_GROUPS
@@ -71,7 +70,7 @@ def result_modes(path: Path) -> list[tuple[str, Frf, StoredModes]]:
     Raises:
         BadData: it is damaged, or asks for more than a result would.
     """
-    with open_guarded(path) as file, damage_named(path):
+    with open_result(path) as file:
         return [
             (_name(group), _frf(group["frf"]), _modes(group["modes"]))
             for group in [file, *_groups_below(file)]

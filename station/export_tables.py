@@ -6,6 +6,7 @@ others in their heads; in MAT it stays an array.
 """
 
 import csv
+import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -16,9 +17,11 @@ from typing import Any
 import numpy as np
 
 from jointbench.station.ledger import escaped
-from jointbench.station.outputs import whole_file
+from jointbench.station.outputs import require_mark, whole_file
 
 _LONGEST_NAME = 63  # of a variable in MATLAB
+_MAT_WORDS = b"MATLAB 5.0 MAT-file, written by jointbench"
+_MAT_TEXT = 116  # bytes of words in front of a MAT file
 _ALONG = ("frequency", "mode")
 Array = np.ndarray[Any, Any]
 
@@ -107,9 +110,12 @@ def _flat(
 
 
 def _write_rows(path: Path, columns: Mapping[str, Array]) -> None:
+    heads = io.StringIO()
+    csv.writer(heads).writerow([escaped(head) for head in columns])
+    require_mark(path, heads.getvalue().encode(), "export of the same columns")
     with whole_file(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+        file.write(heads.getvalue())
         writer = csv.writer(file)
-        writer.writerow([escaped(head) for head in columns])
         for row in zip(*(v.tolist() for v in columns.values()), strict=True):
             writer.writerow([_cell(value) for value in row])
 
@@ -127,8 +133,13 @@ def write_mat(path: Path, tables: Sequence[Table]) -> None:
     Args:
         path: to write.
         tables: their columns become variables, units others called ``*_unit``.
+
+    Raises:
+        UsageError: there is a file that this function did not write.
     """
     import scipy.io
+
+    require_mark(path, _MAT_WORDS, "export")
 
     content: dict[str, Array] = {}
     for table in tables:
@@ -143,6 +154,8 @@ def write_mat(path: Path, tables: Sequence[Table]) -> None:
         scipy.io.savemat(
             str(part), content, appendmat=False, do_compression=True, oned_as="row"
         )
+        with part.open("r+b") as file:  # by this one is known from a file of others
+            file.write(_MAT_WORDS.ljust(_MAT_TEXT))
 
 
 def _rows_of_text(values: Array) -> Array:

@@ -41,7 +41,11 @@ def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
         found: the diagnosis.
         json_target: where the JSON goes; ``-`` moves the words to standard error.
     """
-    screen = console(json_target)
+    show_on(console(json_target), found)
+
+
+def show_on(screen: Console, found: Diagnosis) -> None:
+    """Print the same on a screen."""
     screen.print(f"verdict: {found.verdict.value}", style="bold")
     _say(screen, "", f"{headline(found)}.")
     _say(screen, "", found.reason)

@@ -143,11 +143,8 @@ def sure(confidence: float) -> str:
 
 def next_step(found: Diagnosis) -> str:
     """Return what to do next."""
-    advice = found.exhibit.advice if found.exhibit is not None else ""
-    if found.verdict is Finding.UNKNOWN and advice:
-        return advice
-    if found.verdict is Finding.NAMED and found.experiment:
-        return f"use it; to be surer still: {found.experiment}"
+    if found.verdict is Finding.NAMED:
+        return f"use it; {found.experiment}"
     return found.experiment
 
 

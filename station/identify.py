@@ -23,8 +23,9 @@ from jointbench.signal.modes import ModalSettings
 from jointbench.station.bench_model import BenchModel, lumped_model
 from jointbench.station.chain import ChainSettings, run_chain
 from jointbench.station.inputs import read_recordings
+from jointbench.station.joint_text import WHAT_IS_SHOWN, parameter_text
 from jointbench.station.modal import parse_band
-from jointbench.station.output import console, table, with_sd, working, write_json
+from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.toml_file import read_toml
 
@@ -180,13 +181,13 @@ def show_joint(result: Identification, json_target: str | None) -> None:
     rows = [
         (
             one.name,
-            with_sd(one.value, one.sd),
+            parameter_text(one),
             one.unit,
             "yes" if one.identifiable else "no",
         )
         for one in result.parameters
     ]
-    title = f"Links from the modes: {result.verdict.value} (± one standard deviation)"
+    title = f"Links from the modes: {result.verdict.value} {WHAT_IS_SHOWN}"
     screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
     reasons = [*result.reasons, *(p.reason for p in result.parameters if p.reason)]
     for reason in dict.fromkeys(reasons):

@@ -19,7 +19,8 @@ from jointbench.analysis.structures.reduced import ReducedModel
 from jointbench.analysis.structures.reduction import reduce_structure
 from jointbench.analysis.structures.sensors import Sensor, sensor_rows
 from jointbench.analysis.structures.structure import Structure
-from jointbench.station.output import console, table, with_sd, working, write_json
+from jointbench.station.joint_text import WHAT_IS_SHOWN, parameter_text
+from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.structure_contact import joint_of, theory_surface
 from jointbench.station.structure_model import (
@@ -174,13 +175,13 @@ def show_structure(result: StructureIdentification, json_target: str | None) -> 
     rows = [
         (
             one.name,
-            with_sd(one.value, one.sd),
+            parameter_text(one),
             one.unit,
             "yes" if one.identifiable else "no",
         )
         for one in result.parameters
     ]
-    title = f"Joints: {result.verdict.value} (± one standard deviation)"
+    title = f"Joints: {result.verdict.value} {WHAT_IS_SHOWN}"
     screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
     for reason in result.reasons:
         screen.print(f"  {reason}", markup=False)

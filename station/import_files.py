@@ -10,6 +10,7 @@ from jointbench.acquisition.height_facts import cautions
 from jointbench.acquisition.records import Channel, Recording
 from jointbench.acquisition.session import JointSetup, Session, new_session
 from jointbench.acquisition.session_file import write_session
+from jointbench.acquisition.session_replace import require_replaceable
 from jointbench.acquisition.surfaces import Surface
 from jointbench.signal.data_limits import time_scale_words
 from jointbench.station.inputs import parse_preload, read_foreign
@@ -43,10 +44,15 @@ def run_import(
         json_target: where the JSON goes.
 
     Raises:
+        UsageError: the session is there already, is being recorded, or what is there
+            is no session.
         BadData: a file cannot be read; nothing is written then.
     """
     check_outputs([*files, out], [json_target])
-    check_outputs(files, [] if out.exists() else [out])
+    if out.exists() and overwrite:
+        require_replaceable(out)
+    else:
+        check_outputs(files, [] if out.exists() else [out])
     if out.resolve() in {path.resolve() for path in files}:
         raise UsageError(f"'{out}' is an input; write the session to another file")
     joint = None if preload is None else JointSetup(preload=parse_preload(preload))

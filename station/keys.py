@@ -3,7 +3,7 @@
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 Poll = Callable[[], str]
 """Returns the key pressed since the last call, empty where there was none."""
@@ -31,8 +31,11 @@ else:
         try:
             yield _pressed
         finally:
-            termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+            with suppress(termios.error):  # a terminal that was closed
+                termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
 
     def _pressed() -> str:
         ready, _, _ = select.select([sys.stdin], [], [], 0)
-        return sys.stdin.read(1) if ready else ""
+        with suppress(OSError):  # a terminal that was closed is always ready
+            return sys.stdin.read(1) if ready else ""
+        return ""

@@ -2,8 +2,9 @@
 """The ledger of a reprocessing run: one JSON line a file, and the quarantine list.
 
 What counts for resuming are the result files themselves. The ledger tells people what
-happened, and remembers which files were refused, so that they are not read again. A
-line that a crash cut short is passed over.
+happened, and remembers what each file was when it was last met, so that it is not read
+again while size and time stay the same. Each line ends with a digest of itself; one
+that does not match, or that a crash cut short, is passed over.
 """
 
 import csv
@@ -15,10 +16,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from hashlib import sha256
 from io import RawIOBase
 from pathlib import Path
 from typing import Any
 
+from jointbench.acquisition.content_digest import Seal
 from jointbench.acquisition.errors import UsageError
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_lock import drop_lock, hold_lock
@@ -29,7 +32,9 @@ from jointbench.station.process_file import Outcome, State
 
 LEDGER_SCHEMA = "jointbench-ledger/1"
 MOST_BYTES = 2**30
-"""Two million files' lines; a longer ledger is none [bytes]."""
+"""A million files' lines; a longer ledger is none [bytes]."""
+CHECK = "check"
+"""Key of a line's digest: the first 16 characters of the SHA-256 of the rest."""
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
@@ -40,20 +45,22 @@ class Ledger:
     Attributes:
         path: of its file.
         refused: key and reason of files that were refused for their content, by path.
+        last: last line of each file, by its path.
     """
 
     path: Path
     refused: dict[str, tuple[str, str]] = field(default_factory=dict)
+    last: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     file: RawIOBase | None = None
 
-    def write(self, line: Mapping[str, object]) -> None:
+    def write(self, line: dict[str, object]) -> None:
         """Append a line.
 
         Raises:
             UsageError: it cannot be written.
         """
         assert self.file is not None
-        data = (json.dumps(line) + "\n").encode()
+        data = (json.dumps(line | {CHECK: _check(line)}) + "\n").encode()
         try:
             whole = self.file.write(data) == len(data)
         except OSError as error:
@@ -95,7 +102,8 @@ def open_ledger(path: Path, run: Mapping[str, object]) -> Iterator[Ledger]:
             "give --ledger another name"
         ) from error
     try:
-        ledger = Ledger(path, _refused(read_ledger(path)))
+        last = _last(read_ledger(path))
+        ledger = Ledger(path, _refused(last), last)
         # Unbuffered: what a full disk refused is not tried again on closing.
         with path.open("ab", buffering=0) as file:
             ledger.file = file
@@ -122,6 +130,39 @@ def read_ledger(path: Path) -> list[dict[str, Any]]:
     Raises:
         UsageError: the file is no ledger.
     """
+    return [line for line in _lines(path) if is_whole(line)]
+
+
+def is_whole(line: Mapping[str, Any]) -> bool:
+    """Tell whether a line is what its digest says; one without is taken as it is."""
+    return CHECK not in line or line[CHECK] == _check(line)
+
+
+def ledger_seal(path: Path) -> tuple[Seal, int]:
+    """Return what the digests of a ledger say, and how many lines are rotten.
+
+    Raises:
+        UsageError: the file is no ledger.
+    """
+    lines = _lines(path)
+    rotten = sum(not is_whole(line) for line in lines)
+    if rotten:
+        return Seal.ROTTEN, rotten
+    signed = all(CHECK in line for line in lines)
+    return (Seal.WHOLE if signed else Seal.UNSIGNED), 0
+
+
+def _check(line: Mapping[str, Any]) -> str:
+    rest = {key: value for key, value in line.items() if key != CHECK}
+    return sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _lines(path: Path) -> list[dict[str, Any]]:
+    """Return all lines that are JSON objects.
+
+    Raises:
+        UsageError: the file is no ledger.
+    """
     if not path.exists():
         return []
     lines = []
@@ -140,17 +181,18 @@ def read_ledger(path: Path) -> list[dict[str, Any]]:
     return lines
 
 
-def _refused(lines: Sequence[Mapping[str, Any]]) -> dict[str, tuple[str, str]]:
+def _last(lines: Sequence[Mapping[str, Any]]) -> dict[str, Mapping[str, Any]]:
+    """Return the last line of each file, by its path."""
+    return {str(one.get("file")): one for one in lines if one.get("kind") == "file"}
+
+
+def _refused(last: Mapping[str, Mapping[str, Any]]) -> dict[str, tuple[str, str]]:
     """Return the files whose last line says that their content was refused."""
-    found: dict[str, tuple[str, str]] = {}
-    for line in lines:
-        if line.get("kind") != "file":
-            continue
-        name = str(line.get("file"))
-        found.pop(name, None)
-        if line.get("state") == State.FAILED and line.get("lasting"):
-            found[name] = str(line.get("key", "")), str(line.get("reason", ""))
-    return found
+    return {
+        name: (str(line.get("key", "")), str(line.get("reason", "")))
+        for name, line in last.items()
+        if line.get("state") == State.FAILED and line.get("lasting")
+    }
 
 
 def _cut_short(path: Path) -> bool:

@@ -86,14 +86,15 @@ def record_command(
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
-) -> None:
+) -> int:
     """Record everything a bench delivers into a session file; hits are judged.
 
     Example: jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out s.h5
     """
     from jointbench.station.record_command import run_record
 
-    run_record(source, out, overwrite=force, json_target=json)
+    written = run_record(source, out, overwrite=force, json_target=json)
+    return 0 if written.whole else EXIT_QUALITY
 
 
 @app.command(name="import")
@@ -242,16 +243,27 @@ def report_command(
     ] = None,
     model: Model = None,
     geometry: GeometryFile = None,
+    results: Annotated[
+        Path | None,
+        typer.Option(help="Results to show; those of `modal` beside the session."),
+    ] = None,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
-    """Write one offline HTML page about a session.
+    """Write one offline HTML page about a session, with the results that exist.
 
     Example: jointbench report session.h5 --out report.html
     """
     from jointbench.station.report_command import run_report
 
-    run_report(session, out=out, model=model, geometry=geometry, json_target=json)
+    run_report(
+        session,
+        out=out,
+        model=model,
+        geometry=geometry,
+        results=results,
+        json_target=json,
+    )
 
 
 @app.command(name="inspect")
@@ -271,17 +283,19 @@ def inspect_command(
 
 @app.command(name="verify")
 def verify_command(
-    file: Annotated[Path, typer.Argument(help="Session file.")],
+    files: Annotated[
+        list[str], typer.Argument(help="Sessions, results, folders, quoted patterns.")
+    ],
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Read a session through, checksums and continuity included.
+    """Read sessions and results through: checksums, continuity, digests of content.
 
-    Example: jointbench verify session.h5
+    Example: jointbench verify session.h5, or jointbench verify archive/
     """
-    from jointbench.station.verify import run_verify
+    from jointbench.station.verify_archive import verify_all
 
-    return 0 if run_verify(file, json_target=json) else EXIT_QUALITY
+    return 0 if verify_all(files, json_target=json) else EXIT_QUALITY
 
 
 @app.command(name="recover")

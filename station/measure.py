@@ -5,7 +5,7 @@ import uuid
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -17,11 +17,11 @@ from jointbench.acquisition.ni.stream import Counters, NiStream, StreamSettings
 from jointbench.acquisition.records import Channel, Hit, Verdict
 from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_finish import finish_live
-from jointbench.acquisition.session_live import LiveSession
+from jointbench.acquisition.session_live import LiveSession, channel_rows
 from jointbench.acquisition.session_lock import is_held
 from jointbench.station.measure_bench import Bench
 from jointbench.station.measure_bolts import BoltWatch
-from jointbench.station.measure_interrupt import patient_interrupt
+from jointbench.station.measure_interrupt import patient_interrupt, restless
 from jointbench.station.measure_plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure_record import Record
 from jointbench.station.measure_screen import watching
@@ -29,9 +29,10 @@ from jointbench.station.measure_session import MeasureSession
 from jointbench.station.measure_source import OpenChassis, open_chassis
 from jointbench.station.measure_teds import NO_TRIGGER, by_device, teds_warnings
 from jointbench.station.measure_watch import Watcher
-from jointbench.station.output import console, table, write_json
+from jointbench.station.output import lasting_console, table, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.serial_port import line_name
+from jointbench.station.session_place import Place, check_session_name, session_place
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +40,8 @@ class Measured:
     """What a session came to.
 
     Attributes:
-        path: of the session file.
+        path: of the session file; beside the one asked for where an earlier session
+            keeps its name.
         record: hits, gaps, proposals, checks.
         counters: what the device made against what was stored.
         planned: conditions of the plan.
@@ -72,11 +74,12 @@ def run_measure(
         plan_file: TOML.
         out: session file to write.
         source: URL of the chassis; None for the plan's own.
-        overwrite: replace a session that is there.
+        overwrite: replace a session that is there, once the new one is whole.
         json_target: where the JSON goes.
 
     Raises:
-        UsageError: there is no source, or the session is there already.
+        UsageError: there is no source, the session is there already, is being
+            recorded, or what is there is no session.
         InstrumentError: the chassis refuses or does not come back; what was recorded
             until then is in the session file.
     """
@@ -86,13 +89,30 @@ def run_measure(
         raise UsageError(
             "no source: add --source ni:, ni+grpc://host:31763 or sim:plates?seed=1"
         )
-    _prepare_out(out, plan_file, overwrite=overwrite, json_target=json_target)
-    screen = console(json_target)
-    with open_chassis(url) as opened, watching(screen) as watcher:
-        measured = measure(plan, opened, out, watcher)
-    _show(measured, screen)
-    write_json(json_target, _summary(measured))
+    check_session_name(out)
+    check_outputs([plan_file, out], [json_target])
+    screen = lasting_console(json_target)
+    with session_place(out, overwrite=overwrite) as place:
+        with _told_where(place, screen), open_chassis(url) as opened:
+            with watching(screen) as watcher:
+                measured = measure(plan, opened, place.own, watcher)
+        measured = replace(measured, path=place.settle(whole=measured.whole))
+        write_json(json_target, _summary(measured))
+        _show(measured, screen)
+        if measured.path != out:
+            screen.print(place.stays, soft_wrap=True)
     return measured
+
+
+@contextmanager
+def _told_where(place: Place, screen: Console) -> Iterator[None]:
+    """Where something goes wrong, say which file holds what was recorded."""
+    try:
+        yield
+    except BaseException:
+        if place.stays and place.own.exists():
+            screen.print(place.stays, soft_wrap=True)
+        raise
 
 
 def measure(
@@ -104,32 +124,35 @@ def measure(
         InstrumentError: the chassis refuses or does not come back, or the disk is
             full; the file holds what was recorded until then.
     """
-    acquisition = plan.acquisition
     warnings = _warnings(plan, opened)
-    stream = NiStream(
-        opened.chassis,
-        plan.sensors,
-        StreamSettings(
-            sample_rate=acquisition.sample_rate,
-            block=round(acquisition.block * acquisition.sample_rate),
-            buffer=acquisition.buffer,
-            patience=acquisition.patience,
-        ),
-    )
+    record = Record()
+    stream = NiStream(opened.chassis, plan.sensors, _stream_settings(plan, record))
     stream.start()
-    try:
-        record = _record(plan, opened, out, (stream, watcher, warnings))
-    except BaseException:
+    with patient_interrupt(record):
+        try:
+            _record(plan, opened, out, (stream, watcher, warnings, record))
+        except BaseException:
+            stream.close()
+            # What went wrong first is what the operator has to know.
+            with suppress(JointbenchError):
+                if out.exists() and not is_held(out):
+                    finish_session(out)
+            raise
         stream.close()
-        # What went wrong first is what the operator has to know.
-        with suppress(JointbenchError):
-            if out.exists() and not is_held(out):
-                finish_session(out)
-        raise
-    stream.close()
-    finish_session(out)
+        finish_session(out)
     return Measured(
         out, record, stream.counters, len(conditions(plan)), stream.sample_rate
+    )
+
+
+def _stream_settings(plan: MeasurePlan, record: Record) -> StreamSettings:
+    acquisition = plan.acquisition
+    return StreamSettings(
+        sample_rate=acquisition.sample_rate,
+        block=round(acquisition.block * acquisition.sample_rate),
+        buffer=acquisition.buffer,
+        patience=acquisition.patience,
+        sleep=restless(record),
     )
 
 
@@ -154,9 +177,9 @@ def _record(
     plan: MeasurePlan,
     opened: OpenChassis,
     out: Path,
-    running: tuple[NiStream, Watcher, tuple[str, ...]],
-) -> Record:
-    stream, watcher, warnings = running
+    running: tuple[NiStream, Watcher, tuple[str, ...], Record],
+) -> None:
+    stream, watcher, warnings, record = running
     channels = table_channels(plan.sensors)
     meta = _meta(plan, opened, channels, stream.sample_rate)
     block = stream.settings.block
@@ -174,20 +197,19 @@ def _record(
                 watcher=watcher,
                 bolts=bolts,
                 hardware_trigger=by_device(plan, opened.chassis),
-            )
+            ),
+            record,
         )
         try:
             watcher.begin(channels, stream.sample_rate)
             for words in warnings:
                 live.log({"kind": "warning", "words": words})
                 watcher.say(f"warning: {words}")
-            with patient_interrupt(session.record):
-                session.run()
+            session.run()
         except KeyboardInterrupt:
-            session.record.interrupted = True
+            record.interrupted = True
         finally:
-            _close_the_books(live, stream, session.record)
-    return session.record
+            _close_the_books(live, stream, record)
 
 
 @contextmanager
@@ -251,33 +273,8 @@ def _meta(
         "sample_rate": rate,
         "torque": torques[0] if len(torques) == 1 else None,
         "plan": plan.text,
-        "channels": [
-            {
-                "name": channel.name,
-                "quantity": channel.quantity.value,
-                "point": channel.point,
-                "direction": channel.direction,
-                "unit": channel.unit,
-                "sensitivity": channel.sensitivity,
-                "range": channel.range,
-            }
-            for channel in channels
-        ],
+        "channels": channel_rows(channels),
     }
-
-
-def _prepare_out(
-    out: Path, plan_file: Path, *, overwrite: bool, json_target: str | None
-) -> None:
-    if out.suffix.lower() not in {".h5", ".hdf5"}:
-        raise UsageError(f"'{out}' is no session file; name it *.h5")
-    check_outputs([plan_file], [json_target])
-    if out.exists() and not overwrite:
-        raise UsageError(f"'{out}' is there already; add --force to overwrite it")
-    if not out.exists():
-        check_outputs([plan_file], [out])
-    elif out.is_file():
-        out.unlink()
 
 
 def _show(measured: Measured, screen: Console) -> None:

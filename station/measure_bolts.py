@@ -22,6 +22,9 @@ BEGUN = 0.3
 """Share of the target from which a bolt counts as being tightened [-]."""
 RELEASED = 0.5
 """Share of its largest reading below which a bolt counts as done [-]."""
+NONSENSE = 10.0
+"""Share of the target beyond which a reading is none: bolts break before [-]."""
+_SILENCE = 1.0  # [s] after which a tester does not answer; it takes milliseconds
 _RETRY = 0.2  # [s] between attempts to open a line that broke
 
 
@@ -150,7 +153,7 @@ class BoltWatch:
         number, tester = at
         hold, until = PeakHold(target), self.now() + self.wait
         while self.now() < until:
-            reading = tester.read(watcher)
+            reading = tester.read(watcher, NONSENSE * target)
             done = None if reading is None else hold.feed(reading)
             if done is not None:
                 return done
@@ -182,12 +185,19 @@ class Tester:
     trouble: str = ""
     _line: SerialLine | None = None
 
-    def read(self, watcher: Watcher) -> Reading | None:
-        """Return what it shows, None where it cannot be read, which is said once."""
+    def read(self, watcher: Watcher, most: float) -> Reading | None:
+        """Return what it shows, None where it cannot be read, which is said once.
+
+        Args:
+            watcher: is told.
+            most: beyond which no reading is believed [N m].
+        """
         try:
             if self._line is None:
-                self._line = SerialLine(self.watch.line, baud=self.watch.table.baud)
-            reading = _torque(self._line)
+                self._line = SerialLine(
+                    self.watch.line, baud=self.watch.table.baud, timeout=_SILENCE
+                )
+            reading = _torque(self._line, most)
         except (InstrumentError, FormatError) as error:
             if str(error) != self.trouble:
                 watcher.say(f"torque tester: {error}; waiting for it")
@@ -206,12 +216,17 @@ class Tester:
             self._line = None
 
 
-def _torque(line: SerialLine) -> Reading:
+def _torque(line: SerialLine, most: float) -> Reading:
     reading = read_gauge(line)
     if reading.kind != "torque":
         raise FormatError(
             f"the gauge answers {reading.raw!r}, a {reading.kind}; a torque is "
             "needed, plug in the torque tester or set its unit"
+        )
+    if abs(reading.value) > most:
+        raise FormatError(
+            f"the gauge answers {reading.raw!r}, {NONSENSE:g} times the target is "
+            f"{most:g} N m; check its unit and the plan's torque"
         )
     return reading
 

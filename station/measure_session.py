@@ -20,8 +20,8 @@ from jointbench.station.measure_trigger import TriggerWatch
 class MeasureSession:
     """One session; `run` returns when the plan is done or the operator ends it."""
 
-    def __init__(self, bench: Bench) -> None:
-        self.record = Record()
+    def __init__(self, bench: Bench, record: Record) -> None:
+        self.record = record
         self._bench = bench
         self._trigger = TriggerWatch(
             bench.plan.hits, bench.channels, bench.stream.sample_rate

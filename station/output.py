@@ -7,9 +7,10 @@ Tables go to standard output, unless the JSON goes there; progress to standard e
 import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from math import floor, isfinite, log10
 from pathlib import Path
+from typing import IO, cast
 
 from rich.console import Console, Group, RenderableType
 from rich.progress import Progress
@@ -31,6 +32,38 @@ def console(json_target: str | None = None) -> Console:
     if not screen.is_terminal:
         screen.width = WIDTH_WITHOUT_TERMINAL
     return screen
+
+
+def lasting_console(json_target: str | None = None) -> Console:
+    """Return a console that a closed terminal or pipe does not break.
+
+    A measurement goes on, and is finished, where nobody reads any more.
+    """
+    screen = console(json_target)
+    screen.file = cast("IO[str]", LastingText(screen.file))
+    return screen
+
+
+class LastingText:
+    """A text stream that takes what it is given even where that goes nowhere."""
+
+    def __init__(self, stream: IO[str]) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> object:
+        """Return what the stream has."""
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        """Write; what nobody takes is dropped."""
+        with suppress(OSError):
+            return self._stream.write(text)
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush, if there is somewhere to flush to."""
+        with suppress(OSError):
+            self._stream.flush()
 
 
 @contextmanager

@@ -48,6 +48,28 @@ def check_outputs(inputs: Sequence[Path], outputs: Sequence[Path | str | None]) 
         taken[place] = "another output"
 
 
+def require_mark(path: Path, mark: bytes, whose: str) -> None:
+    """Refuse to replace a file that is there, unless its head holds a mark.
+
+    Args:
+        path: of the file to be.
+        mark: by which an earlier one is known, within its first 512 bytes.
+        whose: who made the earlier one, for the message.
+
+    Raises:
+        UsageError: the file is there and does not hold it.
+    """
+    if not path.is_file():
+        return
+    with path.open("rb") as file:
+        head = file.read(max(HEAD_BYTES, len(mark)))
+    if mark not in head:
+        raise UsageError(
+            f"{named(path)} is there already and was made by no {whose}; choose "
+            "another name, or move it away"
+        )
+
+
 def check_folder(folder: Path, own: Sequence[str]) -> None:
     """Refuse a folder that holds anything else than earlier results.
 

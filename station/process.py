@@ -87,6 +87,8 @@ def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> No
         screen.print(f"  and {len(changes) - MOST_CHANGES} more, see --json")
     for remark in result.remarks:
         screen.print(remark, soft_wrap=True)
+    if outcome.rotten:
+        screen.print(f"\nmade anew: {outcome.rotten}", soft_wrap=True)
     screen.print(f"\nstages: {stage_words(outcome)}", soft_wrap=True)
     screen.print(f"result: {visible(str(result.path))}", soft_wrap=True)
 
@@ -110,6 +112,7 @@ def stage_words(outcome: Outcome) -> str:
 
 def outcome_json(outcome: Outcome) -> dict[str, object]:
     """Return a line of the ledger."""
+    traces = outcome.traces
     return {
         "file": str(outcome.path),
         "result": str(outcome.result),
@@ -121,6 +124,10 @@ def outcome_json(outcome: Outcome) -> dict[str, object]:
         "verdicts_changed": outcome.changes,
         "computed": list(outcome.computed),
         "reused": list(outcome.reused),
+        "rotten": outcome.rotten,
+        "input_sha256": traces.input_sha256,
+        "input_mark": list(traces.session),
+        "result_mark": list(traces.result),
     }
 
 

@@ -2,8 +2,9 @@
 """The pure step: one session file and a recipe make one result file, once.
 
 The result carries the key of all it depends on: the SHA-256 of the input, the recipe,
-the version. A result with that key is left as it is. That is all there is to resuming,
-whoever calls: one process, a pool, a cluster.
+the version of the code. A result with that key whose content is what its digest says is
+left as it is. That is all there is to resuming, whoever calls: one process, a pool, a
+cluster.
 """
 
 import errno
@@ -14,24 +15,29 @@ from enum import StrEnum
 from hashlib import sha256
 from pathlib import Path
 
-import h5py
-
+from jointbench.acquisition.content_digest import require_whole
 from jointbench.acquisition.errors import (
     BadData,
     HostileFile,
     JointbenchError,
     UsageError,
 )
+from jointbench.acquisition.guards import open_guarded
+from jointbench.acquisition.netcdf_read import read_attribute
 from jointbench.acquisition.session import Session, software_version
-from jointbench.acquisition.session_file import read_session
+from jointbench.acquisition.session_file import damage_named, read_session
 from jointbench.acquisition.text_files import file_digest, file_size, named
+from jointbench.signal.one_thread import one_thread
+from jointbench.station.code_version import stage_version
 from jointbench.station.process_session import process_session
 from jointbench.station.processed_file import Origin, write_processed
 from jointbench.station.recipe import Recipe, recipe_digest
-from jointbench.station.stage_store import STAGE_LAYOUT, StageStore
+from jointbench.station.stage_store import StageStore
 
 MOST_BYTES = 64 * 2**30
 """A larger file is no session; reading it for its digest would take an hour [bytes]."""
+Mark = tuple[int, ...]
+"""What tells that a file was touched: inode, size [bytes], time [ns]; empty: none."""
 
 
 class State(StrEnum):
@@ -64,6 +70,21 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
+class Traces:
+    """What the files of a task were when they were last read or written.
+
+    Attributes:
+        input_sha256: of the session; empty where it was not read.
+        session: mark of the session, before it was read.
+        result: mark of the result; empty where there is none.
+    """
+
+    input_sha256: str = ""
+    session: Mark = ()
+    result: Mark = ()
+
+
+@dataclass(frozen=True, slots=True)
 class Outcome:
     """What became of a task.
 
@@ -79,6 +100,9 @@ class Outcome:
         changes: hits whose verdict changed.
         computed: stages that were run.
         reused: stages that were taken as kept.
+        rotten: what was wrong with the result that was there and was made anew; empty
+            where nothing was.
+        traces: by which a later run knows the files again without reading them.
     """
 
     path: Path
@@ -92,22 +116,33 @@ class Outcome:
     changes: int = 0
     computed: tuple[str, ...] = ()
     reused: tuple[str, ...] = ()
+    rotten: str = ""
+    traces: Traces = Traces()
 
 
-def result_key(digest: str, recipe: Recipe) -> str:
-    """Return the key of a result: SHA-256 over input, recipe and version."""
-    version = f"{software_version()}/{STAGE_LAYOUT}"
-    text = "\n".join((digest, recipe_digest(recipe), version))
+def result_key(digest: str, recipe: str) -> str:
+    """Return the key of a result: SHA-256 over input, recipe and version.
+
+    Args:
+        digest: of the input.
+        recipe: digest of the recipe.
+    """
+    text = "\n".join((digest, recipe, software_version(), stage_version("result")))
     return sha256(text.encode()).hexdigest()
 
 
 def has_key(path: Path, key: str) -> bool:
-    """Tell whether a result of this very key is there; a damaged one is not."""
-    try:
-        with h5py.File(path, "r") as file:
-            return bool(file.attrs.get("key") == key.encode())
-    except (OSError, RuntimeError, ValueError):
+    """Tell whether a result of this very key is there, whole or unsigned.
+
+    Raises:
+        RottenFile: a result is there, and its content is not what its digest says.
+        FormatError: a file is there that cannot be read.
+    """
+    if not path.exists():
         return False
+    with open_guarded(path) as file, damage_named(path):
+        require_whole(file, path)
+        return read_attribute(file, "key") == key
 
 
 def process_task(task: Task, recipe: Recipe) -> Outcome:
@@ -122,28 +157,54 @@ def process_task(task: Task, recipe: Recipe) -> Outcome:
         that refuses is one that may pass.
     """
     begun = time.perf_counter()
-    key = ""
+    key, traces = "", Traces(session=mark_of(task.path))
     try:
-        before = _mark(task.path)
-        digest = _digest(task.path)
-        key = result_key(digest, recipe)
-        if not task.again and has_key(task.result, key):
-            return Outcome(task.path, task.result, State.SKIPPED, key)
-        if not task.again and task.refused == key:
-            return _failed(task, key, task.reason, begun, lasting=True)
-        session = _unchanged_session(task.path, before)
-        return _done(task, session, recipe, Origin(task.path, digest, key), begun)
+        traces = replace(traces, input_sha256=_digest(task.path))
+        key = result_key(traces.input_sha256, recipe_digest(recipe))
+        outcome = _met(task, recipe, key, traces, begun)
     except JointbenchError as error:
-        return _failed(task, key, str(error), begun, lasting=True)
+        outcome = _failed(task, key, str(error), begun, lasting=True)
     except OSError as error:
-        return _failed(task, key, f"{error.strerror or error}", begun, lasting=False)
+        words = f"{error.strerror or error}"
+        outcome = _failed(task, key, words, begun, lasting=False)
     except Exception as error:  # noqa: BLE001 - one file must not end a night's run
         place = traceback.extract_tb(error.__traceback__)[-1]
         reason = (
             f"internal error ({type(error).__name__}: {error}) in "
             f"{Path(place.filename).name}:{place.lineno}; report it"
         )
-        return _failed(task, key, reason, begun, lasting=False)
+        outcome = _failed(task, key, reason, begun, lasting=False)
+    return replace(outcome, traces=replace(traces, result=outcome.traces.result))
+
+
+def _met(task: Task, recipe: Recipe, key: str, traces: Traces, begun: float) -> Outcome:
+    """Skip a file, refuse it as before, or make its result."""
+    mark, rotten = _there(task, key)
+    if mark:
+        own = Traces(result=mark)
+        return Outcome(task.path, task.result, State.SKIPPED, key, traces=own)
+    if not task.again and task.refused == key:
+        return _failed(task, key, task.reason, begun, lasting=True)
+    with one_thread():
+        session = _unchanged_session(task.path, traces.session)
+        origin = Origin(task.path, traces.input_sha256, key)
+        outcome = _done(task, session, recipe, origin, begun)
+    own = Traces(result=mark_of(task.result))
+    return replace(outcome, rotten=rotten, traces=own)
+
+
+def _there(task: Task, key: str) -> tuple[Mark, str]:
+    """Return the mark of a result that is as it should be, and what is wrong with it.
+
+    Nothing is wrong with a result of another key, nor where there is none.
+    """
+    before = mark_of(task.result)
+    try:
+        if has_key(task.result, key) and not task.again:
+            return before, ""
+    except BadData as error:
+        return (), str(error)
+    return (), ""
 
 
 def _digest(path: Path) -> str:
@@ -154,7 +215,7 @@ def _digest(path: Path) -> str:
     return file_digest(path)
 
 
-def _mark(path: Path) -> tuple[int, ...]:
+def mark_of(path: Path) -> Mark:
     """Return what tells whether a file was touched; empty where there is none."""
     try:
         info = path.stat()
@@ -163,10 +224,10 @@ def _mark(path: Path) -> tuple[int, ...]:
     return info.st_ino, info.st_size, info.st_mtime_ns
 
 
-def _unchanged_session(path: Path, before: tuple[int, ...]) -> Session:
+def _unchanged_session(path: Path, before: Mark) -> Session:
     """Read a session whose digest was taken when it had the mark `before`."""
     session = read_session(path)
-    if _mark(path) != before:
+    if mark_of(path) != before:
         raise OSError(errno.EBUSY, "it changed while it was read")
     return session
 

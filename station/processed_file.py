@@ -25,8 +25,8 @@ from typing import Any
 
 import h5py
 
+from jointbench.acquisition.content_digest import new_signed_file
 from jointbench.acquisition.netcdf import (
-    new_file,
     write_attributes,
     write_flags,
     write_texts,
@@ -81,7 +81,7 @@ def write_processed(
         UsageError: it cannot be written there.
     """
     title = "jointbench: a recorded session read again under a recipe"
-    with new_file(path, schema=PROCESSED_SCHEMA, title=title, overwrite=True) as file:
+    with new_signed_file(path, schema=PROCESSED_SCHEMA, title=title) as file:
         _write_origin(file, result, recipe, origin)
         _write_quantities(file.create_group("quantities"), quantities_of(result))
         if any(result.hits):

@@ -12,12 +12,16 @@ from jointbench.acquisition.height_facts import cautions, checked
 from jointbench.acquisition.serial_lines import diavite, mitutoyo
 from jointbench.acquisition.serial_lines.line import ProfileBroken, SerialLine
 from jointbench.acquisition.session_add import add_surface, require_addable
+from jointbench.acquisition.session_replace import fresh_path
 from jointbench.acquisition.surfaces import Profile
 from jointbench.acquisition.units import parse_value
 from jointbench.station.output import console, engineering, table, write_json
-from jointbench.station.outputs import check_outputs, write_text
+from jointbench.station.outputs import check_outputs, require_mark, write_text
 from jointbench.station.roughness_words import caution_lines
 from jointbench.station.serial_port import line_name
+
+TABLE_HEAD = "x [um],z [um]"
+"""How the table of a profile begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +75,7 @@ def run_profile(
             profile = read_profile(wanted, line)
     except ProfileBroken as error:
         place = out or (session or Path("profile")).with_suffix(".csv")
-        saved = place.with_name(f"{place.stem}.broken.csv")
+        saved = fresh_path(place, "broken")
         write_text(saved, _table(error.heights, error.spacing))
         raise InstrumentError(
             f"{error}; {error.heights.size} heights are in '{saved}'"
@@ -145,6 +149,7 @@ def _check_places(
             raise UsageError(f"'{out}' is no table; name it *.csv")
         if out.is_file() and not overwrite:
             raise UsageError(f"'{out}' is there already; add --force to overwrite it")
+        require_mark(out, TABLE_HEAD.encode(), "profile")
     check_outputs([], [json_target, None if out is None or out.is_file() else out])
     if session is not None:
         require_addable(session, wanted.name)
@@ -157,7 +162,7 @@ def _table(heights: FloatArray, spacing: float | None) -> str:
         return "\n".join(["z [um]", *rows, ""])
     along = 1e6 * spacing * np.arange(heights.size)
     rows = [f"{x:.6f},{1e6 * z:.6f}" for x, z in zip(along, heights, strict=True)]
-    return "\n".join(["x [um],z [um]", *rows, ""])
+    return "\n".join([TABLE_HEAD, *rows, ""])
 
 
 def _show(

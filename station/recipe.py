@@ -31,8 +31,10 @@ _NAME = re.compile(r"\w([\w .-]{0,58}\w)?")
 Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
 Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
 Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
-WindowTime = Annotated[float | None, with_unit("time", AUTO, NONE), Field(ge=0)]
-WindowRate = Annotated[float | None, with_unit("frequency", AUTO, NONE), Field(ge=0)]
+_NotNegative = Annotated[float, Field(ge=0)]
+# The limit is one of the number alone: asked of "auto" it ends in an internal error.
+WindowTime = Annotated[_NotNegative | None, with_unit("time", AUTO, NONE)]
+WindowRate = Annotated[_NotNegative | None, with_unit("frequency", AUTO, NONE)]
 
 
 def _beside(text: str) -> str:

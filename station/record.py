@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from jointbench.acquisition.errors import InstrumentError, NoHitFound
+from jointbench.acquisition.errors import InstrumentError
 from jointbench.acquisition.records import Recording, step
 from jointbench.acquisition.session import JointSetup, Session, new_session
 from jointbench.acquisition.source import Source
-from jointbench.signal.campaign_level import compare_levels
-from jointbench.signal.hits import HitCriteria, find_hits
+from jointbench.signal.hits import HitCriteria
+from jointbench.station.record_live import with_hits
 from jointbench.station.sources import Visit
 
 
@@ -60,29 +60,23 @@ def record_visit(visit: Visit, *, criteria: HitCriteria | None = None) -> Sessio
         criteria: how hits are found and judged; None for the defaults.
 
     Returns:
-        One recording a run, its hits judged; a run in which nobody hit has none.
+        One recording a run, its hits judged; a run in which nobody hit has none. It
+        is in memory alone: a bench is recorded by `record_live`.
 
     Raises:
         InstrumentError: a run delivered nothing.
     """
     recordings = []
     for run in visit.runs:
-        recorded = replace(
-            record(run, name=run.name),
-            start_time=run.start_time,
-            preload=run.preload,
+        recorded = record(run, name=run.name)
+        recordings.append(
+            replace(recorded, start_time=run.start_time, preload=run.preload)
         )
-        try:
-            recorded = find_hits(recorded, criteria)
-        except NoHitFound:
-            pass
-        recordings.append(recorded)
-    limits = (criteria or HitCriteria()).limits
-    recordings = list(compare_levels(recordings, limits))
     preloads = {recording.preload for recording in recordings}
-    return new_session(
+    session = new_session(
         source=visit.source,
         simulated=visit.simulated,
         recordings=recordings,
         joint=JointSetup(preload=preloads.pop()) if len(preloads) == 1 else None,
     )
+    return with_hits(session, criteria)

@@ -5,10 +5,14 @@ from pathlib import Path
 
 from jointbench.acquisition.records import Step, Verdict
 from jointbench.acquisition.session_file import read_session
+from jointbench.analysis.identification import JointParameter
 from jointbench.station.bench_model import BenchModel
+from jointbench.station.chain import ModalChain
 from jointbench.station.geometry import Geometry
+from jointbench.station.joint_text import interval_text
 from jointbench.station.output import console, engineering, with_sd, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.process_joint import at_words
 from jointbench.station.report_hits import hits_section
 from jointbench.station.report_joint import joint_section
 from jointbench.station.report_modal import modal_sections
@@ -18,9 +22,11 @@ from jointbench.station.report_page import (
     Section,
     Text,
     Tile,
+    placed_sections,
     write_report,
 )
 from jointbench.station.report_surface import surface_section
+from jointbench.station.results_beside import stored_results
 from jointbench.station.session_analysis import SessionAnalysis, analyse_session
 from jointbench.station.toml_file import read_toml
 
@@ -34,19 +40,31 @@ def run_report(
     out: Path | None,
     model: Path | None,
     geometry: Path | None = None,
+    results: Path | None = None,
     json_target: str | None,
 ) -> Path:
-    """Analyse `session` and write the page beside it, or to `out`."""
+    """Write the page of `session` beside it, or to `out`.
+
+    Modes are those of the results that exist, see `stored_results`; where there are
+    none, they are looked for now.
+    """
     target = out or session.with_suffix(".html")
-    read = [path for path in (session, model, geometry) if path is not None]
+    given = (session, model, geometry, results)
+    read = [path for path in given if path is not None]
     check_outputs(read, [target, json_target])
     points = None if geometry is None else read_toml(geometry, Geometry)
     content = read_session(session)
     bench = None if model is None else read_toml(model, BenchModel)
-    analysis = analyse_session(content, bench)
+    stored = stored_results(session, content.recordings, results)
+    analysis = analyse_session(content, bench, stored)
     write_report(compose(analysis, bench, title=session.stem, geometry=points), target)
     console(json_target).print(f"report: {target}")
-    write_json(json_target, {"report": str(target), "remarks": list(analysis.remarks)})
+    runs = [
+        {"preload_n": one.preload, "results": one.run or None}
+        for one in analysis.preloads
+    ]
+    page = {"report": str(target), "remarks": list(analysis.remarks), "modes": runs}
+    write_json(json_target, page)
     return target
 
 
@@ -69,13 +87,15 @@ def compose(
         sections.append(Section("remarks", "Remarks", notes))
     if analysis.recordings:
         sections.append(hits_section(analysis.recordings))
-    if analysis.modal is not None:
-        sections += modal_sections(analysis.modal, geometry)
+    several = len(analysis.preloads) > 1
+    for one in analysis.preloads:
+        own = modal_sections(one.modal, geometry)
+        at = at_words(one.preload) if several else ""
+        sections += placed_sections(own, at)
     if analysis.surfaces:
         sections.append(surface_section(analysis.surfaces))
     if analysis.contact is not None or analysis.joint is not None:
-        link = joint_link(bench)
-        sections.append(joint_section(analysis.contact, analysis.joint, link))
+        sections += _joint_sections(analysis, joint_link(bench))
     sections.append(_provenance(analysis))
     return Report(
         title=title,
@@ -85,6 +105,20 @@ def compose(
         tiles=_tiles(analysis, bench),
         sections=tuple(sections),
     )
+
+
+def _joint_sections(analysis: SessionAnalysis, link: str) -> list[Section]:
+    """Return a section for each preload with links; one where there is but one."""
+    known = [one for one in analysis.preloads if one.joint is not None]
+    if len(known) < 2:
+        return [joint_section(analysis.contact, analysis.joint, link)]
+    return [
+        section
+        for one in known
+        for section in placed_sections(
+            (joint_section(analysis.contact, one.joint, link),), at_words(one.preload)
+        )
+    ]
 
 
 def joint_link(bench: BenchModel | None) -> str:
@@ -115,14 +149,20 @@ def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, .
         tiles.append(Tile(f"D of {chain.surface.name}", value, chain.fit.verdict.value))
     if analysis.joint is not None:
         stiffness = analysis.joint.parameter(f"{joint_link(bench)}.stiffness")
-        value = engineering(stiffness.value, "N/m")
-        sd = "" if stiffness.sd is None else f"± {engineering(stiffness.sd, 'N/m')}"
-        tiles.append(Tile("joint stiffness, from modes", value, sd))
+        tiles.append(_joint_tile(stiffness))
     if analysis.contact is not None:
         state = analysis.contact.at.state
         value = engineering(state.normal_stiffness, "N/m")
         tiles.append(Tile("joint stiffness, contact law", value, state.model))
     return tuple(tiles)
+
+
+def _joint_tile(stiffness: JointParameter) -> Tile:
+    title = "joint stiffness, from modes"
+    if not stiffness.identifiable:
+        return Tile(title, f"{interval_text(stiffness.interval)} N/m", "not determined")
+    sd = "" if stiffness.sd is None else f"± {engineering(stiffness.sd, 'N/m')}"
+    return Tile(title, engineering(stiffness.value, "N/m"), sd)
 
 
 def _hits_tile(analysis: SessionAnalysis) -> Tile:
@@ -139,13 +179,20 @@ def _why_not(verdicts: list[Verdict]) -> str:
 
 
 def _mode_tiles(analysis: SessionAnalysis) -> list[Tile]:
-    if analysis.modal is None:
-        return []
-    model = analysis.modal.result.model
+    several = len(analysis.preloads) > 1
+    return [
+        tile
+        for one in analysis.preloads
+        for tile in _tiles_of(one.modal, at_words(one.preload) if several else "")
+    ]
+
+
+def _tiles_of(chain: ModalChain, at: str) -> list[Tile]:
+    model = chain.result.model
     count = model.natural_frequency.size
     tiles = [
         Tile(
-            f"mode {number + 1}",
+            f"mode {number + 1}{at}",
             f"{frequency:.2f} Hz",
             f"± {model.frequency_sd[number]:.2g} Hz, "
             f"damping {100 * model.damping_ratio[number]:.3g} %",
@@ -153,7 +200,8 @@ def _mode_tiles(analysis: SessionAnalysis) -> list[Tile]:
         for number, frequency in enumerate(model.natural_frequency[:MODES_IN_TILE])
     ]
     if count > MODES_IN_TILE:
-        tiles.append(Tile("further modes", str(count - MODES_IN_TILE), "see the table"))
+        more = str(count - MODES_IN_TILE)
+        tiles.append(Tile(f"further modes{at}", more, "see the table"))
     return tiles
 
 
@@ -164,10 +212,11 @@ def _provenance(analysis: SessionAnalysis) -> Section:
         for record in records
         for step in record.provenance
     ]
-    if analysis.modal is not None:
-        rows += [
-            ("modes", step.name, _detail(step)) for step in analysis.modal.provenance
-        ]
+    for one in analysis.preloads:
+        of = f"modes{at_words(one.preload)}" if len(analysis.preloads) > 1 else "modes"
+        run = one.run or "found for this report, with settings chosen by the data"
+        rows.append((of, "run", run))
+        rows += [(of, step.name, _detail(step)) for step in one.modal.provenance]
     for chain in analysis.surfaces:
         rows += [
             (f"{chain.surface.name}, fit", step.name, _detail(step))

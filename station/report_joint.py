@@ -13,6 +13,7 @@ from jointbench.station.figures import (
     markers,
 )
 from jointbench.station.joint import ContactPrediction
+from jointbench.station.joint_text import interval_text, parameter_text
 from jointbench.station.output import with_sd
 from jointbench.station.report_page import DataTable, Item, Plot, Section, Text
 
@@ -52,19 +53,7 @@ def _stiffness_plot(
         ),
     ]
     if joint is not None:
-        value = joint.parameter(f"{link}.stiffness")
-        at = [contact.at.state.preload / 1e3]
-        traces.append(
-            markers(
-                at,
-                [value.value],
-                f"link {link!r}, identified from the modes",
-                color=PALETTE[1],
-                symbol="diamond",
-                size=11,
-                error=[1.96 * (value.sd or 0.0)],
-            )
-        )
+        traces += _identified(contact, joint, link)
     plot = figure(
         traces,
         axis("preload [kN]", log=True),
@@ -76,6 +65,25 @@ def _stiffness_plot(
         "and what the measured modes ask of the joint at its preload (dotted)."
     )
     return Plot("stiffness-plot", caption, plot, 400)
+
+
+def _identified(
+    contact: ContactPrediction, joint: Identification, link: str
+) -> list[Trace]:
+    """Return the mark of what the modes determine; one of many solutions has none."""
+    value = joint.parameter(f"{link}.stiffness")
+    if not value.identifiable:
+        return []
+    mark = markers(
+        [contact.at.state.preload / 1e3],
+        [value.value],
+        f"link {link!r}, identified from the modes",
+        color=PALETTE[1],
+        symbol="diamond",
+        size=11,
+        error=[1.96 * (value.sd or 0.0)],
+    )
+    return [mark]
 
 
 def _at_preload(contact: ContactPrediction) -> dict[str, object]:
@@ -106,6 +114,9 @@ def side_by_side(
     if joint is None:
         return text + "."
     measured = joint.parameter(f"{link}.stiffness")
+    if not measured.identifiable:
+        ends = interval_text(measured.interval)
+        return f"{text}; the modes do not determine it (admissible, N/m: {ends})."
     ratio = predicted / measured.value
     text += (
         f"; the modes say {with_sd(measured.value, measured.sd)} N/m, "
@@ -123,7 +134,7 @@ def _links_table(joint: Identification) -> DataTable:
     rows = tuple(
         (
             one.name,
-            with_sd(one.value, one.sd),
+            parameter_text(one),
             one.unit,
             "yes" if one.identifiable else "no",
             one.reason,
@@ -132,7 +143,8 @@ def _links_table(joint: Identification) -> DataTable:
     )
     return DataTable(
         f"Links identified from frequencies, damping and shapes (± one standard "
-        f"deviation): {joint.verdict.value}. {'; '.join(joint.reasons)}",
+        f"deviation; where it is open, all that is admissible): {joint.verdict.value}. "
+        f"{'; '.join(joint.reasons)}",
         ("parameter", "value", "unit", "identifiable", "reason"),
         rows,
         frozenset({"no"}),

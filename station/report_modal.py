@@ -43,7 +43,7 @@ def modal_sections(
         Section(
             "modes",
             "Modes",
-            (modes_table(chain), Text(systematic_words(chain)), Text(_kalman(chain))),
+            (modes_table(chain), Text(_misfit(chain)), Text(_kalman(chain))),
         ),
         shapes_section(chain, geometry),
         checks_section(chain),
@@ -243,9 +243,18 @@ def _window(chain: ModalChain) -> str:
     return f"{text} The synthesis misses {missed:.2g} % of the FRF (rms over the band)."
 
 
+def _misfit(chain: ModalChain) -> str:
+    """Say which intervals rest on misfit; results of earlier versions do not tell."""
+    if np.isnan(chain.result.model.misfit).all():
+        return "The results file does not say how much of the intervals is noise."
+    return systematic_words(chain)
+
+
 def _kalman(chain: ModalChain) -> str:
     gain = chain.result.stage_gain
     if gain is None:
+        if any(step.name == "kalman_stage" for step in chain.provenance):
+            return "The results file does not keep what the Kalman stage did to a mode."
         return "No Kalman stage was used."
     return (
         f"Kalman stage: {gain.settings.model.value.replace('_', ' and ')} smoother of "

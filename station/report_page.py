@@ -2,8 +2,10 @@
 """A report as data, and its rendering to one HTML file that needs no network."""
 
 import json
+import re
 import secrets
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Literal
@@ -76,6 +78,32 @@ class Report:
     simulated: bool
     tiles: tuple[Tile, ...]
     sections: tuple[Section, ...] = field(default=())
+
+
+def placed_sections(sections: Sequence[Section], at: str) -> list[Section]:
+    """Return sections that may stand beside others of their kind.
+
+    Args:
+        sections: of one preload, for example.
+        at: words that set them apart, with a blank before; empty to leave them as
+            they are.
+    """
+    if not at:
+        return list(sections)
+    mark = re.sub(r"\W+", "-", at)
+    return [
+        Section(
+            f"{one.anchor}{mark}",
+            f"{one.title}{at}",
+            tuple(
+                replace(item, identifier=f"{item.identifier}{mark}")
+                if isinstance(item, Plot)
+                else item
+                for item in one.items
+            ),
+        )
+        for one in sections
+    ]
 
 
 def render(report: Report) -> str:

@@ -7,9 +7,9 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.acquisition.session import software_version
+from jointbench.analysis.identification import JointParameter
 from jointbench.analysis.structures.elements import ELEMENTS
 from jointbench.analysis.structures.joint_result import (
-    Profile,
     StateFit,
     StructureIdentification,
 )
@@ -17,6 +17,7 @@ from jointbench.analysis.structures.mesh import outer_faces
 from jointbench.analysis.structures.reduced import ReducedModel, solve_reduced
 from jointbench.analysis.structures.structure import Structure
 from jointbench.station.figures import PALETTE, Figure, axis, figure, line, numbers
+from jointbench.station.joint_text import interval_text
 from jointbench.station.output import with_sd
 from jointbench.station.report_page import (
     DataTable,
@@ -57,12 +58,16 @@ def write_structure_report(
         software=software_version(),
         simulated=False,
         tiles=tuple(
-            Tile(one.name, f"{one.value:.4g} {one.unit}", _sure(one.identifiable))
+            Tile(one.name, f"{_tile(one)} {one.unit}", _sure(one.identifiable))
             for one in result.parameters[:6]
         ),
         sections=tuple(section for section in sections if section.items),
     )
     write_report(report, path)
+
+
+def _tile(one: JointParameter) -> str:
+    return f"{one.value:.4g}" if one.identifiable else interval_text(one.interval)
 
 
 def _sure(identifiable: bool) -> str:
@@ -73,28 +78,22 @@ def _parameters(result: StructureIdentification) -> DataTable:
     rows = tuple(
         (
             one.name,
-            with_sd(one.value, one.sd),
+            with_sd(one.value, one.sd) if one.identifiable else "-",
             one.unit,
-            _interval(result.profiles.get(one.name)),
+            interval_text(one.interval),
             _sure(one.identifiable),
         )
         for one in result.parameters
     )
     columns = ("parameter", "value ± sd", "unit", "95 % interval", "verdict")
     return DataTable(
-        f"{result.verdict.value}; standard deviations from the measured covariance.",
+        f"{result.verdict.value}; standard deviations from the measured covariance. "
+        "Where a parameter is not identifiable, the interval holds all admissible "
+        "solutions.",
         columns,
         rows,
         frozenset({"not identifiable"}),
     )
-
-
-def _interval(profile: Profile | None) -> str:
-    if profile is None:
-        return "-"
-    low = "open" if profile.low is None else f"{profile.low:.4g}"
-    high = "open" if profile.high is None else f"{profile.high:.4g}"
-    return f"{low} to {high}"
 
 
 def _reasons(result: StructureIdentification) -> tuple[Item, ...]:

@@ -6,16 +6,12 @@ loss cost at most the files in hand; call again and it goes on.
 """
 
 import os
-import signal
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass, field
+from contextlib import closing, suppress
 from pathlib import Path
-from types import FrameType
 
-from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.text_files import named, visible
+from jointbench.acquisition.errors import InstrumentError, UsageError
 from jointbench.station.archive_files import (
     archive_folder,
     common_folder,
@@ -23,71 +19,26 @@ from jointbench.station.archive_files import (
 )
 from jointbench.station.cluster import ClusterSettings, require_safe, run_cluster
 from jointbench.station.ledger import Ledger, now, open_ledger, write_quarantine
-from jointbench.station.output import console, table, write_json
+from jointbench.station.measure_interrupt import interruptible
+from jointbench.station.output import write_json
 from jointbench.station.outputs import check_outputs, make_folder, require_folder
-from jointbench.station.process import STAGES_FOLDER, outcome_json, recipe_or_default
-from jointbench.station.process_file import Outcome, State, Task
+from jointbench.station.process import STAGES_FOLDER, recipe_or_default
+from jointbench.station.process_file import Outcome, Task
 from jointbench.station.processed_file import processed_path
 from jointbench.station.recipe import Recipe, recipe_digest
-from jointbench.station.reprocess_progress import run_progress, time_words
+from jointbench.station.reprocess_progress import run_progress
+from jointbench.station.reprocess_summary import (
+    Places,
+    RunSummary,
+    show_summary,
+    summary_json,
+)
+from jointbench.station.settled import settled
 from jointbench.station.stage_store import prune_stages
 from jointbench.station.worker_pool import PoolSettings, run_pool
 
-MOST_SHOWN = 10
 PRUNE_EVERY = 500
 Backend = Callable[[Sequence[Task], Recipe], Iterator[Outcome]]
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where a run writes.
-
-    Attributes:
-        results: folder of the results, None for beside the sessions.
-        ledger: of the run.
-        stages: folder of kept stages, or None to keep none.
-        stages_bytes: that kept stages may take [bytes].
-    """
-
-    results: Path | None
-    ledger: Path
-    stages: Path | None
-    stages_bytes: int
-
-    @property
-    def quarantine(self) -> Path:
-        """List of the files that could not be processed."""
-        return self.ledger.with_suffix(".quarantine.csv")
-
-
-@dataclass(slots=True)
-class RunSummary:
-    """What a run has come to.
-
-    Attributes:
-        outcomes: one a file, as they came in.
-        interrupted: whether it was stopped.
-        unwritable: why results could not be written, or empty.
-        seconds: that it took [s].
-    """
-
-    outcomes: list[Outcome] = field(default_factory=list)
-    interrupted: bool = False
-    unwritable: str = ""
-    seconds: float = 0.0
-
-    @property
-    def counts(self) -> dict[State, int]:
-        """Number of files by what became of them."""
-        counts = dict.fromkeys(State, 0)
-        for outcome in self.outcomes:
-            counts[outcome.state] += 1
-        return counts
-
-    @property
-    def failed(self) -> list[Outcome]:
-        """Those that go into the quarantine list."""
-        return [one for one in self.outcomes if one.state is State.FAILED]
 
 
 def pool_backend(settings: PoolSettings) -> Backend:
@@ -157,13 +108,14 @@ def reprocess(
     run = {"recipe": recipe.name, "recipe_sha256": recipe_digest(recipe)}
     with (
         open_ledger(places.ledger, run | {"files": len(tasks)}) as ledger,
-        _interruptible(),
+        interruptible(),
         run_progress(len(tasks)) as tell,
     ):
-        known = [_remembering(task, ledger) for task in tasks]
-        _make_room(known)
+        known, others = settled(tasks, ledger.last, recipe_digest(recipe))
+        waiting = [_remembering(task, ledger) for task in others]
+        _make_room(waiting)
         try:
-            with closing(_generator(backend(known, recipe))) as outcomes:
+            with closing(_outcomes(known, waiting, recipe, backend)) as outcomes:
                 for outcome in outcomes:
                     if outcome.unwritable:  # no fault of the file
                         summary.unwritable = outcome.reason
@@ -174,17 +126,25 @@ def reprocess(
                     _prune(places, len(summary.outcomes))
         except KeyboardInterrupt:
             summary.interrupted = True
+        except InstrumentError as error:
+            summary.lost = str(error)
         summary.seconds = time.monotonic() - begun
         counts = {state.value: n for state, n in summary.counts.items()}
-        end = {"kind": "end", "time": now(), "interrupted": summary.interrupted}
+        end: dict[str, object] = {"kind": "end", "time": now()}
+        end |= {"interrupted": summary.interrupted, "lost": summary.lost}
         ledger.write(end | counts | {"seconds": round(summary.seconds, 3)})
     _prune(places, 0)
     write_quarantine(places.quarantine, summary.failed)
     return summary
 
 
-def _generator(outcomes: Iterator[Outcome]) -> Generator[Outcome, None, None]:
-    yield from outcomes
+def _outcomes(
+    known: Sequence[Outcome], waiting: Sequence[Task], recipe: Recipe, backend: Backend
+) -> Generator[Outcome, None, None]:
+    """Yield what the ledger settles, then what the backend makes of the rest."""
+    yield from known
+    if waiting:
+        yield from backend(waiting, recipe)
 
 
 def _remembering(task: Task, ledger: Ledger) -> Task:
@@ -204,24 +164,6 @@ def _make_room(tasks: Sequence[Task]) -> None:
 def _prune(places: Places, met: int) -> None:
     if places.stages is not None and met % PRUNE_EVERY == 0:
         prune_stages(places.stages, places.stages_bytes)
-
-
-@contextmanager
-def _interruptible() -> Iterator[None]:
-    """Take a polite kill (SIGTERM) as Ctrl-C: finish the files in hand and stop."""
-
-    def stop(_signal: int, _frame: FrameType | None) -> None:
-        raise KeyboardInterrupt
-
-    try:
-        before = signal.signal(signal.SIGTERM, stop)
-    except ValueError:  # not in the main thread: whoever runs us stops us
-        yield
-        return
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def run_reprocess(
@@ -246,6 +188,8 @@ def run_reprocess(
     Raises:
         KeyboardInterrupt: it was stopped, after all was put in order.
         UsageError: results cannot be written.
+        InstrumentError: the cluster does not answer, or was lost on the way; all that
+            was done until then is put in order.
     """
     check_outputs([recipe] if recipe else [], [json_target])
     made = recipe_or_default(recipe)
@@ -254,12 +198,14 @@ def run_reprocess(
     here = places(root, made)
     tasks = make_tasks(files, made, here, root=root, again=again)
     summary = reprocess(tasks, made, here, backend)
-    _show(summary, len(tasks), here, json_target)
-    write_json(json_target, _json(summary, len(tasks), made, here))
+    show_summary(summary, len(tasks), here, json_target)
+    write_json(json_target, summary_json(summary, len(tasks), made, here))
     if summary.interrupted:
         raise KeyboardInterrupt
     if summary.unwritable:
         raise UsageError(summary.unwritable)
+    if summary.lost:
+        raise InstrumentError(summary.lost)
     return summary
 
 
@@ -286,46 +232,3 @@ def default_places(
         )
 
     return places
-
-
-def _show(
-    summary: RunSummary, total: int, places: Places, json_target: str | None
-) -> None:
-    screen = console(json_target)
-    rows = [(state.value, str(count)) for state, count in summary.counts.items()]
-    rows += [("of", str(total)), ("time", time_words(summary.seconds))]
-    changes = sum(outcome.changes for outcome in summary.outcomes)
-    rows.append(("verdicts changed", str(changes)))
-    screen.print(table("Reprocessed", ("files", "number"), rows))
-    failed = summary.failed
-    for outcome in failed[:MOST_SHOWN]:
-        screen.print(f"quarantined: {_reason(outcome)}", soft_wrap=True)
-    if len(failed) > MOST_SHOWN:
-        screen.print(f"and {len(failed) - MOST_SHOWN} more, see the quarantine list")
-    screen.print(f"\nledger: {places.ledger}", soft_wrap=True)
-    if failed:
-        screen.print(f"quarantine: {places.quarantine}", soft_wrap=True)
-    if summary.interrupted:
-        screen.print("interrupted; the same command goes on where it stopped")
-
-
-def _reason(outcome: Outcome) -> str:
-    """Return why a file failed; most reasons begin with its name."""
-    if named(outcome.path) in outcome.reason:
-        return outcome.reason
-    return f"{visible(str(outcome.path))}: {outcome.reason}"
-
-
-def _json(
-    summary: RunSummary, total: int, recipe: Recipe, places: Places
-) -> dict[str, object]:
-    return {
-        "recipe": recipe.name,
-        "files": total,
-        **{state.value: count for state, count in summary.counts.items()},
-        "interrupted": summary.interrupted,
-        "seconds": summary.seconds,
-        "ledger": [outcome_json(outcome) for outcome in summary.outcomes],
-        "ledger_file": str(places.ledger),
-        "quarantine_file": str(places.quarantine),
-    }

@@ -5,13 +5,14 @@ It names its inputs by SHA-256 and can be deleted and made again at any time.
 """
 
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from pathlib import Path
 
 import h5py
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.content_digest import new_signed_file
 from jointbench.acquisition.netcdf import (
-    new_file,
     write_attributes,
     write_complex,
     write_flags,
@@ -47,13 +48,12 @@ def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None
         chain: what was found.
         inputs: files it was found in, named in the results by their SHA-256.
     """
-    with new_file(
-        path, schema=SCHEMA, title="Results of jointbench", overwrite=True
-    ) as file:
+    with new_signed_file(path, schema=SCHEMA, title="Results of jointbench") as file:
         write_attributes(
             file,
             {
                 "software": software_version(),
+                "created": datetime.now(UTC).isoformat(timespec="seconds"),
                 "input_files": "\n".join(p.name for p in inputs),
                 "input_sha256": "\n".join(file_digest(p) for p in inputs),
             },
@@ -65,8 +65,17 @@ def write_modal(group: h5py.Group, chain: ModalChain) -> None:
     """Write FRF, synthesis, poles of all orders, modes and provenance into a group."""
     _write_frf(group.create_group("frf"), chain.frf)
     _write_frf(group.create_group("synthesis"), chain.result.synthesis)
+    write_variable(
+        group["synthesis"],
+        "missed",
+        chain.result.synthesis_error,
+        ("frequency",),
+        units="1",
+        long_name="rms of what the synthesis misses over the rms of the FRF",
+    )
     _write_stabilisation(group.create_group("stabilisation"), chain.result)
     _write_modes(group.create_group("modes"), chain.result.model)
+    _write_evidence(group["modes"], chain.result)
     _write_provenance(group.create_group("provenance"), chain)
 
 
@@ -97,6 +106,8 @@ def _write_frf(group: h5py.Group, frf: Frf) -> None:
             "kind": frf.kind.value,
             "added_decay_rate_per_s": frf.added_decay_rate,
             "averages": frf.averages,
+            "usable_from": None if frf.usable_band is None else frf.usable_band[0],
+            "usable_to": None if frf.usable_band is None else frf.usable_band[1],
         },
     )
 
@@ -153,6 +164,35 @@ def _write_modes(group: h5py.Group, model: ModalModel) -> None:
         units="m s-1 N-1",
         long_name="residue of the receptance",
     )
+
+
+def _write_evidence(group: h5py.Group, result: ModalResult) -> None:
+    """Write what each mode rests on, and what the Kalman stage did there."""
+    model, gain = result.model, result.stage_gain
+    _write_columns(
+        group,
+        "mode",
+        ("significance", model.significance, "1"),
+        ("misfit", model.misfit, "1"),
+        ("stable_orders", model.stable_orders, "1"),
+    )
+    dims = ("mode", "output", "input")
+    for name, values, own, units in (
+        ("residue_sd", model.residues_sd, dims, "m s-1 N-1"),
+        ("shape_sd", model.shapes_sd, dims[:2], "1"),
+    ):
+        words = f"{name.removesuffix('_sd')}: standard uncertainty of the part"
+        write_complex(group, name, values, own, units=units, long_name=words)
+    band = {"band_from": result.band[0], "band_to": result.band[1]}
+    write_attributes(group, band)
+    if gain is not None:
+        _write_columns(
+            group,
+            "mode",
+            ("kalman_gain", gain.gain, "1"),
+            ("kalman_phase", gain.phase, "rad"),
+        )
+        write_attributes(group, {"kalman_model": gain.settings.model.value})
 
 
 def _write_columns(

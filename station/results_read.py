@@ -6,12 +6,14 @@ Layout 1 (`jointbench modal`): one FRF and its modes. Layout 2 (`process`): ever
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import h5py
 
+from jointbench.acquisition.content_digest import require_whole
 from jointbench.acquisition.errors import FormatError
 from jointbench.acquisition.guards import open_guarded
 from jointbench.acquisition.netcdf_read import (
@@ -92,6 +94,20 @@ def without_copies(
     return list(kept.values()), copies
 
 
+@contextmanager
+def open_result(path: Path) -> Iterator[h5py.File]:
+    """Open a results file through the guards, its content compared with its digest.
+
+    Raises:
+        RottenFile: the content is not what the digest says.
+        FormatError: it is damaged.
+        HostileFile: it asks for more than a result would.
+    """
+    with open_guarded(path) as file, damage_named(path):
+        require_whole(file, path)
+        yield file
+
+
 def is_results(path: Path) -> bool:
     """Tell results of any layout, later ones too, from sessions, whatever their names.
 
@@ -106,10 +122,11 @@ def read_result(path: Path) -> StoredResult:
     """Read a results file of any layout.
 
     Raises:
+        RottenFile: its content is not what its digest says.
         FormatError: it is no results file, of a later layout, or damaged.
         HostileFile: it asks for more than a result would.
     """
-    with open_guarded(path) as file, damage_named(path):
+    with open_result(path) as file:
         schema = read_attribute(file, "schema")
         if schema == PROCESSED_SCHEMA:
             return _processed(file, path)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Everything a session can tell: modes, surfaces and, with a bench model, a joint."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from jointbench.acquisition.errors import BadData
 from jointbench.acquisition.records import Recording
@@ -13,7 +13,26 @@ from jointbench.station.identify import identify_joint
 from jointbench.station.joint import ContactPrediction, predict_joint
 from jointbench.station.output import working
 from jointbench.station.preloads import by_preload
+from jointbench.station.process_joint import at_words
+from jointbench.station.results_beside import StoredResults
 from jointbench.station.surface import SurfaceChain, analyse_surface
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreloadAnalysis:
+    """Modes at one preload of the joint, and the links that they identify.
+
+    Attributes:
+        preload: [N], or None where nobody said.
+        modal: hits, FRF and modes.
+        run: by which run the modes were found; empty where they were found now.
+        joint: identified from the modes, if a model names the bodies.
+    """
+
+    preload: float | None
+    modal: ModalChain
+    run: str = ""
+    joint: Identification | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,38 +42,56 @@ class SessionAnalysis:
     Attributes:
         session: as recorded.
         recordings: with judged hits; empty if none holds a hit.
-        modal: from its recordings.
+        preloads: modes at each preload that has some.
         surfaces: from its surfaces.
         contact: predicted from the surfaces, if a model names a contact.
-        joint: identified from the modes, if a model names the bodies.
         remarks: what could not be done, and why, a line each.
     """
 
     session: Session
     recordings: tuple[Recording, ...] = ()
-    modal: ModalChain | None = None
+    preloads: tuple[PreloadAnalysis, ...] = ()
     surfaces: tuple[SurfaceChain, ...] = ()
     contact: ContactPrediction | None = None
-    joint: Identification | None = None
     remarks: tuple[str, ...] = ()
 
+    @property
+    def modal(self) -> ModalChain | None:
+        """Modes at the first preload, or None."""
+        return self.preloads[0].modal if self.preloads else None
 
-def analyse_session(session: Session, model: BenchModel | None) -> SessionAnalysis:
+    @property
+    def joint(self) -> Identification | None:
+        """Links at the first preload that identifies them, or None."""
+        found = (one.joint for one in self.preloads if one.joint is not None)
+        return next(found, None)
+
+
+def analyse_session(
+    session: Session, model: BenchModel | None, stored: StoredResults | None = None
+) -> SessionAnalysis:
     """Run every chain that the session and the model allow.
 
     A stage that cannot be done becomes a remark; it does not take the others along.
+
+    Args:
+        session: as recorded.
+        model: of the bench, or None.
+        stored: results that exist; modes are taken from them and not looked for again.
     """
-    remarks: list[str] = []
+    remarks: list[str] = [] if stored is None else list(stored.remarks)
     with working("judging hits, estimating FRFs, fitting modes"):
         recordings = _judged(session, remarks)
-        modal = _modal(recordings, remarks)
+        preloads = _modes(recordings, stored, remarks)
     with working("fitting surfaces"):
         surfaces = tuple(analyse_surface(surface) for surface in session.surfaces)
     with working("predicting and identifying the joint"):
         contact = _contact(surfaces, model, remarks)
-        joint = _joint(modal, model, remarks)
+        preloads = tuple(
+            replace(one, joint=_joint(one, model, remarks)) for one in preloads
+        )
     return SessionAnalysis(
-        session, recordings, modal, surfaces, contact, joint, tuple(remarks)
+        session, recordings, preloads, surfaces, contact, tuple(remarks)
     )
 
 
@@ -66,22 +103,27 @@ def _judged(session: Session, remarks: list[str]) -> tuple[Recording, ...]:
         return ()
 
 
-def _modal(recordings: tuple[Recording, ...], remarks: list[str]) -> ModalChain | None:
+def _modes(
+    recordings: tuple[Recording, ...],
+    stored: StoredResults | None,
+    remarks: list[str],
+) -> tuple[PreloadAnalysis, ...]:
+    """Return the modes at each preload: those that are stored, else found now."""
     if not recordings:
-        return None
-    groups = by_preload(recordings)
-    if len(groups) > 1:
-        remarks.append(
-            f"The recordings have {len(groups)} preloads; shown are the modes at "
-            f"{groups[0][0]:g} N. `jointbench modal` shows those at each."
-            if groups[0][0] is not None
-            else "Shown are the modes of the recordings that state no preload."
-        )
-    try:
-        return run_chain(groups[0][1])
-    except BadData as error:
-        remarks.append(f"No modes: {error}")
-        return None
+        return ()
+    found = []
+    for preload, group in by_preload(recordings):
+        known = None if stored is None else stored.at(preload)
+        try:
+            if known is None:
+                found.append(PreloadAnalysis(preload, run_chain(group)))
+            else:
+                modes, run = known
+                chain = modes.with_recordings(group)
+                found.append(PreloadAnalysis(preload, chain, run))
+        except BadData as error:
+            remarks.append(f"No modes{at_words(preload)}: {error}")
+    return tuple(found)
 
 
 def _contact(
@@ -97,12 +139,13 @@ def _contact(
 
 
 def _joint(
-    modal: ModalChain | None, model: BenchModel | None, remarks: list[str]
+    modes: PreloadAnalysis, model: BenchModel | None, remarks: list[str]
 ) -> Identification | None:
-    if model is None or modal is None:
+    if model is None:
         return None
     try:
-        return identify_joint(model, modal.result.model)
+        return identify_joint(model, modes.modal.result.model)
     except BadData as error:
-        remarks.append(f"No joint identification: {error}")
+        at = at_words(modes.preload)
+        remarks.append(f"No joint identification{at}: {error}")
         return None

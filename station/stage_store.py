@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Stages kept by content: a stage is run again only if what it depends on changed.
 
-The key of a stage is the SHA-256 of its name, its settings, the version of this program
-and the keys of the stages before it. A file begins with its key and the SHA-256 of the
-rest: one that is damaged, or lies under another's name, is run again.
+The key of a stage is the SHA-256 of its name, its settings, the version of its code
+(`code_version`) and the keys of the stages before it. A file begins with its key and
+the SHA-256 of the rest: one that is damaged, or lies under another's name, is run
+again.
 """
 
 import json
@@ -19,6 +20,7 @@ from typing import Any, TypeVar
 
 from jointbench.acquisition.errors import FormatError
 from jointbench.acquisition.session import software_version
+from jointbench.station.code_version import stage_version
 from jointbench.station.record_codec import decode_record, encode_record
 
 Record = TypeVar("Record")
@@ -27,19 +29,17 @@ _KEY = 64
 """Characters of a key."""
 _LEFT_BEHIND = 3600.0
 """Age at which a half written stage is nobody's [s]."""
-STAGE_LAYOUT = 3
-"""Counts up when a stage, or a result, holds something else for the same settings."""
 
 
 def stage_key(name: str, settings: object, *inputs: str) -> str:
     """Return the key of a stage.
 
     Args:
-        name: of the stage.
+        name: of the stage; names its code, see `code_version`.
         settings: all it depends on besides its inputs: records and plain data.
         inputs: keys of the stages before it, or digests of files.
     """
-    content = [STAGE_LAYOUT, software_version(), name, _text(settings), *inputs]
+    content = [stage_version(name), software_version(), name, _text(settings), *inputs]
     return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

@@ -19,9 +19,6 @@ from jointbench.analysis.structures.joint_result import StructureIdentification
 from jointbench.station.contact import ContactPoint, predict_point
 from jointbench.station.structure_contact import TheoryTable
 
-# An interval of 95 % of a normal distribution.
-_Z = 1.959963984540054
-
 
 class JointQuantity(StrEnum):
     """What is compared, as a joint's parameters end."""
@@ -157,16 +154,7 @@ def _values(
         one = by_name.get(f"{label}:{short}", by_name.get(short))
         if one is None:
             continue
-        profile = result.profiles.get(one.name)
-        if profile is not None:
-            ends = (profile.low, profile.high)
-        elif one.sd is not None:
-            # The search works on logarithms: so does the interval.
-            factor = float(np.exp(_Z * one.sd / one.value))
-            ends = (one.value / factor, one.value * factor)
-        else:
-            ends = (None, None)
-        values[quantity] = Estimate(one.value, *ends)
+        values[quantity] = Estimate(one.value, *one.interval)
         if not one.identifiable:
             doubtful.add(quantity)
     return values, frozenset(doubtful)

@@ -4,6 +4,7 @@
 from collections.abc import Sequence
 
 from jointbench.station.figures import PALETTE, Trace, axis, figure
+from jointbench.station.joint_text import interval_text
 from jointbench.station.output import console, table
 from jointbench.station.report_page import DataTable, Item, Plot, Section, Text
 from jointbench.station.theory import Estimate, JointQuantity, TheoryRow, unit_of
@@ -29,7 +30,7 @@ def theory_table(rows: Sequence[TheoryRow]) -> list[tuple[str, ...]]:
         (
             f"{row.quantity.replace('_', ' ')} [{unit_of(row.quantity)}]",
             _state(row),
-            _estimate(row.identified) + ("" if row.identifiable else ", open"),
+            _identified(row),
             name,
             *_predicted(row, one),
         )
@@ -53,11 +54,19 @@ def _estimate(one: Estimate) -> str:
     return f"{one.value:.4g} ({low}–{high})"
 
 
+def _identified(row: TheoryRow) -> str:
+    """Write what was identified: where it is open, all that is admissible."""
+    if row.identifiable:
+        return _estimate(row.identified)
+    ends = interval_text((row.identified.low, row.identified.high))
+    return ends if ends == "open" else f"{ends}, open"
+
+
 def _predicted(row: TheoryRow, one: Estimate | None) -> tuple[str, str, str]:
     if one is None:
         return ("-", "-", "-")
     words = {True: "yes", False: "no", None: "-"}
-    ratio = f"{one.value / row.identified.value:.3g}"
+    ratio = f"{one.value / row.identified.value:.3g}" if row.identifiable else "-"
     return _estimate(one), ratio, words[row.identified.overlaps(one)]
 
 
@@ -89,9 +98,8 @@ def theory_section(rows: Sequence[TheoryRow]) -> Section | None:
 
 def _plot(quantity: JointQuantity, rows: Sequence[TheoryRow]) -> Plot:
     preload = [row.preload / 1e3 for row in rows]
-    traces = [
-        _points(preload, [row.identified for row in rows], "identified", PALETTE[1])
-    ]
+    sure = [row.identified if row.identifiable else None for row in rows]
+    traces = [_points(preload, sure, "identified", PALETTE[1])]
     models = list(dict.fromkeys(name for row in rows for name in row.predicted))
     for number, name in enumerate(models):
         shifted = [one * _APART ** (number + 1) for one in preload]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """``jointbench verify`` and ``jointbench recover``: is a session whole, and if not."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from jointbench.acquisition.errors import BadData, UsageError
@@ -11,14 +12,17 @@ from jointbench.acquisition.session import Session
 from jointbench.acquisition.session_file import (
     damage_named,
     read_session,
+    write_session,
 )
-from jointbench.acquisition.session_finish import finish_live
+from jointbench.acquisition.session_finish import Finished, finish_live
 from jointbench.acquisition.session_live import LIVE_SCHEMA
 from jointbench.acquisition.session_live_read import LiveContent, read_live
 from jointbench.acquisition.session_lock import is_held
 from jointbench.acquisition.session_recover import recovered_path
+from jointbench.acquisition.session_replace import require_replaceable
 from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
+from jointbench.station.record_live import HITS_LATER, with_hits
 
 
 def run_verify(file: Path, *, json_target: str | None) -> bool:
@@ -35,7 +39,7 @@ def run_verify(file: Path, *, json_target: str | None) -> bool:
         BadData: it cannot be read at all.
     """
     check_outputs([file], [json_target])
-    problems = _problems(file)
+    problems = problems_of(file)
     session = read_session(file)
     screen = console(json_target)
     rows = [
@@ -78,8 +82,12 @@ def run_recover(
             "`jointbench verify` reads it through"
         )
     target = out or recovered_path(file)
-    check_outputs([file], [json_target])
-    done = finish_live(file, target, overwrite=overwrite)
+    check_outputs([file, target], [json_target])
+    if target.resolve() == file.resolve():
+        raise UsageError(f"'{target}' is an input; recover to another file")
+    if target.exists() and overwrite:
+        require_replaceable(target)
+    done = _recover(file, target, overwrite=overwrite)
     console(json_target).print(
         f"{target}: {done.samples} samples per channel, {done.hits} hits, "
         f"{done.damaged} damaged blocks left out",
@@ -98,6 +106,17 @@ def run_recover(
     return target
 
 
+def _recover(file: Path, target: Path, *, overwrite: bool) -> Finished:
+    """Finish a recording beside it; hits that were to be judged later are judged."""
+    done = finish_live(file, target, overwrite=overwrite)
+    content = _live_content(file)
+    if content is None or not content.meta.items() >= HITS_LATER.items():
+        return done
+    session = with_hits(read_session(target))
+    write_session(session, target, overwrite=True)
+    return replace(done, hits=sum(len(r.hits) for r in session.recordings))
+
+
 def _is_live(file: Path) -> bool:
     with open_guarded(file) as opened, damage_named(file):
         return read_attribute(opened, "schema") == LIVE_SCHEMA
@@ -111,7 +130,8 @@ def _live_content(file: Path) -> LiveContent | None:
         return read_live(opened)
 
 
-def _problems(file: Path) -> list[str]:
+def problems_of(file: Path) -> list[str]:
+    """Return what is wrong with a session, a line each, once all of it was read."""
     content = _live_content(file)
     if content is not None:
         state = "is being recorded right now" if is_held(file) else "was cut off"

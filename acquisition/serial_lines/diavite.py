@@ -18,9 +18,15 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import FormatError, UsageError
 from jointbench.acquisition.records import step
 from jointbench.acquisition.serial_lines.line import (
+    TRIES,
     Line,
     LineBroken,
+    LineSilent,
     ProfileBroken,
+    ProfileSilent,
+    Unreadable,
+    ask_again,
+    plain_text,
 )
 from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
 
@@ -31,7 +37,7 @@ CUTOFFS = (None, 0.08e-3, 0.25e-3, 0.8e-3, 2.5e-3)
 """Cut-off by its index [m]."""
 HEIGHT_STEP = 1e-6 / 128
 """Height of one count [m]."""
-_ESC, _ETX, _EOT, _ACK = b"\x1b", b"\x03", b"\x04", b"\x06"
+_ESC, _ETX, _EOT, _ACK, _NAK = b"\x1b", b"\x03", b"\x04", b"\x06", b"\x15"
 _MOST_TEXT = 4096
 _LETTERS = {
     "name": b"0",
@@ -45,6 +51,8 @@ _LETTERS = {
 def ask_text(line: Line, what: str) -> str:
     """Ask for a text, or start a measurement.
 
+    A text that cannot be read is asked for again; a measurement is started once.
+
     Args:
         line: of the instrument.
         what: ``"name"``, ``"version"``, ``"unit"``, ``"values"`` (the R values, two
@@ -52,14 +60,17 @@ def ask_text(line: Line, what: str) -> str:
 
     Raises:
         UsageError: there is no such question.
-        FormatError: the answer does not begin with ACK.
+        FormatError: the answer does not begin with ACK, or is no text.
         LineBroken: it does not come to its end.
     """
     if what not in _LETTERS:
         raise UsageError(f"the DH-8 knows no {what!r}; ask for {', '.join(_LETTERS)}")
-    _request(line, _LETTERS[what])
-    answer = line.receive_to(_EOT, limit=_MOST_TEXT)
-    return answer[:-1].decode("cp1252")
+
+    def ask() -> str:
+        _request(line, _LETTERS[what])
+        return plain_text(line.receive_to(_EOT, limit=_MOST_TEXT)[:-1], "DH-8")
+
+    return ask_again(line, ask, tries=1 if what == "start" else TRIES)
 
 
 def set_traverse(line: Line, index: int) -> None:
@@ -70,8 +81,7 @@ def set_traverse(line: Line, index: int) -> None:
     """
     if not 0 <= index < len(TRAVERSES):
         raise UsageError(f"traverse index is {index}; give 0 to {len(TRAVERSES) - 1}")
-    _request(line, b"P" + bytes([index]))
-    _end(line)
+    ask_again(line, lambda: _order(line, b"P" + bytes([index])))
 
 
 def set_cutoff(line: Line, index: int) -> None:
@@ -82,8 +92,7 @@ def set_cutoff(line: Line, index: int) -> None:
     """
     if not 0 <= index < len(CUTOFFS):
         raise UsageError(f"cut-off index is {index}; give 0 to {len(CUTOFFS) - 1}")
-    _request(line, b"Q" + bytes([index]))
-    _end(line)
+    ask_again(line, lambda: _order(line, b"Q" + bytes([index])))
 
 
 def read_profile(
@@ -94,7 +103,7 @@ def read_profile(
     filtered: bool = False,
     signed: bool = True,
 ) -> Profile:
-    """Fetch the profile of the last measurement.
+    """Fetch the profile of the last measurement; one that is garbled, once more.
 
     Args:
         line: of the instrument.
@@ -108,23 +117,8 @@ def read_profile(
         ProfileBroken: it breaks off; the error keeps bytes and heights that came.
         LineBroken: it breaks off before the first point.
     """
-    _request(line, b"U0")
-    _end(line)
-    _request(line, b"+" if filtered else b"<")
-    head = line.receive(4)
-    gain, count = struct.unpack("<HH", head)
-    try:
-        body = line.receive(2 * count)
-    except LineBroken as error:
-        whole = error.received[: len(error.received) // 2 * 2]
-        heights = _heights(whole, signed=signed)
-        raise ProfileBroken(
-            f"{error}; {heights.size} of {count} points came",
-            head + error.received,
-            heights,
-            traverse / count,
-        ) from error
-    _end(line)
+    gain, body = ask_again(line, lambda: _profile(line, traverse, filtered, signed))
+    count = len(body) // 2
     if count == 0:
         raise FormatError("the DH-8 sent a profile without points; measure first")
     return Profile(
@@ -139,6 +133,30 @@ def read_profile(
     )
 
 
+def _profile(
+    line: Line, traverse: float, filtered: bool, signed: bool
+) -> tuple[int, bytes]:
+    """Return gain and heights of a profile, as they are sent."""
+    _order(line, b"U0")
+    _request(line, b"+" if filtered else b"<")
+    head = line.receive(4)
+    gain, count = struct.unpack("<HH", head)
+    try:
+        body = line.receive(2 * count)
+    except LineBroken as error:
+        whole = error.received[: len(error.received) // 2 * 2]
+        heights = _heights(whole, signed=signed)
+        kind = ProfileSilent if isinstance(error, LineSilent) else ProfileBroken
+        raise kind(
+            f"{error}; {heights.size} of {count} points came",
+            head + error.received,
+            heights,
+            traverse / count,
+        ) from error
+    _end(line)
+    return gain, body
+
+
 def _heights(body: bytes, *, signed: bool) -> FloatArray:
     counts = np.frombuffer(body, dtype="<i2" if signed else "<u2")
     return HEIGHT_STEP * counts.astype(np.float64)
@@ -148,16 +166,23 @@ def _request(line: Line, command: bytes) -> None:
     line.send(_ESC + command + _ETX)
     first = line.receive(1)
     if first != _ACK:
-        raise FormatError(
+        kind = FormatError if first == _NAK else Unreadable
+        raise kind(
             f"the DH-8 answered {first!r} to {command!r} where ACK is expected; check "
             f"the baud rate, it is {BAUD}"
         )
 
 
+def _order(line: Line, command: bytes) -> None:
+    """Send what is answered without a payload."""
+    _request(line, command)
+    _end(line)
+
+
 def _end(line: Line) -> None:
     last = line.receive(1)
     if last != _EOT:
-        raise FormatError(
+        raise Unreadable(
             f"the DH-8 ended its answer with {last!r} instead of EOT; the profile was "
             "not taken, ask again"
         )

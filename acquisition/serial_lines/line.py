@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 """A serial line with a deadline: the one module that talks to pyserial."""
 
+import re
 import sys
-from typing import Protocol
+import time
+from collections.abc import Callable
+from typing import Protocol, TypeVar
 
 import serial
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import InstrumentError, UsageError
+from jointbench.acquisition.errors import FormatError, InstrumentError, UsageError
 
 if sys.platform == "win32":
     _BROKEN: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)
@@ -16,6 +19,13 @@ else:
 
     # pyserial lets an error of the terminal through, and trips over a closed port.
     _BROKEN = (serial.SerialException, OSError, TypeError, termios.error)
+
+Answer = TypeVar("Answer")
+TRIES = 3
+"""Times that an answer which cannot be read is asked for."""
+_QUIET = 0.05  # [s], 48 characters at 9600 baud
+_LONGEST_NOISE = 1.0  # [s]
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x0c\x0e-\x1f\x7f]")
 
 
 class LineBroken(InstrumentError):
@@ -28,6 +38,14 @@ class LineBroken(InstrumentError):
     def __init__(self, message: str, received: bytes) -> None:
         super().__init__(message)
         self.received = received
+
+
+class LineSilent(LineBroken):
+    """A line that is there, but on which an answer stops short: bytes were lost."""
+
+
+class Unreadable(FormatError):
+    """An answer that noise has made into something else; asked again, it may do."""
 
 
 class ProfileBroken(LineBroken):
@@ -45,6 +63,10 @@ class ProfileBroken(LineBroken):
         self.heights, self.spacing = heights, spacing
 
 
+class ProfileSilent(ProfileBroken, LineSilent):
+    """A profile that stops short on a line that is there."""
+
+
 class Line(Protocol):
     """What a driver needs of a line; a test may be one."""
 
@@ -59,6 +81,65 @@ class Line(Protocol):
     def receive_to(self, end: bytes, *, limit: int) -> bytes:
         """Return bytes up to and with `end`, or raise `LineBroken`."""
         ...
+
+    def settle(self) -> None:
+        """Drop what still arrives, until the line is quiet, or raise `LineBroken`."""
+        ...
+
+
+def ask_again(line: Line, ask: Callable[[], Answer], *, tries: int = TRIES) -> Answer:
+    """Return an answer that can be read; one that cannot is asked for again.
+
+    Args:
+        line: of the instrument.
+        ask: sends the request and reads its answer; asking twice must do no harm.
+        tries: times that it is asked at the most.
+
+    Raises:
+        Unreadable: no answer can be read.
+        LineSilent: they stop short; the error keeps the longest.
+        LineBroken: the line was unplugged; that is not tried again.
+    """
+    kept: LineBroken | Unreadable | None = None
+    for left in reversed(range(tries)):
+        try:
+            if kept is not None:
+                line.settle()
+            return ask()
+        except (LineBroken, Unreadable) as error:
+            if kept is None or _came(error) > _came(kept):
+                kept = error
+            if not (left and isinstance(error, LineSilent | Unreadable)):
+                break
+    assert kept is not None, "tries is at least 1"
+    raise kept
+
+
+def _came(error: LineBroken | Unreadable) -> int:
+    """Return how many bytes of an answer an error keeps."""
+    return len(error.received) if isinstance(error, LineBroken) else 0
+
+
+def plain_text(answer: bytes, instrument: str) -> str:
+    """Return an answer as text.
+
+    Args:
+        answer: as received, in Windows-1252.
+        instrument: for the message.
+
+    Raises:
+        Unreadable: a byte of it stands for no character.
+    """
+    try:
+        text = answer.decode("cp1252")
+    except UnicodeDecodeError:
+        text = ""
+    if (not text and answer) or _CONTROL.search(text):
+        raise Unreadable(
+            f"the {instrument} answered {answer[:20]!r}, which is no text; check cable "
+            "and baud rate"
+        )
+    return text
 
 
 class SerialLine:
@@ -91,12 +172,13 @@ class SerialLine:
             ) from error
 
     def send(self, data: bytes) -> None:
-        """Send all of `data`.
+        """Send all of `data`; what arrived before it answers nothing, and is dropped.
 
         Raises:
             LineBroken: the line was unplugged.
         """
         try:
+            self._port.reset_input_buffer()
             self._port.write(data)
             self._port.flush()
         except _BROKEN as error:
@@ -126,11 +208,25 @@ class SerialLine:
         received = bytearray()
         while not received.endswith(end):
             if len(received) >= limit:
-                raise self._broken(
-                    f"sent {limit} bytes without an end", bytes(received)
-                )
+                words = f"sent {limit} bytes without an end"
+                raise self._broken(words, bytes(received), LineSilent)
             self._more(received, 1, f"an answer that ends in {end!r}")
         return bytes(received)
+
+    def settle(self) -> None:
+        """Drop what still arrives, until the line is quiet.
+
+        Raises:
+            LineBroken: the line was unplugged.
+        """
+        until = time.monotonic() + _LONGEST_NOISE
+        try:
+            time.sleep(_QUIET)
+            while self._port.in_waiting and time.monotonic() < until:
+                self._port.reset_input_buffer()
+                time.sleep(_QUIET)
+        except _BROKEN as error:
+            raise self._broken("was unplugged", b"") from error
 
     def waiting(self) -> int:
         """Return how many bytes have arrived that nobody read."""
@@ -152,10 +248,13 @@ class SerialLine:
         except _BROKEN as error:
             raise self._broken("was unplugged", bytes(received)) from error
         if not new:
-            raise self._broken(f"is silent, {wanted} were expected", bytes(received))
+            words = f"is silent, {wanted} were expected"
+            raise self._broken(words, bytes(received), LineSilent)
 
-    def _broken(self, what: str, received: bytes) -> LineBroken:
-        return LineBroken(
+    def _broken(
+        self, what: str, received: bytes, kind: type[LineBroken] = LineBroken
+    ) -> LineBroken:
+        return kind(
             f"serial line {self.name!r} {what} after {len(received)} bytes of the "
             "answer; check plug, power and baud rate, then ask again",
             received,

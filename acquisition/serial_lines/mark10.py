@@ -10,13 +10,18 @@ Source:
 import re
 from dataclasses import dataclass
 
-from jointbench.acquisition.errors import FormatError, InstrumentError
-from jointbench.acquisition.serial_lines.line import Line
+from jointbench.acquisition.errors import InstrumentError
+from jointbench.acquisition.serial_lines.line import (
+    Line,
+    Unreadable,
+    ask_again,
+    plain_text,
+)
 from jointbench.acquisition.units import is_unit, to_si
 
 BAUD = 115_200
 _MOST = 64
-_READING = re.compile(r"\s*([+-]?\d+\.?\d*)\s*(\S.*?)\s*")
+_READING = re.compile(r"\s*([+-]?[0-9]{1,9}\.?[0-9]{0,9})\s*(\S.*?)\s*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,15 +40,19 @@ class Reading:
 
 
 def read_gauge(line: Line) -> Reading:
-    """Read what the gauge shows.
+    """Read what the gauge shows; an answer that cannot be read is asked for again.
 
     Raises:
         InstrumentError: the gauge answers with an error.
-        FormatError: the answer is no number with a unit of torque or force.
+        FormatError: no answer is a number with a unit of torque or force.
         LineBroken: it does not come to its end.
     """
+    return ask_again(line, lambda: _reading(line))
+
+
+def _reading(line: Line) -> Reading:
     line.send(b"?\r")
-    raw = line.receive_to(b"\r\n", limit=_MOST)[:-2].decode("cp1252")
+    raw = plain_text(line.receive_to(b"\r\n", limit=_MOST)[:-2], "Mark-10")
     if raw.startswith("*"):
         raise InstrumentError(f"the Mark-10 answers error {raw!r}; see its manual")
     match = _READING.fullmatch(raw)
@@ -52,7 +61,7 @@ def read_gauge(line: Line) -> Reading:
             unit = match[2].replace("lbFin", "lbfin").replace("lbFft", "lbfft")
             if is_unit(unit, kind):
                 return Reading(float(match[1]) * to_si(unit, kind), kind, raw)
-    raise FormatError(
+    raise Unreadable(
         f"the Mark-10 answered {raw!r}; a number with a unit of torque or force is "
         "expected"
     )

@@ -22,6 +22,9 @@ from jointbench.acquisition.serial_lines.line import (
     Line,
     LineBroken,
     ProfileBroken,
+    Unreadable,
+    ask_again,
+    plain_text,
 )
 from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
 
@@ -30,6 +33,9 @@ _CR = b"\r"
 _MOST = 65_536
 _DIGITS = 9
 _MOST_FILES = 50
+_NUMBER = re.compile(r"\s*[0-9]{1,4}\s*")
+_LENGTH = re.compile(r" *[0-9]+(\.[0-9]*)? *")
+_HEIGHT = re.compile(r"(?=.{9}$) *[+-]?[0-9]+(\.[0-9]*)? *")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +62,19 @@ class Conditions:
 def ask(line: Line, field: str, data: str = "") -> str:
     """Read a sub-field, ``"STU"``, ``"CON"``, ``"PAR"``, ``"RES"`` or ``"EVA"``.
 
+    An answer that cannot be read is asked for again.
+
     Raises:
         InstrumentError: the instrument answers NG.
-        FormatError: the answer is neither OK nor NG.
+        FormatError: no answer is OK or NG.
         LineBroken: it does not come to its end.
     """
+    return ask_again(line, lambda: _asked(line, field, data))
+
+
+def _asked(line: Line, field: str, data: str = "") -> str:
     line.send(f"RD{field}{data}".encode("ascii") + _CR)
-    answer = line.receive_to(_CR, limit=_MOST)[:-1].decode("cp1252")
+    answer = plain_text(line.receive_to(_CR, limit=_MOST)[:-1], "Mitutoyo")
     if answer.startswith("OK"):
         return answer[2:]
     if answer.startswith("NG"):
@@ -70,7 +82,7 @@ def ask(line: Line, field: str, data: str = "") -> str:
             f"the Mitutoyo refuses {field!r} with code {answer[2:]!r}; its manual "
             "lists the codes"
         )
-    raise FormatError(
+    raise Unreadable(
         f"the Mitutoyo answered {answer[:20]!r} where OK or NG is expected; check the "
         "baud rate"
     )
@@ -80,22 +92,26 @@ def read_conditions(line: Line) -> Conditions:
     """Read how the instrument is set.
 
     Raises:
-        FormatError: the answer is shorter than the manual's.
+        FormatError: no answer reads as the manual says.
     """
-    text = ask(line, "CON")
-    try:
-        return Conditions(
-            standard=text[0],
-            profile=text[1],
-            cutoff=text[2],
-            sampling_lengths=int(text[3:5]),
-            length=1e-3 * float(text[5:10]),
-            filter=text[11],
+    return ask_again(line, lambda: _conditions(_asked(line, "CON")))
+
+
+def _conditions(text: str) -> Conditions:
+    count, length = text[3:5], text[5:10]
+    right = len(text) > 11 and _NUMBER.fullmatch(count) and _LENGTH.fullmatch(length)
+    if not right or not float(length) > 0:
+        raise Unreadable(
+            f"the Mitutoyo's conditions {text[:20]!r} do not read as its manual says"
         )
-    except (IndexError, ValueError) as error:
-        raise FormatError(
-            f"the Mitutoyo's conditions {text!r} do not read as its manual says"
-        ) from error
+    return Conditions(
+        standard=text[0],
+        profile=text[1],
+        cutoff=text[2],
+        sampling_lengths=int(count),
+        length=1e-3 * float(length),
+        filter=text[11],
+    )
 
 
 def read_profile(line: Line, *, name: str) -> Profile:
@@ -114,11 +130,11 @@ def read_profile(line: Line, *, name: str) -> Profile:
         LineBroken: it breaks off before the first file.
     """
     length = read_conditions(line).length
-    count = _number_of_files(ask(line, "EVA", "00"))
+    count = ask_again(line, lambda: _number_of_files(_asked(line, "EVA", "00")))
     heights: list[float] = []
     for number in range(1, count + 1):
         try:
-            heights += parse_heights(ask(line, "EVA", f"{number:02d}"), number)
+            heights += _file(line, number)
         except LineBroken as error:
             # How many points a file holds shows in those before it alone.
             heights += _whole_heights(error.received)
@@ -140,6 +156,15 @@ def read_profile(line: Line, *, name: str) -> Profile:
     )
 
 
+def _file(line: Line, number: int) -> list[float]:
+    """Return the heights of one file [um]."""
+
+    def ask_once() -> list[float]:
+        return parse_heights(_asked(line, "EVA", f"{number:02d}"), number)
+
+    return ask_again(line, ask_once)
+
+
 def parse_heights(text: str, number: int) -> list[float]:
     """Read the heights of one file [um].
 
@@ -151,26 +176,23 @@ def parse_heights(text: str, number: int) -> list[float]:
         FormatError: it is another file, or no list of heights.
     """
     head, _, body = text.partition(";")
-    try:
-        found = int(head)
-        parted = [word for word in re.split(r"[,;\s]+", body.strip()) if word]
-        words = [
-            word[i : i + _DIGITS]
-            for word in parted
-            for i in range(0, len(word), _DIGITS)
-        ]
-        heights = [float(word) for word in words]
-    except ValueError as error:
-        raise FormatError(
+    words = [
+        word[i : i + _DIGITS]
+        for part in re.split(r"[,;\t\r\n]+", body)
+        for word in ([part] if len(part) % _DIGITS == 0 else part.split())
+        for i in range(0, len(word), _DIGITS)
+    ]
+    if not _NUMBER.fullmatch(head) or not all(map(_HEIGHT.fullmatch, words)):
+        raise Unreadable(
             f"the Mitutoyo's profile file {number} begins {text[:20]!r}; heights of "
             "nine characters after its number are expected"
-        ) from error
-    if found != number:
-        raise FormatError(
-            f"the Mitutoyo sent profile file {found} where {number} was asked for; ask "
-            "for the profile again"
         )
-    return heights
+    if int(head) != number:
+        raise Unreadable(
+            f"the Mitutoyo sent profile file {int(head)} where {number} was asked for; "
+            "ask for the profile again"
+        )
+    return [float(word) for word in words]
 
 
 def _whole_heights(received: bytes) -> list[float]:
@@ -178,18 +200,17 @@ def _whole_heights(received: bytes) -> list[float]:
     _, _, body = received.partition(b";")
     found: list[float] = []
     for part in re.findall(rb"[^,;\s]{9}", body):
-        try:
-            found.append(float(part))
-        except ValueError:
+        if not _HEIGHT.fullmatch(part.decode("latin-1")):
             break
+        found.append(float(part))
     return found
 
 
 def _number_of_files(text: str) -> int:
-    digits = re.search(r"\d+", text.rpartition(";")[2])
+    digits = _NUMBER.fullmatch(text.rpartition(";")[2])
     count = int(digits[0]) if digits else -1
     if not 0 <= count <= _MOST_FILES:
-        raise FormatError(
+        raise Unreadable(
             f"the Mitutoyo's number of profile files is {text!r}, 0 to {_MOST_FILES} "
             "are expected"
         )

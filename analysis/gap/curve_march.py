@@ -11,9 +11,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numba import njit
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.compiled import compiled
 from jointbench.acquisition.errors import UsageError
 
 POINTS = 8193
@@ -26,7 +26,7 @@ FASTEST = 100.0
 Curve = Callable[[FloatArray], FloatArray]
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@compiled(fastmath=True, inline="always")
 def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
     """Interpolate a row of a table at x by cubics of continuous slope.
 
@@ -49,7 +49,7 @@ def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
     return float(b + 0.5 * t * (c - a + t * bend))
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@compiled(fastmath=True, inline="always")
 def curve_force(
     tables: FloatArray, row: int, travel: float, speed: float, r: float, v: float
 ) -> float:

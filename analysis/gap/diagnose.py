@@ -10,24 +10,21 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import FULL, Bench, values_of
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE
-from jointbench.analysis.gap.checks import campaign_limits, flat_tops
+from jointbench.analysis.gap.checks import campaign_limits
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import (
     Candidate,
     Reported,
     Term,
-    labels_of,
-    words_of,
 )
 from jointbench.analysis.gap.exhibit import make_exhibit
-from jointbench.analysis.gap.exhibit_where import counted_samples
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.heldout import HeldOut, hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.naming import GLOBAL_SD, noise_sd, weakest
+from jointbench.analysis.gap.naming import noise_sd, weakest
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.race import Progress, score
 from jointbench.analysis.gap.records import (
@@ -38,18 +35,18 @@ from jointbench.analysis.gap.records import (
     NamedEffect,
     Ranked,
 )
+from jointbench.analysis.gap.verdict import verdict_on
+from jointbench.signal.one_thread import one_thread
 
 FAR = 1e12
-MOSTLY = 0.8
-"""Share of the misfit from which one record is suspected by itself."""
 UNFORETOLD_WORDS = (
     "; held out, a condition is not foretold by the others: it shows the effect "
     "alone, so add conditions next to it"
 )
-MOST_RIVALS = 3
-"""Explanations that fit alike beyond which nothing is told apart."""
+LOOK_CLOSER = "look at the views of the gap; widen levels, points and preloads"
 
 
+@one_thread()
 def diagnose(
     campaign: Campaign,
     *,
@@ -88,7 +85,8 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
     """Put an outcome into words and numbers."""
     base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
     outcome = replace(outcome, base=base)
-    finding, reason = _verdict(outcome, bench, limits)
+    verdict = verdict_on(outcome, bench, limits)
+    finding = verdict.finding
     shown: Sequence[Fit] = ()
     if finding is Finding.NAMED:
         shown = (outcome.best,)
@@ -96,6 +94,9 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
         shown = outcome.level
     best = outcome.best if outcome.gate.passed else base
     held = hold_out(base, bench)
+    exhibit = make_exhibit(bench, base, outcome, finding)
+    if verdict.step:
+        exhibit = replace(exhibit, advice="")
     found = Diagnosis(
         verdict=finding,
         effects=_effects(outcome, bench, shown),
@@ -118,72 +119,18 @@ def conclude(outcome: Outcome, bench: LumpedBench, *, limits: str = "") -> Diagn
             outcome.base_screening.largest,
             outcome.base_screening.threshold,
         ),
-        experiment=_experiment(outcome, finding),
-        reason=reason,
-        exhibit=make_exhibit(bench, base, outcome),
+        experiment=verdict.step or exhibit.advice or LOOK_CLOSER,
+        reason=verdict.reason,
+        exhibit=exhibit,
         explanations=tuple(_labels(f) for f in outcome.level if outcome.gate.passed),
     )
     if finding is Finding.NAMED and not found.foretold:
-        return replace(found, reason=reason + UNFORETOLD_WORDS)
+        return replace(found, reason=verdict.reason + UNFORETOLD_WORDS)
     return found
 
 
 def _labels(fit: Fit) -> tuple[str, ...]:
     return tuple(c.label for c in fit.candidates) or ("none",)
-
-
-def _verdict(outcome: Outcome, bench: LumpedBench, limits: str) -> tuple[Finding, str]:
-    """Return the verdict and the reason in one line."""
-    if limits:
-        return Finding.UNKNOWN, limits
-    if not outcome.best.candidates and outcome.gate.passed:
-        return Finding.NONE, "the base explains the records to within their noise"
-    if not outcome.gate.passed:
-        flat = flat_tops(bench.campaign.response, bench.noise.sigma)
-        if flat:
-            return Finding.UNKNOWN, (
-                f"record {flat[0]} has flat tops (and {len(flat) - 1} others): "
-                "a channel is overloaded; lower its gain and hit again"
-            )
-        odd = _odd_record(outcome, bench)
-        return Finding.UNKNOWN, odd or _unexplained(outcome)
-    names = " or ".join(words_of(f.candidates) for f in outcome.level)
-    if len(outcome.level) > MOST_RIVALS:
-        return Finding.UNKNOWN, f"too many explanations fit alike: {names}"
-    if len(outcome.level) > 1:
-        return Finding.AMBIGUOUS, f"{names}: their scores lie too close together"
-    return (
-        Finding.NAMED,
-        f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}",
-    )
-
-
-def _unexplained(outcome: Outcome) -> str:
-    """Say why the best fit is no name, and whether more might have been tried."""
-    reason = f"no effect explains it: {outcome.gate.reason}"
-    if outcome.given_up:
-        reason += "; the search for a further one was ended for its length"
-    return reason
-
-
-def _odd_record(outcome: Outcome, bench: LumpedBench) -> str:
-    """Return a warning where one record holds nearly all of the misfit.
-
-    Its excess must be more than that of noise, or some record always holds most.
-    """
-    groups = bench.blocks.group
-    counted = counted_samples(bench) * bench.blocks.shape[1]
-    share = np.bincount(groups, weights=outcome.best.residual**2) - counted
-    worst = int(np.argmax(share))
-    total = float(np.clip(share, 0, None).sum())
-    noise = noise_sd(bench) * np.sqrt(share.size) * np.mean(np.bincount(groups))
-    if share[worst] < max(MOSTLY * total, GLOBAL_SD * noise):
-        return ""
-    labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
-    return (
-        f"record {worst} ({labels}) holds {100 * share[worst] / total:.0f} % of the "
-        "misfit: check its labels (preload, level, point) or measure it again"
-    )
 
 
 def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
@@ -291,39 +238,6 @@ def _base_estimates(bench: LumpedBench, fit: Fit) -> tuple[Estimate, ...]:
         Estimate(name, float(v), float(v * s), unit)
         for name, v, s, unit in zip(bench.base_names, values, sd, units, strict=True)
     )
-
-
-def _experiment(outcome: Outcome, finding: Finding) -> str:
-    """Return the experiment that separates what is left."""
-    if finding is Finding.NONE:
-        return "none needed; to look deeper, hit at more levels and preloads"
-    if finding is Finding.NAMED and (rivals := _otherwise(outcome)):
-        return _separates(outcome.ranked[0], rivals[0])
-    if finding is Finding.AMBIGUOUS:
-        return _separates(outcome.level[0], outcome.level[1])
-    return "look at the views of the gap; widen levels, points and preloads"
-
-
-def _otherwise(outcome: Outcome) -> list[Fit]:
-    """Return the fits that hold neither all effects of the best nor only such."""
-    if not outcome.ranked:
-        return []
-    own = labels_of(outcome.ranked[0].candidates)
-    others = [(labels_of(f.candidates), f) for f in outcome.ranked]
-    return [f for labels, f in others if not (labels <= own or own <= labels)]
-
-
-def _separates(first: Fit, second: Fit) -> str:
-    """Return the experiment that tells two fits apart by what one alone holds."""
-    own = [c for c in first.candidates if c not in second.candidates]
-    other = [c for c in second.candidates if c not in first.candidates]
-    for a in own:
-        for b in other:
-            for left, right in ((a, b), (b, a)):
-                advice = left.effect.separates.get(right.effect.name)
-                if advice:
-                    return f"{left.label} or {right.label}: {advice}"
-    return "repeat at more levels, points and preloads to tell the first two apart"
 
 
 __all__ = ["conclude", "diagnose", "estimates_of", "evidence_of", "noise_sd"]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.effects import words_of
-from jointbench.analysis.gap.exhibit_level import recurrences
+from jointbench.analysis.gap.exhibit_facts import gather
 from jointbench.analysis.gap.exhibit_records import (
     Curves,
     DirectedTest,
@@ -29,6 +29,7 @@ from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.naming import PULL_LIMIT
+from jointbench.analysis.gap.records import Finding
 from jointbench.analysis.lumped import Output
 
 UNITS = {
@@ -49,13 +50,16 @@ FINEST = 48
 MOST_TESTS = 8
 
 
-def make_exhibit(bench: LumpedBench, base: Fit, outcome: Outcome) -> Exhibit:
+def make_exhibit(
+    bench: LumpedBench, base: Fit, outcome: Outcome, finding: Finding
+) -> Exhibit:
     """Put the evidence of an outcome into a form that can be drawn and told.
 
     Args:
         bench: with its noise as estimated at the end.
         base: fit without effects on that bench.
         outcome: of the loop on that bench.
+        finding: the verdict on it.
     """
     best = outcome.best if outcome.best.candidates else base
     residual = _cube(bench, base)
@@ -67,23 +71,23 @@ def make_exhibit(bench: LumpedBench, base: Fit, outcome: Outcome) -> Exhibit:
         bench.response(best.base, best.terms),
     )
     curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
-    levels = recurrences(bench, bench.campaign.response - models[0])
+    facts = gather(bench, base, outcome, finding, relative["output"])
     limits = _limits(outcome)
-    view = telling_view(bench, residual, levels)
+    view = telling_view(bench, residual, facts)
     where = ""
     look: tuple[str, ...] = ()
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
-        where = locate(bench, residual, levels)
-        look = describe(bench, residual, relative, levels, wishes, tests)
+        where = locate(bench, residual, facts)
+        look = describe(bench, residual, relative, facts, wishes, tests)
     elif not outcome.base_gate.passed and np.abs(base.pulls).max() > PULL_LIMIT:
         where, view = pulled(bench, base), "sheet"
     elif not outcome.base_gate.passed:
-        where = locate(bench, residual, levels)
+        where = locate(bench, residual, facts)
     return Exhibit(
         tried=words_of(best.candidates),
         where=where,
         look=look,
-        advice=advise(bench, relative, levels) if look else "",
+        advice=advise(bench, facts) if look and facts.guessed else "",
         view=view,
         relative=relative,
         curves=curves,

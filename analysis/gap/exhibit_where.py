@@ -12,15 +12,14 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.campaign import TAIL
-from jointbench.analysis.gap.exhibit_level import Recurrence, is_linear
+from jointbench.analysis.gap.exhibit_facts import UNEVEN, Facts
+from jointbench.analysis.gap.exhibit_level import Scaling
 from jointbench.analysis.gap.fit import Fit
 from jointbench.analysis.gap.lumped import LumpedBench
 
 GROWS = 0.7
 """Size at the next lower level, over the hardest, below which a misfit grows."""
 MAINLY = 0.6
-UNEVEN = 2.0
-"""Ratio of relative misfits from which a view is worth a word."""
 BAND_SHARE = 0.8
 CONTROLLED = ("hit point", "preload")
 Relative = dict[str, dict[str, float]]
@@ -61,20 +60,18 @@ def _ratio(excess: FloatArray, power: FloatArray) -> float:
     return float(np.sqrt(max(excess.sum(), 0.0) / max(power.sum(), 1e-300)))
 
 
-def locate(
-    bench: LumpedBench, residual: FloatArray, levels: Sequence[Recurrence]
-) -> str:
+def locate(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     """Return one sentence on where the misfit of a fit sits.
 
     Args:
         bench: measurement and noise.
         residual: whitened, shape (n_records, n_channels, n_samples).
-        levels: recurrence at softer hits.
+        facts: what is known of it.
     """
     counted = counted_samples(bench)
     excess = np.maximum(np.sum(residual**2, axis=2) - counted, 0.0)
     total = max(float(excess.sum()), 1e-300)
-    parts = [] if bench.campaign.continuous else [_level_words(bench, excess, levels)]
+    parts = [] if bench.campaign.continuous else [_level_words(bench, excess, facts)]
     channels = excess.sum(axis=0) / total
     top = int(np.argmax(channels))
     name = bench.campaign.model.channels[top].name
@@ -106,9 +103,7 @@ def pulled(bench: LumpedBench, base: Fit) -> str:
     )
 
 
-def _level_words(
-    bench: LumpedBench, excess: FloatArray, levels: Sequence[Recurrence]
-) -> str:
+def _level_words(bench: LumpedBench, excess: FloatArray, facts: Facts) -> str:
     words = [x["level"] for x in bench.blocks.labels]
     shares = {k: float(excess[rows].sum()) for k, rows in _rows_of(words).items()}
     total = max(sum(shares.values()), 1e-300)
@@ -116,11 +111,11 @@ def _level_words(
     held = f"{100 * shares[top] / total:.0f} % of it at {top}"
     if len(shares) == 1:
         return "was seen at one level only"
-    if not levels:
+    if facts.scaling is Scaling.UNTOLD:
         return f"is largest at {top} ({held})"
-    if is_linear(levels):
+    if facts.scaling is Scaling.PROPORTIONAL:
         return "is in proportion to the hit at every level"
-    size = levels[0].size
+    size = facts.levels[0].size
     if size < GROWS:
         return f"grows with level ({held})"
     if size > 1.0 / GROWS:
@@ -154,17 +149,15 @@ def _band(bench: LumpedBench, residual: FloatArray) -> tuple[float, float]:
     return first * rate / n, (last + 1) * rate / n
 
 
-def telling_view(
-    bench: LumpedBench, residual: FloatArray, levels: Sequence[Recurrence]
-) -> str:
+def telling_view(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     """Return the view in which a misfit stands out most.
 
     Args:
         bench: measurement and noise.
         residual: whitened, shape (n_records, n_channels, n_samples).
-        levels: recurrence at softer hits.
+        facts: what is known of the misfit.
     """
-    if levels and not is_linear(levels):
+    if facts.scaling is Scaling.CHANGES:
         return "level"
     excess = np.sum(residual**2, axis=2) - counted_samples(bench)
     ratios = {view: _unevenness(bench, excess, view)[0] for view in CONTROLLED}

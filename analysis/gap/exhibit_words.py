@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.exhibit_level import Recurrence, is_linear
+from jointbench.acquisition.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.exhibit_facts import Facts
+from jointbench.analysis.gap.exhibit_level import Scaling
 from jointbench.analysis.gap.exhibit_records import DirectedTest, Wishes
-from jointbench.analysis.gap.exhibit_where import UNEVEN, Relative
+from jointbench.analysis.gap.exhibit_where import Relative
 from jointbench.analysis.gap.lumped import LumpedBench
 
 CLEAR_SD = 4.0
@@ -23,7 +24,7 @@ def describe(
     bench: LumpedBench,
     residual: FloatArray,
     relative: Relative,
-    levels: Sequence[Recurrence],
+    facts: Facts,
     wishes: Wishes | None,
     tests: Sequence[DirectedTest],
 ) -> tuple[str, ...]:
@@ -33,72 +34,87 @@ def describe(
         bench: measurement and noise.
         residual: whitened, shape (n_records, n_channels, n_samples).
         relative: misfit over response by view and slice [-].
-        levels: recurrence at softer hits.
+        facts: what is known of the misfit.
         wishes: of the records for the joint, or None.
         tests: directed tests of the base.
     """
     lines = [
-        _level_line(bench, levels),
-        _channel_line(relative["output"]),
+        _level_line(bench, facts),
+        _channel_line(relative["output"], facts),
         _phase_line(bench, residual),
-        "" if is_linear(levels) else symmetry(tests),
     ]
+    if facts.guessed and facts.scaling is not Scaling.PROPORTIONAL:
+        lines.append(symmetry(tests))
     if wishes is not None:
-        lines += _wish_lines(wishes)
+        lines += _wish_lines(wishes, facts)
     return tuple(line for line in lines if line)
 
 
-def advise(bench: LumpedBench, relative: Relative, levels: Sequence[Recurrence]) -> str:
+def advise(bench: LumpedBench, facts: Facts) -> str:
     """Say what would bring light into a misfit that no effect explains.
 
     Args:
         bench: measurement and noise.
-        relative: misfit over response by view and slice [-].
-        levels: recurrence at softer hits.
+        facts: what is known of the misfit.
     """
     if bench.campaign.continuous:
         return "shake at levels over a factor of 10; then try a law of your own"
     if np.unique(bench.campaign.level).size < 2:
         return "hit at four levels over a factor of 30: one level cannot tell causes"
-    if not levels:
+    if facts.scaling is Scaling.UNTOLD:
         return "hit harder, or average more repeats: the noise hides the softer hits"
-    if not is_linear(levels):
+    if facts.scaling is Scaling.CHANGES:
         return (
             "hit at levels in between and from the other side, which tells even from "
             "odd laws; then try a law of your own with --effects"
         )
-    top = max(relative["output"], key=lambda name: relative["output"][name])
-    if relative["output"][top] > UNEVEN * min(relative["output"].values()):
-        return f"swap sensor {top} with another, or move it, and hit again"
+    if facts.uneven:
+        return f"swap sensor {facts.uneven} with another, or move it, and hit again"
     return "hit at more points and preloads; look for a part that the model leaves out"
 
 
-def _level_line(bench: LumpedBench, levels: Sequence[Recurrence]) -> str:
+def _level_line(bench: LumpedBench, facts: Facts) -> str:
     if bench.campaign.continuous:
         return ""
     if np.unique(bench.campaign.level).size < 2:
         return "level: seen at one level only; hit harder and softer"
-    if not levels:
+    if not facts.levels:
         return "level: the noise hides whether softer hits show it; hit harder"
-    recur = ", ".join(f"{100 * f.share:.0f} % at {f.level:g} N" for f in levels)
-    kind = "so the cause depends on amplitude"
-    if is_linear(levels):
-        kind = "so the cause is linear in the motion"
+    recur = ", ".join(f"{100 * f.share:.0f} % at {f.level:g} N" for f in facts.levels)
     return (
-        "level: the misfit of the hardest hits, scaled with the force, recurs in "
-        f"softer ones by {recur}; {kind}"
+        "level: with the base fitted to the softer hits, the misfit of the hardest, "
+        f"scaled with the force, recurs in softer ones by {recur}; {_cause(facts)}"
     )
 
 
-def _channel_line(slices: Mapping[str, float]) -> str:
+def _cause(facts: Facts) -> str:
+    """Say how the misfit goes with the hit, and what it tells where the cause is open.
+
+    A law that is not linear is so to first order about its preload, so that a misfit
+    in proportion to the hit rules none out.
+    """
+    seen = "in proportion to the hit"
+    if facts.seen is not Scaling.PROPORTIONAL:
+        seen = f"not {seen}"
+    if facts.guessed and facts.seen is Scaling.PROPORTIONAL:
+        return f"{seen}, so the cause is linear over this travel"
+    if facts.guessed:
+        return f"{seen}, so the cause depends on the level, or on when a hit was made"
+    if facts.seen is facts.scaling:
+        return seen
+    return f"{seen}, unlike what the named effects do by themselves"
+
+
+def _channel_line(slices: Mapping[str, float], facts: Facts) -> str:
     if len(slices) < 2:
         return ""
     words = ", ".join(f"{name} {100 * x:.2g} %" for name, x in slices.items())
-    top, least = max(slices.values()), min(slices.values())
-    kind = "alike, so it is in the structure rather than in one sensor"
-    if top > UNEVEN * max(least, 1e-12):
-        kind = "uneven: suspect that sensor or the body it sits on"
-    return f"channel: misfit over response {words}; {kind}"
+    line = f"channel: misfit over response {words}"
+    if not facts.guessed:
+        return line
+    if facts.uneven:
+        return f"{line}; uneven: suspect that sensor or the body it sits on"
+    return f"{line}; alike, so it is in the structure rather than in one sensor"
 
 
 def _phase_line(bench: LumpedBench, residual: FloatArray) -> str:
@@ -129,32 +145,42 @@ def symmetry(tests: Sequence[DirectedTest]) -> str:
     )
 
 
-def _wish_lines(wishes: Wishes) -> list[str]:
-    if wishes.share < TAKEN:
-        return [
-            "joint: a stiffness and damping of its own for each record would take only "
-            f"{100 * wishes.share:.0f} % of the misfit, so more than those is at work"
-        ]
+def _wish_lines(wishes: Wishes, facts: Facts) -> list[str]:
     lines = [
         "joint: a stiffness and damping of its own for each record would take "
         f"{100 * wishes.share:.0f} % of the misfit"
     ]
+    if wishes.share < TAKEN:
+        more = ", so more than those is at work" if facts.guessed else ""
+        return [lines[0] + more]
+    views = [
+        ("level", wishes.level, wishes.preload),
+        ("preload", wishes.preload, wishes.level),
+    ]
+    if facts.scaling is Scaling.PROPORTIONAL:
+        views = views[1:]
     for word, values, sd in (
         ("stiffness", wishes.stiffness[:, 0], wishes.stiffness_sd[:, 0]),
         ("damping", wishes.damping[:, 0], wishes.damping_sd[:, 0]),
     ):
-        for view, x, unit in (
-            ("level", wishes.level, "N"),
-            ("preload", wishes.preload, "N"),
-        ):
-            line = _trend(word, view, unit, x, values, sd)
+        for view, x, other in views:
+            alike = _alike(x, other)
+            line = _trend(word, view, x[alike], values[alike], sd[alike])
             lines += [line] if line else []
     return lines
 
 
-def _trend(
-    word: str, view: str, unit: str, x: FloatArray, y: FloatArray, sd: FloatArray
-) -> str:
+def _alike(x: FloatArray, other: FloatArray) -> BoolArray:
+    """Return the records whose other condition was met at every x.
+
+    Else a second preload that only soft hits met would be taken for the cause of what
+    the hard ones do.
+    """
+    met = [set(other[x == value].tolist()) for value in np.unique(x)]
+    return np.isin(other, sorted(set.intersection(*met)))
+
+
+def _trend(word: str, view: str, x: FloatArray, y: FloatArray, sd: FloatArray) -> str:
     """Say how a wish goes from the lowest to the highest x, where that is clear."""
     at = np.unique(x)
     if at.size < 2:
@@ -168,7 +194,7 @@ def _trend(
     steps = np.diff(means)
     steady = np.all(steps > 0) or np.all(steps < 0)
     values = ", ".join(
-        f"{100 * m:+.2g} % at {v:g} {unit}"
+        f"{100 * m:+.2g} % at {v:g} N"
         for v, m in itertools.islice(zip(at, means, strict=True), 6)
     )
     way = ("rises" if change > 0 else "falls") if steady else "changes"

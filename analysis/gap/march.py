@@ -9,17 +9,16 @@ found from the motion predicted with an extrapolated force, whose error is of th
 order dt^2/m of a second difference and far below the noise.
 
 All that a step calls is compiled into it: handing arrays over would cost more than the
-step. Numba's cache looks only at the date of this file, so touch it after an edit of
-`slider_march` or `curve_march`.
+step.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.acquisition.compiled import compiled
 from jointbench.analysis.gap.curve_march import curve_force
 from jointbench.analysis.gap.slider_march import bank_forces
 
@@ -76,7 +75,7 @@ class MarchLaws(NamedTuple):
     curves: FloatArray
 
 
-@njit(cache=True)
+@compiled()
 def _rub(limit: float, width: float, v: float, slope: float, guess: float) -> float:
     """Solve f = limit tanh((v - slope (f - guess)) / width), by safe Newton steps."""
     low, high = -abs(limit), abs(limit)
@@ -98,7 +97,7 @@ def _rub(limit: float, width: float, v: float, slope: float, guess: float) -> fl
     return force
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@compiled(fastmath=True, inline="always")
 def _forces(
     a: int,
     w: FloatArray,
@@ -129,7 +128,7 @@ def _forces(
             f[own + k] = curve_force(curves, 3 * a, first, second, r, v)
 
 
-@njit(cache=True)
+@compiled()
 def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> FloatArray:
     """Return what a march keeps of its lanes, at rest.
 
@@ -152,7 +151,7 @@ def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> Float
     return w
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@compiled(fastmath=True, inline="always")
 def _predict(w: FloatArray, n_modes: int) -> None:
     """Step the modes in place with a guessed force, and add them to the motion."""
     for m in range(n_modes):
@@ -173,7 +172,7 @@ def _predict(w: FloatArray, n_modes: int) -> None:
             w[MOTION + k] += moved
 
 
-@njit(cache=True, fastmath=True)
+@compiled(fastmath=True)
 def _march_lanes(
     displacement: FloatArray,
     velocity: FloatArray,
@@ -243,7 +242,7 @@ def _march_lanes(
                 w[at + IMAGINARY] -= w[at + END_I] * w[GUESS + k]
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def march(
     displacement: FloatArray,
     velocity: FloatArray,

@@ -258,6 +258,12 @@ def weakest_amplitude(fit: Fit) -> float:
     return float(worst)
 
 
+def rival_within(best: Fit) -> float:
+    """Return the score behind the best within which a rival is not told apart."""
+    sites = [c.site for c in best.candidates]
+    return RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
+
+
 def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     """Return the fits that the best one is not told apart from, it included.
 
@@ -267,8 +273,7 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     if not fits:
         return []
     best, own = score(bench, fits[0]), labels_of(fits[0].candidates)
-    sites = [c.site for c in fits[0].candidates]
-    near = RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
+    near = rival_within(fits[0])
     return [
         f
         for f in fits

@@ -7,9 +7,9 @@ tabulated once for a set of shape parameters, so that a step is one or two looku
 """
 
 import numpy as np
-from numba import njit
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.compiled import compiled
 
 TABLE_SIZE = 4096
 IDENTITY = 1e-7
@@ -18,7 +18,7 @@ STALE = 1e30
 """Loading coordinate of a slider that has unloaded since it was last known."""
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@compiled(fastmath=True, inline="always")
 def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     """Interpolate a row of evenly spaced points; constant above its end.
 
@@ -34,7 +34,7 @@ def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     return float(low + (position - index) * (tables[row, index + 1] - low))
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@compiled(fastmath=True, inline="always")
 def slide(
     u: float,
     loading: float,
@@ -77,7 +77,7 @@ def slide(
     return side * (left if elastic else _lookup(tables, row + 3, tops[3], left)), STALE
 
 
-@njit(cache=True, fastmath=True, inline="always")
+@compiled(fastmath=True, inline="always")
 def bank_forces(
     a: int,
     lanes: tuple[int, int, int, int],

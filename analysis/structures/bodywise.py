@@ -17,8 +17,6 @@ from jointbench.analysis.structures.full_modes import lowest_modes, shift_of
 from jointbench.analysis.structures.structure import Structure
 from jointbench.analysis.structures.subspace import orthonormalise
 
-# A residual norm this small means an error of frequency of about its square.
-_CONVERGED = 3e-4
 _MOST_STEPS = 30
 
 
@@ -118,6 +116,7 @@ def solve_bodywise(
     stiffness: FloatArray,
     start: FloatArray,
     count: int,
+    residual_norm: float,
 ) -> FloatArray:
     """Find the lowest modes with factors of the bodies alone (block Davidson).
 
@@ -127,6 +126,8 @@ def solve_bodywise(
         stiffness: totals [N/m], shape (3 n_joints,).
         start: subspace to begin with, orthonormal in M, shape (n_free, r), r >= count.
         count: how many modes.
+        residual_norm: of each mode to stop at, relative [-]; where a mode stands alone
+            its frequency is wrong by about the square of it.
 
     Returns:
         Mass-normalised shapes as columns, shape (n_free, count).
@@ -145,7 +146,7 @@ def solve_bodywise(
         residual = product @ vector - structure.mass @ shapes * value
         direction = factors.solve(residual)
         size = np.sqrt(np.abs(np.einsum("nk,nk->k", residual, direction)))
-        open_ones = size > _CONVERGED * np.sqrt(value + factors.shift)
+        open_ones = size > residual_norm * np.sqrt(value + factors.shift)
         if not open_ones.any():
             break
         new = orthonormalise(space, structure.mass, direction[:, open_ones])

@@ -12,8 +12,8 @@ from jointbench.analysis.structures.reduced import ReducedModel
 from jointbench.analysis.structures.structure import Structure
 
 # Raised whenever the way of reducing changes, so that old files are not met again.
-_VERSION = 2
-_ARRAYS = ("stiffness", "spread", "loss", "basis", "riesz", "scale")
+_VERSION = 3
+_ARRAYS = ("stiffness", "spread", "loss", "basis", "riesz", "scale", "strains")
 
 
 def content_key(structure: Structure, *options: object) -> str:

@@ -177,7 +177,7 @@ def _frequencies_alone(
 ) -> tuple[FloatArray, FloatArray]:
     """Compare frequencies by the lowest modes alone, which is several times faster."""
     found = solve_reduced(model, values.stiffness)
-    elastic = np.flatnonzero(found.natural_frequency > 0)
+    elastic = np.arange(found.rigid, found.eigenvalue.size)
     count = measured.natural_frequency.size
     _require_enough(count, elastic.size)
     shapes = found.shapes[:, elastic[:count]]
@@ -211,7 +211,7 @@ def _shape_changes(
     Source: Fox and Kapoor 1968, AIAA J. 6, 2426-2429.
     """
     apart = state.eigenvalue[pairs] - state.eigenvalue[:, None]
-    scale = np.maximum(np.abs(state.eigenvalue[pairs]), state.floor)
+    scale = state.eigenvalue[pairs]
     safe = np.where(np.abs(apart) < _CLOSEST * scale, np.inf, apart)
     return np.asarray(stiffness[:, None, None] * state.flex[:, :, pairs] / safe)
 

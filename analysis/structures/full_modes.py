@@ -9,13 +9,14 @@ from jointbench.acquisition.arrays import FloatArray, freeze
 from jointbench.acquisition.errors import BadData
 from jointbench.analysis.structures.assembly import Sparse
 from jointbench.analysis.structures.factor import Solver, factorise
+from jointbench.analysis.structures.rigid import rigid_motions
 from jointbench.analysis.structures.structure import Structure
 from jointbench.analysis.structures.subspace import largest_of_inverse
 
 # The shift lies so far below the waves that fit once into the structure.
 _SHIFT_SHARE = 0.3
-# Modes below this share of the shift frequency move no material: rigid, or mechanisms.
-RIGID_SHARE = 0.01
+# Strain energy below so many units in the last place of |x|' |K| |x| is rounding.
+_ROUNDING = 16.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,7 +24,8 @@ class StructureModes:
     """Undamped modes of a structure, the lowest first.
 
     Attributes:
-        natural_frequency: [Hz], shape (n_modes,); zero for rigid motions.
+        natural_frequency: [Hz], shape (n_modes,); zero for motions without strain,
+            however slow the others are.
         shapes: mass-normalised, shape (n_modes, n_free) [kg^-1/2].
         residual: ||K phi - lambda M phi|| over ||K phi||, largest of all [-].
     """
@@ -80,11 +82,11 @@ def solve_full(
     values = np.asarray(stiffness, float)
     if values.size and not values.min() >= 0:
         raise BadData(f"a joint's stiffness is {values.min():g} N/m; it must be >= 0")
-    # Springs and glue are no waves: they must not raise the shift, which says what is
-    # rigid.
+    # Springs and glue are no waves: they must not raise the shift.
     shift = shift_of(structure.stiffness, structure.mass)
     whole = structure.with_joints(values)
-    return lowest_modes(whole, structure.mass, count, solver, shift=shift)
+    rigid = rigid_motions(structure, values)
+    return lowest_modes(whole, structure.mass, count, solver, shift=shift, rigid=rigid)
 
 
 def lowest_modes(
@@ -94,6 +96,7 @@ def lowest_modes(
     solver: Solver = Solver.AUTO,
     *,
     shift: float | None = None,
+    rigid: FloatArray | None = None,
 ) -> StructureModes:
     """Find the lowest modes of sparse matrices; see `solve_full`.
 
@@ -103,6 +106,8 @@ def lowest_modes(
         count: how many.
         solver: who factors.
         shift: of the spectrum [1/s^2]; None takes that of the matrices.
+        rigid: motions that strain nothing, orthonormal in M, shape (n_free, k); None
+            takes modes whose strain energy is rounding for such.
 
     Raises:
         BadData: too many modes are asked for, or the matrices cannot be factored.
@@ -112,19 +117,27 @@ def lowest_modes(
         raise BadData(f"{count} modes of {size} degrees of freedom; ask for fewer")
     if shift is None:
         shift = shift_of(stiffness, mass)
-    solve = factorise(Sparse(stiffness + shift * mass), solver)
-    inverse, vector = largest_of_inverse(solve, mass, count)
-    value = 1.0 / inverse - shift
+    still = np.zeros((size, 0)) if rigid is None else rigid[:, :count]
+    value, vector = np.zeros(still.shape[1]), still
+    if still.shape[1] < count:
+        solve = factorise(Sparse(stiffness + shift * mass), solver)
+        inverse, moving = largest_of_inverse(solve, mass, count - value.size, still)
+        value = np.concatenate([value, 1.0 / inverse - shift])
+        vector = np.concatenate([still, moving], axis=1)
     load = stiffness @ vector
     left = np.linalg.norm(load - mass @ vector * value, axis=0)
     scale = np.linalg.norm(load, axis=0) + shift * np.linalg.norm(mass @ vector, axis=0)
-    return StructureModes(
-        frequency_of(value, shift), vector.T, float((left / scale).max())
-    )
+    if rigid is None:
+        value = np.where(value > _strain_rounding(stiffness, vector), value, 0.0)
+    return StructureModes(frequency_of(value), vector.T, float((left / scale).max()))
 
 
-def frequency_of(eigenvalue: FloatArray, shift: float) -> FloatArray:
-    """Return natural frequencies [Hz]; rounding around zero becomes zero."""
-    floor = RIGID_SHARE**2 * shift
-    clean = np.where(np.abs(eigenvalue) < floor, 0.0, np.maximum(eigenvalue, 0.0))
-    return np.asarray(np.sqrt(clean) / (2.0 * np.pi))
+def _strain_rounding(stiffness: Sparse, vector: FloatArray) -> FloatArray:
+    """Return the strain energy of each shape that rounding alone makes [1/s^2]."""
+    size = np.abs(vector)
+    return np.asarray(_ROUNDING * np.einsum("nk,nk->k", size, abs(stiffness) @ size))
+
+
+def frequency_of(eigenvalue: FloatArray) -> FloatArray:
+    """Return natural frequencies [Hz] of eigenvalues [1/s^2]; none below zero."""
+    return np.asarray(np.sqrt(np.maximum(eigenvalue, 0.0)) / (2.0 * np.pi))

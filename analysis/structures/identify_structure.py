@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Stiffness and damping of joints from what was measured of a structure."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
@@ -15,9 +15,14 @@ from jointbench.analysis.structures.evidence import (
     states,
 )
 from jointbench.analysis.structures.full_modes import frequency_of, solve_full
+from jointbench.analysis.structures.intervals import (
+    admissible_interval,
+    local_interval,
+)
 from jointbench.analysis.structures.joint_result import (
     FullCheck,
     JointSolution,
+    Profile,
     StateFit,
     StructureIdentification,
 )
@@ -39,17 +44,14 @@ from jointbench.analysis.structures.problem import (
 )
 from jointbench.analysis.structures.profile import profile_likelihood
 from jointbench.analysis.structures.reduced import ReducedModel, frequency_bound
-from jointbench.analysis.structures.search import find_optima
+from jointbench.analysis.structures.search import LARGEST_LOG_SD, find_optima
 from jointbench.analysis.structures.structure import Structure
+from jointbench.signal.one_thread import one_thread
 
-# A solution is out if its chi2 exceeds the best one's by three standard deviations.
-_SEPARATES = 9.0
 # The model does not fit if noise alone would do worse this seldom.
 _MISFIT = 1e-3
-# More than this standard deviation in ln counts as not identifiable (100 %).
-_LARGEST_LOG_SD = 1.0
-# Beyond this one the number itself means nothing.
-_NO_LOG_SD = 1e3
+# Chi2 of measurements that leave no degree of freedom fits below three sd.
+_NO_FREEDOM = 9.0
 # Rivals further away than this many standard deviations make a value ambiguous ...
 _RIVAL_SD = 3.0
 # ... if they differ by more than this in ln.
@@ -60,6 +62,7 @@ _NAMED = 3
 _ROUNDING = 1e-7
 
 
+@one_thread()
 def identify_structure(
     model: ReducedModel,
     evidence: Sequence[Evidence],
@@ -102,56 +105,81 @@ def identify_structure(
     optima = find_optima(problem, starts=starts, seed=seed)
     best = optima[0]
     freedom = best.slopes.shape[0] - problem.size
-    scale = max(1.0, best.chi2 / freedom) if freedom > 0 else 1.0
-    limit = best.chi2 + _SEPARATES * scale
-    rivals = [one for one in optima[1:] if one.chi2 < limit]
+    scale, limit = best.noise(), best.limit()
+    standing = [best, *(one for one in optima[1:] if one.chi2 < limit)]
     covariance = scale * best.covariance()
-    parameters = _parameters(problem, best, rivals, covariance)
-    verdict, reasons = _judge(parameters, best, freedom, bool(rivals))
+    curves = profile_likelihood(problem, best, covariance, scale, profiles)
+    parameters = tuple(
+        _parameter(problem, standing, at, curves) for at in range(problem.size)
+    )
+    verdict, reasons = _judge(parameters, best, freedom, len(standing) > 1)
     return StructureIdentification(
         verdict=verdict,
         reasons=reasons,
         parameters=parameters,
         log_covariance=covariance,
-        solutions=tuple(_solution(problem, one, limit) for one in optima[:_LISTED]),
-        profiles=profile_likelihood(problem, best, covariance, scale, profiles),
+        solutions=tuple(
+            _solution(problem, one, limit) for one in _listed(optima, standing)
+        ),
+        profiles=curves,
         states=tuple(_state_fit(problem, best, at) for at in range(len(evidence))),
         full_check=_full_checks(structure, problem, best),
         degrees_of_freedom=freedom,
     )
 
 
-def _parameters(
+def _parameter(
     problem: Problem,
-    best: Optimum,
-    rivals: Sequence[Optimum],
-    covariance: FloatArray,
-) -> tuple[JointParameter, ...]:
-    """Return every parameter with its uncertainty and whether it is determined."""
-    spread = np.sqrt(np.diag(covariance))
-    found = []
-    for at, name in enumerate(problem.names):
-        value, sd = float(np.exp(best.unknowns[at])), float(spread[at])
-        unit = "N s/m" if problem.damping[at] else "N/m"
-        limit = max(_RIVAL_LOG, _RIVAL_SD * min(sd, _LARGEST_LOG_SD))
-        others = [
-            one for one in rivals if abs(one.unknowns[at] - best.unknowns[at]) > limit
-        ]
-        reason = ""
-        if not sd < _LARGEST_LOG_SD:
-            reason = (
-                "not identifiable: its standard deviation exceeds 100 %; "
-                + what_to_measure(problem, best, at)
-            )
-        elif others:
-            logs = [float(one.unknowns[at]) for one in (best, *others)]
-            reason = (
-                f"not identifiable: {_listing(np.exp(np.sort(logs)), unit)} fit alike; "
-                + what_separates(problem, best, others[0])
-            )
-        shown = value * sd if sd < _NO_LOG_SD else None
-        found.append(JointParameter(name, value, shown, unit, not reason, reason))
-    return tuple(found)
+    standing: Sequence[Optimum],
+    at: int,
+    curves: Mapping[str, Profile],
+) -> JointParameter:
+    """Return a parameter with its uncertainty and whether it is determined."""
+    best, name = standing[0], problem.names[at]
+    scale = best.noise()
+    value = float(np.exp(best.unknowns[at]))
+    unit = "N s/m" if problem.damping[at] else "N/m"
+    sd = float(np.sqrt(scale * best.covariance()[at, at]))
+    reason = _open_reason(problem, standing, at, sd, unit)
+    if reason:
+        ends = admissible_interval(problem, standing, at, scale)
+        return JointParameter(name, value, None, unit, False, reason, ends)
+    curve = curves.get(name)
+    own = local_interval(best, at, scale) if curve is None else (curve.low, curve.high)
+    return JointParameter(name, value, value * sd, unit, True, "", own)
+
+
+def _open_reason(
+    problem: Problem, standing: Sequence[Optimum], at: int, sd: float, unit: str
+) -> str:
+    """Say why a parameter is not identifiable; empty if it is."""
+    best, rivals = standing[0], standing[1:]
+    if not sd < LARGEST_LOG_SD:
+        return (
+            "not identifiable: its standard deviation exceeds 100 %; "
+            + what_to_measure(problem, best, at)
+        )
+    limit = max(_RIVAL_LOG, _RIVAL_SD * sd)
+    others = [
+        one for one in rivals if abs(one.unknowns[at] - best.unknowns[at]) > limit
+    ]
+    if not others:
+        return ""
+    logs = [float(one.unknowns[at]) for one in (best, *others)]
+    return (
+        f"not identifiable: {_listing(np.exp(np.sort(logs)), unit)} fit alike; "
+        + what_separates(problem, best, others[0])
+    )
+
+
+def _listed(
+    optima: Sequence[Optimum], standing: Sequence[Optimum]
+) -> tuple[Optimum, ...]:
+    """Return the solutions to list: the best ones, and of each unknown the extremes."""
+    value = np.array([one.unknowns for one in standing])
+    wanted = {*range(_LISTED), *value.argmin(axis=0), *value.argmax(axis=0)}
+    # Those that stand come first among all.
+    return tuple(one for at, one in enumerate(optima) if at in wanted)
 
 
 def _listing(values: FloatArray, unit: str) -> str:
@@ -166,7 +194,7 @@ def _judge(
 ) -> tuple[IdentificationVerdict, tuple[str, ...]]:
     """Return the verdict on the whole, and its reasons."""
     reasons = [f"{one.name}: {one.reason}" for one in parameters if one.reason]
-    limit = chi2_distribution.isf(_MISFIT, freedom) if freedom > 0 else _SEPARATES
+    limit = chi2_distribution.isf(_MISFIT, freedom) if freedom > 0 else _NO_FREEDOM
     if best.chi2 > limit:
         line = (
             f"chi2 is {best.chi2:.3g} for {freedom} degrees of freedom: no joint "
@@ -209,7 +237,7 @@ def _state_fit(problem: Problem, best: Optimum, row: int) -> StateFit:
     return StateFit(
         evidence.label,
         measured,
-        frequency_of(state.eigenvalue[chosen], model.shift),
+        frequency_of(state.eigenvalue[chosen]),
         damping_ratios(state, values.damping)[chosen],
         likeness,
         energy_shares(state, values.stiffness)[chosen],

@@ -32,7 +32,7 @@ class Profile:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointSolution:
-    """One distinct set of parameters that is at least locally best.
+    """A set of parameters that is locally best, or as good along what is open.
 
     Attributes:
         parameters: value [SI] by name.
@@ -102,7 +102,8 @@ class StructureIdentification:
         reasons: one line for each thing the verdict rests on.
         parameters: stiffness and damping of every direction sought.
         log_covariance: of ln parameters, shape (n_parameters, n_parameters).
-        solutions: all distinct ones, the best first.
+        solutions: distinct ones, the best first; of what is open, with the softest and
+            the stiffest found.
         profiles: by name of the parameter; empty if not asked for.
         states: measured beside predicted.
         full_check: of the first state's optimum; None if not asked for.
@@ -151,10 +152,11 @@ def structure_json(
             one.name: {
                 "value": one.value,
                 "sd": one.sd,
+                "interval_95": list(one.interval),
                 "unit": one.unit,
                 "identifiable": one.identifiable,
                 "reason": one.reason,
-                **_interval(result.profiles.get(one.name)),
+                **_profile_json(result.profiles.get(one.name)),
             }
             for one in result.parameters
         },
@@ -184,13 +186,10 @@ def structure_json(
     }
 
 
-def _interval(profile: Profile | None) -> dict[str, Any]:
+def _profile_json(profile: Profile | None) -> dict[str, Any]:
     if profile is None:
         return {}
-    return {
-        "interval_95": [profile.low, profile.high],
-        "profile": {"value": profile.value.tolist(), "chi2": profile.chi2.tolist()},
-    }
+    return {"profile": {"value": profile.value.tolist(), "chi2": profile.chi2.tolist()}}
 
 
 def _state_json(state: StateFit, names: tuple[str, ...]) -> dict[str, Any]:

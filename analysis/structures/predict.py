@@ -5,15 +5,19 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.structures.full_modes import frequency_of
-from jointbench.analysis.structures.reduced import ReducedModel
+from jointbench.analysis.structures.reduced import ReducedModel, solve_reduced
 
 # Modes that damping couples at once; beyond them it is brought in by refinement.
 COUPLED = 60
 _REFINEMENTS = 4
+# A pole that swings less than this against its decay is a decay; the loss of the bodies
+# alone turns a decay by about its loss factor.
+_SWINGS = 0.02
+# A pole this small beside the largest is the zero of a motion that nothing holds.
+_NO_POLE = 1e-13
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,33 +42,27 @@ class ModalState:
     """All reduced modes of a structure at one set of joint values.
 
     Attributes:
-        eigenvalue: [1/s^2], shape (n,).
+        eigenvalue: [1/s^2], shape (n,); exactly zero for rigid motions.
         shapes: columns, orthonormal, shape (r, n).
         flex: phi_i' G_d phi_j of every direction, shape (n_parameters, n, n).
         loss: phi_i' (eta K) phi_j [1/s^2], shape (n, n).
-        floor: eigenvalues below it are rigid motions [1/s^2].
+        rigid: number of motions without strain, the first ones.
     """
 
     eigenvalue: FloatArray
     shapes: FloatArray
     flex: FloatArray
     loss: FloatArray
-    floor: float
-
-    @property
-    def rigid(self) -> int:
-        """Number of motions without strain."""
-        return int(np.count_nonzero(self.eigenvalue < self.floor))
+    rigid: int
 
 
 def modal_state(model: ReducedModel, stiffness: FloatArray) -> ModalState:
     """Find all reduced modes at one set of stiffnesses [N/m], shape (n_parameters,)."""
-    value, vector = eigh(
-        model.with_joints(stiffness), check_finite=False, overwrite_a=True
-    )
+    found = solve_reduced(model, stiffness, model.size)
+    vector = found.shapes
     flex = np.array([vector.T @ (spread @ vector) for spread in model.spread])
     loss = vector.T @ (model.loss @ vector)
-    return ModalState(value, vector, flex, loss, 1e-4 * model.shift)
+    return ModalState(found.eigenvalue, vector, flex, loss, found.rigid)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,7 +103,7 @@ def predict_modes(
     state = modal_state(model, values.stiffness)
     elastic = np.arange(state.rigid, model.modes)
     return PredictedModes(
-        natural_frequency=frequency_of(state.eigenvalue[elastic], model.shift),
+        natural_frequency=frequency_of(state.eigenvalue[elastic]),
         damping_ratio=damping_ratios(state, values.damping)[elastic],
         shapes=state.shapes[:, elastic].T
         @ (np.zeros((0, model.size)) if rows is None else rows).T,
@@ -114,16 +112,24 @@ def predict_modes(
 
 
 def damping_ratios(state: ModalState, damping: FloatArray) -> FloatArray:
-    """Return the damping ratio of every mode to first order [-], shape (n,)."""
-    omega = np.sqrt(np.maximum(state.eigenvalue, state.floor))
+    """Return the damping ratio of every mode to first order [-], shape (n,).
+
+    That of a rigid motion, which has no frequency, is zero.
+    """
+    omega = np.sqrt(_straining(state))
     viscous = np.einsum("d,dii->i", damping, state.flex) / (2.0 * omega)
     return np.asarray(viscous + np.diag(state.loss) / (2.0 * omega**2))
 
 
 def energy_shares(state: ModalState, stiffness: FloatArray) -> FloatArray:
     """Return theta_d phi' G_d phi / lambda: d ln f^2 / d ln theta_d, shape (n, d)."""
-    level = np.maximum(state.eigenvalue, state.floor)
+    level = _straining(state)
     return np.asarray(np.einsum("d,dii->id", stiffness, state.flex) / level[:, None])
+
+
+def _straining(state: ModalState) -> FloatArray:
+    """Return eigenvalues to divide by: what strains nothing shares in nothing."""
+    return np.where(state.eigenvalue > 0, state.eigenvalue, np.inf)
 
 
 def predict_complex_modes(
@@ -144,14 +150,21 @@ def predict_complex_modes(
     """
     state = modal_state(model, values.stiffness)
     count = min(COUPLED, state.eigenvalue.size)
-    low = np.s_[:count, :count]
-    damping = np.tensordot(values.damping, state.flex[:, :count, :count], 1)
-    matrix = np.zeros((2 * count, 2 * count), complex)
-    matrix[:count, count:] = np.eye(count)
-    matrix[count:, :count] = -(np.diag(state.eigenvalue[:count]) + 1j * state.loss[low])
-    matrix[count:, count:] = -damping
+    moved = np.s_[state.rigid : count]
+    # Unknowns: omega times displacement, which rigid motions do not need, and velocity.
+    omega = np.sqrt(state.eigenvalue[moved])
+    spring = np.zeros((count, omega.size), complex)
+    spring[moved] = np.diag(omega) + 1j * state.loss[moved, moved] / omega
+    matrix = np.zeros((omega.size + count,) * 2, complex)
+    matrix[: omega.size, omega.size + state.rigid :] = np.diag(omega)
+    matrix[omega.size :, : omega.size] = -spring
+    matrix[omega.size :, omega.size :] = -np.tensordot(
+        values.damping, state.flex[:, :count, :count], 1
+    )
     pole = np.linalg.eigvals(matrix)
-    pole = pole[(pole.imag > np.sqrt(state.floor)) & (pole.real <= 0)]
+    size = np.abs(pole)
+    swings = (pole.imag > _SWINGS * size) & (size > _NO_POLE * size.max())
+    pole = pole[swings & (pole.real <= 0)]
     pole = pole[np.argsort(np.abs(pole))][: model.modes - state.rigid]
     return np.abs(pole) / (2 * np.pi), -pole.real / np.abs(pole)
 
@@ -298,7 +311,7 @@ def response_to_force(
         state.shapes[:, elastic],
         state.flex[:, elastic][:, :, elastic],
         state.loss[np.ix_(elastic, elastic)],
-        state.floor,
+        0,
     )
     motion = _solve_lines(kept, values.damping, laplace, (inputs @ kept.shapes).T)
     transfer = np.einsum("or,lri->oil", outputs @ kept.shapes, motion)

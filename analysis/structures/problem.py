@@ -16,6 +16,8 @@ from jointbench.analysis.structures.reduced import ReducedModel
 _BEYOND = 3.0
 # Damping is sought within these fractions of stiffness over frequency.
 _DAMPING_RANGE = (1e-7, 10.0)
+# A solution is out if its chi2 exceeds the best one's by three standard deviations.
+_SEPARATES = 9.0
 # Singular values below this mean a standard deviation of 1e6 in ln: not determined.
 _FLAT = 1e-6
 
@@ -76,6 +78,18 @@ class Optimum:
         if direction.shape[0] < self.unknowns.size:
             _, _, direction = np.linalg.svd(self.slopes, full_matrices=True)
         return np.asarray((direction.T / floor**2) @ direction)
+
+    def noise(self) -> float:
+        """Return chi2 over its degrees of freedom, at least 1.
+
+        So much larger are the variances than those that were given.
+        """
+        freedom = self.slopes.shape[0] - self.unknowns.size
+        return max(1.0, self.chi2 / freedom) if freedom > 0 else 1.0
+
+    def limit(self) -> float:
+        """Return the chi2 below which a rival of this best solution stands."""
+        return self.chi2 + _SEPARATES * self.noise()
 
 
 def pose_problem(

@@ -4,12 +4,11 @@
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.analysis.structures.intervals import LEVEL
 from jointbench.analysis.structures.joint_result import Profile
 from jointbench.analysis.structures.problem import Optimum, Problem
 from jointbench.analysis.structures.search import descend
 
-# 95 % of a chi-squared of one degree of freedom.
-_LEVEL = 3.841458820694124
 # Steps away from the best value, in standard deviations.
 _STEPS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
 # A step is no larger than this in ln: a factor of about 4.5.
@@ -48,7 +47,7 @@ def profile_likelihood(
         up = _walk(problem, best, at, sd, scale)
         points = [*reversed(down), (float(best.unknowns[at]), best.chi2), *up]
         value, chi2 = np.array(points).T
-        limit = best.chi2 + _LEVEL * scale
+        limit = best.chi2 + LEVEL * scale
         found[name] = Profile(
             np.exp(value),
             chi2,
@@ -73,7 +72,7 @@ def _walk(
         end = descend(problem, start, fixed=[at])
         points.append((target, end.chi2))
         last = end.unknowns
-        if end.chi2 > best.chi2 + 1.5 * _LEVEL * scale:
+        if end.chi2 > best.chi2 + 1.5 * LEVEL * scale:
             break
     return points
 

@@ -9,9 +9,8 @@ from scipy.linalg import eigh
 from jointbench.acquisition.arrays import FloatArray, freeze
 from jointbench.acquisition.errors import BadData
 from jointbench.analysis.structures.full_modes import frequency_of
+from jointbench.analysis.structures.rigid import unstrained
 
-# Widths of the groups of neighbours that are bounded together, relative.
-_GROUPS = (0.0, 0.003, 0.01, 0.03, 0.1, 0.3)
 # Modes solved beyond those asked for, so that the last one has neighbours.
 _SPARE = 4
 
@@ -28,6 +27,8 @@ class ReducedModel:
         riesz: the residual's norm is that of riesz @ (y, (shift + lambda) y,
             theta_1/scale_1 y, ...), shape (n_rank, (2 + n_parameters) r).
         scale: of the stiffnesses in `riesz` [N/m], shape (n_parameters,).
+        strains: of `joint_strains`, for the first columns of the basis: those move the
+            bodies without strain; shape (n_parameters, n_motions, n_motions) [-].
         shift: of the norm [1/s^2].
         box: smallest and largest stiffness it was made for [N/m].
         modes: how many modes, rigid ones included, it was made for.
@@ -40,6 +41,7 @@ class ReducedModel:
     basis: FloatArray
     riesz: FloatArray
     scale: FloatArray
+    strains: FloatArray
     shift: float
     box: tuple[float, float]
     modes: int
@@ -48,6 +50,7 @@ class ReducedModel:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "stiffness", "spread", "loss", "basis", "riesz", "scale")
+        freeze(self, "strains")
 
     @property
     def size(self) -> int:
@@ -70,14 +73,16 @@ class ReducedModes:
     """Undamped modes of a reduced structure.
 
     Attributes:
-        eigenvalue: [1/s^2], shape (n_modes,).
+        eigenvalue: [1/s^2], shape (n_modes,); exactly zero for rigid motions.
         natural_frequency: [Hz], shape (n_modes,).
         shapes: reduced, orthonormal, columns, shape (r, n_modes).
+        rigid: how many of them, the first ones, strain nothing.
     """
 
     eigenvalue: FloatArray
     natural_frequency: FloatArray
     shapes: FloatArray
+    rigid: int
 
 
 def solve_reduced(
@@ -91,17 +96,29 @@ def solve_reduced(
         count: how many modes; default those it was made for.
 
     Returns:
-        The modes; rigid ones have frequency zero.
+        The modes; rigid ones have frequency zero, all others one above zero.
     """
+    values = np.asarray(stiffness, float)
+    matrix = model.with_joints(values)
+    turn, rigid = unstrained(model.strains, values > 0)
     wanted = min(count or model.modes, model.size)
-    value, vector = eigh(
-        model.with_joints(stiffness),
-        subset_by_index=(0, wanted - 1),
-        driver="evr",
-        check_finite=False,
-        overwrite_a=True,
-    )
-    return ReducedModes(value, frequency_of(value, model.shift), vector)
+    moved = turn.shape[0]
+    matrix[:moved] = turn.T @ matrix[:moved]
+    matrix[:, :moved] = matrix[:, :moved] @ turn
+    value, vector = np.zeros(wanted), np.eye(model.size, wanted)
+    if wanted > rigid:
+        straining = matrix[rigid:, rigid:]
+        # No softer joint can be told from rounding.
+        smallest = np.finfo(float).eps * float(np.abs(straining).max())
+        found, vector[rigid:, rigid:] = eigh(
+            straining,
+            subset_by_index=(0, wanted - rigid - 1),
+            driver="evr",
+            check_finite=False,
+        )
+        value[rigid:] = np.maximum(found, smallest)
+    vector[:moved] = turn @ vector[:moved]
+    return ReducedModes(value, frequency_of(value), vector, min(rigid, wanted))
 
 
 def frequency_bound(
@@ -130,15 +147,14 @@ def frequency_bound(
     """
     wanted = min(count or model.modes, model.size)
     found = solve_reduced(model, stiffness, min(wanted + _SPARE, model.size))
-    level = np.maximum(found.eigenvalue, 0.0) + model.shift
+    level = found.eigenvalue + model.shift
     error = _residual_norms(model, found, stiffness) / np.sqrt(level)
     inverse = 1.0 / level
     slack = _inverse_slack(inverse, error)
     lowest = 1.0 / (inverse + slack) - model.shift
-    frequency = np.sqrt(np.maximum(found.eigenvalue, 0.0)) / (2 * np.pi)
-    below = np.sqrt(np.maximum(lowest, 0.0)) / (2 * np.pi)
-    bound = np.where(found.natural_frequency > 0, frequency - below, 0.0)
-    return found.natural_frequency[:wanted], bound[:wanted]
+    frequency = found.natural_frequency
+    bound = np.where(frequency > 0, frequency - frequency_of(lowest), 0.0)
+    return frequency[:wanted], bound[:wanted]
 
 
 def _residual_norms(
@@ -153,21 +169,24 @@ def _residual_norms(
 
 
 def _inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:
-    """Return how much each eigenvalue of A^-1 M may exceed its Ritz value."""
+    """Return how much each eigenvalue of A^-1 M may exceed its Ritz value.
+
+    Of all groups of neighbours that a mode belongs to, the one with the smallest sum of
+    squares over its gap counts: soft joints have modes far closer to each other, seen
+    from the shift, than to the rest.
+    """
     slack = inverse * error
-    best = slack.copy()
     last = inverse.size - 1
     squares = np.concatenate([[0.0], np.cumsum(slack**2)])
-    for width in _GROUPS:
-        # Inverses fall from the first mode to the last.
-        low = np.searchsorted(-inverse, -inverse * (1 + width), "left")
-        high = np.searchsorted(-inverse, -inverse * (1 - width), "right") - 1
-        below = np.minimum(high + 1, last)
-        above = np.maximum(low - 1, 0)
-        gap = inverse[high] - inverse[below] - slack[below]
-        over = inverse[above] - slack[above] - inverse[low]
-        gap = np.where(low > 0, np.minimum(gap, over), gap)
-        known = (high < last) & (gap > 0)
-        whole = squares[high + 1] - squares[low]
-        best = np.where(known, np.minimum(best, whole / np.where(known, gap, 1)), best)
-    return best
+    # Inverses fall from the first mode to the last, whose lower neighbour is unknown.
+    low, high = np.triu_indices(inverse.size)
+    low, high = low[high < last], high[high < last]
+    above = np.maximum(low - 1, 0)
+    gap = inverse[high] - inverse[high + 1] - slack[high + 1]
+    over = inverse[above] - slack[above] - inverse[low]
+    gap = np.where(low > 0, np.minimum(gap, over), gap)
+    whole = squares[high + 1] - squares[low]
+    group = np.where(gap > 0, whole / np.where(gap > 0, gap, 1.0), np.inf)
+    at = np.arange(inverse.size)[:, None]
+    mine = np.where((low <= at) & (at <= high), group, np.inf)
+    return np.asarray(np.minimum(slack, mine.min(axis=1, initial=np.inf)))

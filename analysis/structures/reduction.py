@@ -17,6 +17,7 @@ from jointbench.analysis.structures.bodywise import (
 )
 from jointbench.analysis.structures.factor import Solver
 from jointbench.analysis.structures.reduced import ReducedModel, frequency_bound
+from jointbench.analysis.structures.rigid import joint_strains, unstrained_bodies
 from jointbench.analysis.structures.structure import Structure
 from jointbench.analysis.structures.subspace import orthonormalise
 
@@ -28,6 +29,12 @@ _TRIALS = 128
 # So many are tried before the basis grows again.
 _AT_ONCE = 16
 _MOST_POINTS = 60
+# Modes of a point are iterated to a residual norm this small at first: its square is
+# the error of a frequency that stands alone. Where the bound of that point still asks
+# for more (close modes, soft joints), to a tenth of it each time, down to rounding.
+_RESIDUAL_NORM = 3e-4
+_TIGHTER = 0.1
+_SMALLEST_NORM = 1e-7
 # Directions of A^-1 this small relative to the largest are rounding.
 _RANK = 1e-15
 
@@ -75,7 +82,8 @@ def reduce_structure(
         The reduced structure.
 
     Raises:
-        BadData: the bound stays above `tolerance`.
+        BadData: the bound stays above `tolerance` although the modes of its worst point
+            are in the basis to rounding, or after so many points.
         UsageError: there is no joint to vary, or the box is empty.
 
     Source:
@@ -89,6 +97,7 @@ def reduce_structure(
     if loads is not None:
         space.add(_give_way(structure, factors, space.basis, loads))
     trials = _trial_points(len(structure.spread), box)
+    norm, point = _RESIDUAL_NORM, np.zeros(0)
     for _ in range(_MOST_POINTS):
         model = space.model(box, modes)
         worst, trials = _open_points(model, trials, tolerance)
@@ -96,14 +105,32 @@ def reduce_structure(
             progress(ReductionStep(worst, model.size))
         if not trials:
             return model
-        shapes = solve_bodywise(structure, factors, trials[0], space.basis, modes + 2)
-        new = orthonormalise(space.basis, structure.mass, shapes)
-        if not new.shape[1]:
+        # A point that is met again was not solved as closely as its bound asks.
+        again = np.array_equal(point, trials[0])
+        norm, point = norm * _TIGHTER if again else _RESIDUAL_NORM, trials[0]
+        if norm < _SMALLEST_NORM:
             break
-        space.add(new)
-    raise BadData(
+        shapes = solve_bodywise(structure, factors, point, space.basis, modes + 2, norm)
+        space.add(orthonormalise(space.basis, structure.mass, shapes))
+    raise BadData(_stays(worst, tolerance, point, norm))
+
+
+def _stays(worst: float, tolerance: float, point: FloatArray, norm: float) -> str:
+    """Say what keeps the bound up: rounding at one point, or too many points."""
+    where = ", ".join(f"{one:.2g}" for one in point)
+    text = (
         f"the reduced model's error bound stays at {worst:.2g} of the frequency, "
-        f"{tolerance:g} is allowed; reduce fewer modes or narrow the box"
+        f"{tolerance:g} is allowed, "
+    )
+    if norm < _SMALLEST_NORM:
+        return text + (
+            f"though the modes at joints of {where} N/m are solved to rounding; these "
+            "joints are far softer or stiffer than the bodies: allow a larger "
+            "tolerance, or narrow the box"
+        )
+    return text + (
+        f"after {_MOST_POINTS} points, the last at {where} N/m; reduce fewer modes, or "
+        "narrow the box"
     )
 
 
@@ -167,6 +194,7 @@ class _Space:
     structure: Structure
     factors: BodyFactors
     scale: FloatArray
+    strains: FloatArray
     basis: FloatArray
     products: list[FloatArray]
     riesz: list[FloatArray]
@@ -175,15 +203,27 @@ class _Space:
     def over(
         cls, structure: Structure, factors: BodyFactors, largest: float
     ) -> "_Space":
-        """Return an empty basis."""
+        """Return a basis of the motions that strain no body."""
         count = len(structure.spread)
         empty = [np.zeros((structure.size, 0)) for _ in range(2 + count)]
-        return cls(
-            structure, factors, np.full(count, largest), empty[0], empty, empty[:]
+        still = unstrained_bodies(structure)
+        strains = joint_strains(structure, still)
+        space = cls(
+            structure,
+            factors,
+            np.full(count, largest),
+            strains,
+            empty[0],
+            empty,
+            empty[:],
         )
+        space.add(still)
+        return space
 
     def add(self, new: FloatArray) -> None:
-        """Append orthonormal columns."""
+        """Append orthonormal columns, if there are any."""
+        if not new.shape[1]:
+            return
         mass = self.structure.mass @ new
         bodies = self.structure.stiffness @ new + self.structure.glue @ new
         bodies += self.factors.shift * mass
@@ -203,13 +243,19 @@ class _Space:
         bodies, mass, *joints = (_symmetric(basis.T @ part) for part in self.products)
         loss = _symmetric(basis.T @ (self.structure.loss @ basis))
         spread = [part / scale for part, scale in zip(joints, self.scale, strict=True)]
+        elastic = bodies - shift * mass
+        # What strains nothing does so exactly, not to rounding.
+        still = self.strains.shape[1]
+        for matrix in (elastic, loss):
+            matrix[:still] = matrix[:, :still] = 0.0
         return ReducedModel(
-            stiffness=bodies - shift * mass,
+            stiffness=elastic,
             spread=np.array(spread),
             loss=loss,
             basis=basis,
             riesz=self._norm(),
             scale=self.scale,
+            strains=self.strains,
             shift=shift,
             box=box,
             modes=modes,

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import qmc
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.analysis.structures.problem import (
     Optimum,
     Problem,
@@ -20,10 +20,14 @@ _DAMPING_START = 1e-2
 # Two ends are one solution if every parameter agrees to this in ln.
 _SAME = 0.02
 _MOST_STEPS = 100
-# So many of the best ends are followed along what is open.
-_FOLLOWED = 3
-# Open parameters are held at these multiples of their best value.
-_HELD_AWAY = (0.03, 0.1, 0.3, 3.0, 10.0, 30.0)
+# So many branches of solutions are followed along what is open ...
+_FOLLOWED = 4
+# ... with each open unknown held at so many values, over the whole box.
+_HELD = 12
+# Chi2 that differs by less than this is the same but for rounding.
+_TIE = 1e-6
+# More than this standard deviation in ln counts as not identifiable (100 %).
+LARGEST_LOG_SD = 1.0
 
 
 def descend(problem: Problem, start: FloatArray, fixed: Sequence[int] = ()) -> Optimum:
@@ -122,17 +126,70 @@ def find_optima(problem: Problem, *, starts: int, seed: int) -> tuple[Optimum, .
         for at, ends in enumerate(searched)
         for rival in ends[1:]
     ]
-    rivals.sort(key=lambda end: end.chi2)
-    return (_joined(problem, best), *rivals)
+    return (_joined(problem, best), *(in_order(problem, rivals) if rivals else ()))
 
 
 def _search(problem: Problem, starts: int, seed: int) -> tuple[Optimum, ...]:
     """Search a problem as it is; see `find_optima`."""
     found = [descend(problem, start) for start in _starts(problem, starts, seed)]
-    for one in sorted(found, key=lambda end: end.chi2)[:_FOLLOWED]:
-        found += _open_ways(problem, one)
+    limit = min(found, key=lambda end: end.chi2).limit()
+    standing = [end for end in found if end.chi2 < limit]
+    for branch in _branches(problem, standing)[:_FOLLOWED]:
+        along = _open_ways(problem, branch, limit)
+        if along:
+            # Where chance starts end along what is open means nothing.
+            floor = min(end.chi2 for end in along) - _TIE * branch.noise()
+            found = [end for end in found if not _idle(end, branch, floor)] + along
+    return _distinct(in_order(problem, found))
+
+
+def in_order(problem: Problem, ends: Sequence[Optimum]) -> list[Optimum]:
+    """Sort ends, the best first.
+
+    Differences of chi2 far below one are rounding and must not decide: of ends that
+    tie, the least determined leads, then the one nearest to the middle of the box.
+    """
+    best = min(ends, key=lambda end: end.chi2)
+    tie = best.chi2 + _TIE * best.noise()
+    middle = 0.5 * (problem.low + problem.high)
+
+    def rank(end: Optimum) -> tuple[float, int, float]:
+        away = float(np.abs(end.unknowns - middle).sum())
+        chi2 = best.chi2 if end.chi2 <= tie else end.chi2
+        return chi2, -int(np.count_nonzero(is_open(end))), round(away, 3)
+
+    return sorted(ends, key=rank)
+
+
+def is_open(end: Optimum) -> BoolArray:
+    """Tell which unknowns the measurement leaves open around an end."""
+    return np.asarray(np.diag(end.covariance()) * end.noise() >= LARGEST_LOG_SD**2)
+
+
+def _branches(problem: Problem, ends: Sequence[Optimum]) -> list[Optimum]:
+    """Return one end of each branch that is open somewhere."""
     kept: list[Optimum] = []
-    for one in sorted(found, key=lambda end: end.chi2):
+    for one in in_order(problem, ends) if ends else []:
+        if is_open(one).any() and not any(_same_branch(one, other) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _same_branch(one: Optimum, other: Optimum) -> bool:
+    """Tell whether two ends agree in all that both determine."""
+    determined = ~(is_open(one) | is_open(other))
+    return bool(np.all(np.abs(one.unknowns - other.unknowns)[determined] < _SAME))
+
+
+def _idle(end: Optimum, branch: Optimum, floor: float) -> bool:
+    """Tell whether an end is but another point of a branch, and no better."""
+    along = _same_branch(end, branch) and bool(np.any(is_open(end)))
+    return along and end.chi2 >= floor
+
+
+def _distinct(ends: Sequence[Optimum]) -> tuple[Optimum, ...]:
+    kept: list[Optimum] = []
+    for one in ends:
         if not any(
             np.all(np.abs(one.unknowns - other.unknowns) < _SAME) for other in kept
         ):
@@ -140,21 +197,32 @@ def _search(problem: Problem, starts: int, seed: int) -> tuple[Optimum, ...]:
     return tuple(kept)
 
 
-def _open_ways(problem: Problem, best: Optimum) -> list[Optimum]:
-    """Return fits with what nothing decides held elsewhere: they show how open it is.
+def _open_ways(problem: Problem, branch: Optimum, limit: float) -> list[Optimum]:
+    """Return fits with each open unknown held all over the box, as far as they stand.
 
-    A descent along a valley stops wherever it begins, so that chance starts alone may
-    all end within a narrow part of it.
+    A descent along a valley stops wherever it begins, so that chance starts alone find
+    as much of it as rounding lets them.
     """
-    spread = np.sqrt(np.diag(best.covariance()))
     ends = []
-    for at in np.flatnonzero(spread > 1.0):
-        for factor in _HELD_AWAY:
-            start = best.unknowns.copy()
-            start[at] += np.log(factor)
-            if problem.low[at] < start[at] < problem.high[at]:
-                ends.append(descend(problem, start, fixed=[int(at)]))
+    for at in np.flatnonzero(is_open(branch)):
+        share = (np.arange(_HELD) + 0.5) / _HELD
+        held = problem.low[at] + share * (problem.high[at] - problem.low[at])
+        centre = branch.unknowns[at]
+        for way in (held[held >= centre], held[held < centre][::-1]):
+            last = branch.unknowns
+            for value in way:
+                end = descend(problem, with_value(last, int(at), value), [int(at)])
+                if end.chi2 < limit:
+                    last = end.unknowns
+                    ends.append(end)
     return ends
+
+
+def with_value(unknowns: FloatArray, at: int, value: float) -> FloatArray:
+    """Return unknowns of which one is replaced."""
+    moved = unknowns.copy()
+    moved[at] = value
+    return moved
 
 
 def _starts(problem: Problem, count: int, seed: int) -> list[FloatArray]:

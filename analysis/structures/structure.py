@@ -47,6 +47,7 @@ class Structure:
         stiffness: of bodies and springs of supports, block diagonal [N/m], shape
             (n_free, n_free).
         mass: block diagonal, with point masses [kg].
+        springs: of supports, as they stand in `stiffness` [N/m].
         loss: loss factor times stiffness, block diagonal [N/m].
         spread: G of every joint and direction, joint by joint, total 1 N/m.
         glue: stiffness of glued joints [N/m]; zero if there are none.
@@ -62,6 +63,7 @@ class Structure:
     bodies: tuple[Body, ...]
     stiffness: Sparse
     mass: Sparse
+    springs: Sparse
     loss: Sparse
     spread: tuple[Sparse, ...]
     glue: Sparse
@@ -132,17 +134,19 @@ def build_structure(
     m = m + face_masses(build, [one for one in masses if isinstance(one, FaceMass)])
     m = m + sparse.diags_array(point_masses(build, riding))
     held = np.zeros(m.shape[0], bool)
+    springs = Sparse(k.shape)
     for support in supports:
         if support.kind is SupportKind.FIXED:
             held |= held_freedoms(build, support)
         else:
-            k = k + support_springs(build, support)
+            springs = Sparse(springs + support_springs(build, support))
     free = np.flatnonzero(~held).astype(np.int64)
     spread, glue, area, frames = joint_matrices(build, joints, free, k.shape)
     return Structure(
         bodies=tuple(bodies),
-        stiffness=kept_rows(k, free),
+        stiffness=kept_rows(k + springs, free),
         mass=kept_rows(m, free),
+        springs=kept_rows(springs, free),
         loss=kept_rows(sparse.block_diag(loss, format="csr"), free),
         spread=tuple(spread),
         glue=glue,

@@ -45,7 +45,7 @@ def orthonormalise(basis: FloatArray, mass: Sparse, new: FloatArray) -> FloatArr
 
 
 def largest_of_inverse(
-    solve: Solve, mass: Sparse, count: int
+    solve: Solve, mass: Sparse, count: int, known: FloatArray | None = None
 ) -> tuple[FloatArray, FloatArray]:
     """Find the largest eigenvalues of A^-1 M.
 
@@ -53,6 +53,7 @@ def largest_of_inverse(
         solve: with A, symmetric positive definite.
         mass: M, shape (n, n).
         count: how many.
+        known: eigenvectors orthonormal in M that are not sought, shape (n, k).
 
     Returns:
         Eigenvalues, the largest first, shape (count,), and vectors orthonormal in M as
@@ -64,13 +65,16 @@ def largest_of_inverse(
     Source:
         Grimes, Lewis and Simon 1994, SIAM J. Matrix Anal. Appl. 15, 228-272.
     """
-    size = mass.shape[0]
-    start = np.random.default_rng(0).standard_normal((size, min(_BLOCK, size)))
-    new = orthonormalise(np.zeros((size, 0)), mass, start)
-    space = np.zeros((size, 0))
-    images = np.zeros((size, 0))
+    full = mass.shape[0]
+    apart = np.zeros((full, 0)) if known is None else known
+    size = full - apart.shape[1]
+    start = np.random.default_rng(0).standard_normal((full, min(_BLOCK, size)))
+    new = orthonormalise(apart, mass, start)
+    space = np.zeros((full, 0))
+    images = np.zeros((full, 0))
     for _ in range(_MOST_STEPS):
         image = solve(mass @ new)
+        image = image - apart @ (apart.T @ (mass @ image))
         space = np.concatenate([space, new], axis=1)
         images = np.concatenate([images, image], axis=1)
         if space.shape[1] >= min(count + _BLOCK, size):
@@ -79,7 +83,7 @@ def largest_of_inverse(
             error = np.sqrt(np.einsum("nk,nk->k", left, mass @ left))
             if np.all(error <= _CONVERGED * value):
                 return value, np.asarray(space @ vector)
-        new = orthonormalise(space, mass, image)
+        new = orthonormalise(np.concatenate([apart, space], axis=1), mass, image)
         if not new.shape[1]:
             break
     if space.shape[1] == size:

@@ -44,6 +44,10 @@ class Dialogue:
             raise LineBroken("silent", self._waiting)
         return self.receive(where + len(end))
 
+    def settle(self) -> None:
+        """Drop what waits."""
+        self._waiting = b""
+
     def require_over(self) -> None:
         """Fail where a turn or a byte is left over."""
         assert not self._turns

@@ -57,3 +57,19 @@ def test_an_overdamped_body_has_no_mode():
     """Damping ratio 2: two decays, no frequency."""
     model = LumpedModel((Body("m", 1.0),), (Link("k", ("ground", "m"), 1e4, 400.0),))
     assert solve_modes(model).poles.size == 0
+
+
+def test_a_soft_mount_beside_a_stiff_link_keeps_its_mode():
+    """100 kg on 1 kN/m, and a gram on 1 GN/m of it: 0.503 Hz is no rigid motion."""
+    model = LumpedModel(
+        (Body("machine", 100.0), Body("chip", 1e-3)),
+        (
+            Link("mount", ("ground", "machine"), 1e3, 2.0),
+            Link("solder", ("machine", "chip"), 1e9),
+        ),
+    )
+    modes = solve_modes(model)
+    assert modes.poles.size == 2
+    omega = np.sqrt(1e3 / 100.001)
+    assert_allclose(2 * np.pi * modes.natural_frequency[0], omega, rtol=1e-5)
+    assert_allclose(modes.damping_ratio[0], 2 / (2 * 100.001 * omega), rtol=1e-4)

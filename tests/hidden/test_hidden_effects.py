@@ -7,6 +7,7 @@ The statistics over many campaigns: benchmarks/gap and docs/gap-confusion.md.
 from pathlib import Path
 
 import pytest
+from gap_contradictions import contradictions
 
 from jointbench.analysis.gap import base_fit
 from jointbench.analysis.gap.campaign_file import read_campaign
@@ -22,10 +23,15 @@ pytestmark = pytest.mark.timeout(400)
 def told(
     campaign: Campaign, folder: Path, *without: str, progress: Progress | None = None
 ) -> Diagnosis:
-    """Return the diagnosis of a campaign after a way through its file."""
+    """Return the diagnosis of a campaign after a way through its file.
+
+    Whatever it is, its sentences go together, and with what is hidden.
+    """
     path = folder / "campaign.h5"
     write_campaign(campaign, path)
-    return diagnose(read_campaign(path), without=frozenset(without), progress=progress)
+    found = diagnose(read_campaign(path), without=frozenset(without), progress=progress)
+    assert contradictions(found, frozenset(e.name for e in campaign.effects)) == []
+    return found
 
 
 @pytest.mark.parametrize(("seed", "scatter"), [(901, 0.0), (902, 0.0015), (903, 0.002)])

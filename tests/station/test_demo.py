@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from jointbench.acquisition.session_file import read_session
+from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.session import new_session
+from jointbench.acquisition.session_file import read_session, write_session
 from jointbench.station.bench_model import BenchModel
-from jointbench.station.demo import run_demo
+from jointbench.station.demo import require_demo, run_demo
 from jointbench.station.demo_bench import HITS
 from jointbench.station.identify import run_identify
 from jointbench.station.modal import modal_settings, run_modal
@@ -138,6 +140,40 @@ def test_the_demo_writes_a_model_that_reads_back(demo: Path) -> None:
     assert set(model.bodies) == {"base", "top"}
     assert model.bodies["top"].mass != 4.6
     assert abs(model.bodies["top"].mass / 4.6 - 1) < 0.01
+
+
+def test_the_demo_can_be_run_again_where_it_was_run(demo: Path) -> None:
+    """All that it left is its own."""
+    require_demo(demo)
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("bench.toml", "# my bench\n"),
+        ("face-a.csv", "x [um],z [um]\n0,1\n"),
+        ("session.h5", "no session"),
+    ],
+)
+def test_files_of_the_demos_names_that_are_ones_own_are_kept(
+    tmp_path: Path, name: str, content: str
+) -> None:
+    """A model, a table of heights, anything else."""
+    (tmp_path / name).write_text(content, encoding="utf-8")
+    with pytest.raises(UsageError):
+        run_demo(tmp_path, seed=1, json_target=None)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+    assert (tmp_path / name).read_text(encoding="utf-8") == content
+
+
+def test_a_session_of_a_real_bench_is_kept_from_the_demo(tmp_path: Path) -> None:
+    """Measured into the folder of the demo, under the name that it uses."""
+    path = tmp_path / "session.h5"
+    write_session(new_session(source="ni:", simulated=False), path)
+    before = path.read_bytes()
+    with pytest.raises(UsageError, match="no demo"):
+        run_demo(tmp_path, seed=1, json_target=None)
+    assert path.read_bytes() == before
 
 
 def test_texts_from_files_cannot_become_markup() -> None:

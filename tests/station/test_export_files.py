@@ -63,6 +63,32 @@ def test_samples_come_back(
     assert [c.quantity for c in found.channels] == [c.quantity for c in wanted.channels]
 
 
+@pytest.mark.parametrize("kind", ["csv", "mat", "uff"])
+def test_an_export_replaces_an_earlier_export_and_nothing_else(
+    make_session, tmp_path: Path, kind: str
+) -> None:
+    """The file that a session was imported from may have the name of its export."""
+    path = make_session("s.h5")
+    (first,) = exported(path, kind).values()
+    before = first.read_bytes()
+    assert exported(path, kind)
+    assert first.stat().st_size == len(before)
+    if kind == "mat":
+        scipy.io.savemat(first, {"force": np.arange(3)})
+    else:
+        first.write_bytes(b"my measurement\r\n")
+    mine = first.read_bytes()
+    with pytest.raises(UsageError, match="made by no export"):
+        exported(path, kind)
+    assert first.read_bytes() == mine
+
+
+@pytest.mark.parametrize("kind", ["mat", "uff"])
+def test_an_export_of_a_result_can_be_made_again(result: Path, kind: str) -> None:
+    """It is known as ours."""
+    assert exported(result, kind).keys() == exported(result, kind).keys()
+
+
 def test_a_table_of_a_result_has_labels_in_its_heads_and_words_for_verdicts(
     result: Path,
 ) -> None:

@@ -108,6 +108,17 @@ def test_an_unknown_says_what_it_looks_like_and_what_to_do() -> None:
     assert next_step(found("unknown")) == found("unknown").exhibit.advice  # type: ignore[union-attr]
 
 
+def test_a_rival_far_behind_needs_no_experiment() -> None:
+    """Only what is not told apart is worth one; a name says how far the next is."""
+    far = next_step(found("named"))
+    assert re.fullmatch(
+        r"use it; no experiment needed: the nearest rival is \d+ behind, 15 tell it "
+        "apart",
+        far,
+    )
+    assert next_step(found("ambiguous")).startswith(("delay@", "sensor_lowpass@"))
+
+
 def test_every_explanation_that_was_tried_has_its_reason() -> None:
     """No row of the ranking ends without a word."""
     diagnosis = found("named")

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from jointbench.station.exit_codes import EXIT_BAD_DATA, EXIT_USAGE, exit_code
+from jointbench.station.joint_text import interval_text
 from jointbench.station.main import app
 
 BLOCKS = """
@@ -69,6 +70,38 @@ def test_printed_frequencies_give_joints_a_page_and_the_contracts_keys(
         "identifiable",
     }
     assert '"mesh3d"' in page.read_text(encoding="utf-8")
+
+
+def test_what_is_open_is_shown_as_the_range_of_all_admissible(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """One frequency for three directions: no sd on the screen, the page, in JSON."""
+    model = tmp_path / "block.toml"
+    text = BLOCKS.replace('["195 Hz", "480 Hz", "520 Hz"]', '["195 Hz"]')
+    model.write_text(text, encoding="utf-8")
+    page, target = tmp_path / "joints.html", tmp_path / "joints.json"
+    run(
+        monkeypatch,
+        "identify",
+        str(model),
+        "--report",
+        str(page),
+        "--json",
+        str(target),
+    )
+    screen, html = capsys.readouterr().out, page.read_text(encoding="utf-8")
+    told = json.loads(target.read_text(encoding="utf-8"))["parameters"]
+    open_ones = {name: one for name, one in told.items() if not one["identifiable"]}
+    assert open_ones
+    for name, one in open_ones.items():
+        assert one["sd"] is None
+        line = next(row for row in screen.splitlines() if row.startswith(f"{name} "))
+        assert "±" not in line
+        shown = interval_text((one["interval_95"][0], one["interval_95"][1]))
+        assert shown in line
+        assert shown in html
 
 
 def test_a_joint_in_the_air_ends_with_bad_data(

@@ -1,6 +1,7 @@
 """Bolt torques from a tester on a line, into the session and its preload."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -95,6 +96,38 @@ def test_a_tester_unplugged_between_bolts_is_waited_for(tmp_path: Path) -> None:
         measured = run(tmp_path, twin)
     assert measured.whole
     assert len(list(bolts(tmp_path))) == 8
+
+
+@dataclass
+class NoisyWrench:
+    """A wrench of which every fifth answer is what noise made of it."""
+
+    wrench: WrenchTwin
+    noise: bytes
+    turn: int = 0
+
+    def answer(self, received: bytes) -> tuple[int, bytes] | None:
+        """Answer with noise at times; the wrench waits for its reading to be taken."""
+        self.turn += 1
+        if self.turn % 5 == 0 and b"\r" in received:
+            return received.index(b"\r") + 1, self.noise
+        return self.wrench.answer(received)
+
+
+@pytest.mark.parametrize(
+    "noise",
+    [b"\x81\r\n", b"20.\x8d4 Nm\r\n", b"nan Nm\r\n", b"9999.9 Nm\r\n", b"\r\n", b"12"],
+)
+def test_a_reading_that_is_none_ends_nothing_and_is_no_torque(
+    tmp_path: Path, noise: bytes
+) -> None:
+    """Junk bytes, numbers that are none, five hundred times the target, half a line."""
+    wrench = NoisyWrench(WrenchTwin((20.0, 50.0), 4), noise)
+    with Twin(wrench.answer, over_socket=True) as twin:
+        measured = run(tmp_path, twin, "60 s")
+    found = list(bolts(tmp_path))
+    assert measured.whole
+    assert [b["torque"] for b in found] == pytest.approx([20.0] * 4 + [50.0] * 4)
 
 
 def test_a_bolt_that_nobody_tightens_ends_in_one_line_and_a_valid_file(

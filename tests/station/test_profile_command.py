@@ -119,3 +119,25 @@ def test_a_twin_that_does_not_exist_is_refused(
     """With what there is."""
     with pytest.raises(UsageError, match=words):
         fetch(line, tmp_path / "face.csv")
+
+
+def test_a_table_of_ones_own_is_not_replaced_by_a_profile(tmp_path: Path) -> None:
+    """With --force an earlier profile is, and nothing else."""
+    out = tmp_path / "face.csv"
+    wanted = Wanted("diavite", "sim:diavite?points=64", "face", "4.8 mm")
+    for _ in range(2):
+        run_profile(wanted, out=out, session=None, overwrite=True, json_target=None)
+    out.write_text("time,force\n0,1\n", encoding="utf-8")
+    with pytest.raises(UsageError, match="made by no profile"):
+        run_profile(wanted, out=out, session=None, overwrite=True, json_target=None)
+    assert out.read_text(encoding="utf-8") == "time,force\n0,1\n"
+
+
+def test_points_of_an_earlier_break_are_kept(tmp_path: Path) -> None:
+    """The second table of a profile that broke off has a number."""
+    for _ in range(2):
+        twin = Twin(DiaviteTwin(wave_counts(90)).answer, unplug_after=100)
+        with twin, pytest.raises(InstrumentError, match="heights are in"):
+            fetch(twin.name, tmp_path / "face.csv")
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"face.broken.csv", "face.broken-2.csv"}

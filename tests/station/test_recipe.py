@@ -39,6 +39,13 @@ def test_numbers_with_units_reach_the_settings_in_si(tmp_path: Path) -> None:
     assert settings.kalman is None
 
 
+def test_a_window_may_be_chosen_by_the_hits_or_left_out(tmp_path: Path) -> None:
+    """As the page on recipes has it: "auto" is no number, "none" is 0."""
+    text = '[windows]\nforce_width = "3 ms"\nexponential = "auto"\nlead = "none"\n'
+    windows = read_recipe(written(tmp_path, text)).windows
+    assert (windows.force_width, windows.exponential, windows.lead) == (3e-3, None, 0.0)
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

@@ -145,6 +145,24 @@ def test_ctrl_c_finishes_the_files_in_hand_and_tells_of_each(
     assert lines[-1]["interrupted"] is True
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="kills are sent otherwise there")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP"])
+def test_a_polite_kill_stops_the_run_in_order(
+    make_session, tmp_path: Path, name: str
+) -> None:
+    """As Ctrl-C: what was done has its line, and the ledger says how it ended."""
+    make_session("in/a.h5")
+
+    def killed(tasks, recipe):
+        yield from serial(tasks, recipe)
+        signal.raise_signal(getattr(signal, name))
+        yield from serial(tasks, recipe)
+
+    summary = run(tmp_path, killed)
+    assert summary.interrupted
+    assert len(summary.outcomes) == 1
+
+
 def test_a_full_disk_stops_the_run_and_blames_no_file(
     make_session, tmp_path: Path
 ) -> None:

@@ -14,6 +14,8 @@ SPREAD = {"m1": 0.003, "m2": 0.003, "k0": 0.05, "c0": 0.2, "kj": 0.1, "cj": 0.3}
 RATE = 16384.0
 SAMPLES = 1024
 BASE = np.array([0.002, -0.001, 0.04, -0.06, 0.1, -0.2])
+OF_THE_SIGNAL = ("saturation", "hum")
+"""Effects whose scale is that of a measured signal."""
 CONDITIONS = (
     (1, 30.0, 4000.0),
     (1, 300.0, 4000.0),
@@ -67,7 +69,9 @@ def made_campaign(
 ) -> Campaign:
     """Return a campaign with hidden effects, a base off its sheet, and noise."""
     bench = make_bench(quiet_campaign())
-    terms = [term_of(bench, *effect) for effect in effects]
-    clean = bench.response(BASE, terms)
     rng = np.random.default_rng(seed)
-    return quiet_campaign(clean + noise * rng.standard_normal(clean.shape))
+    draws = noise * rng.standard_normal(bench.campaign.response.shape)
+    if any(name in OF_THE_SIGNAL for name, _, _ in effects):
+        bench = make_bench(quiet_campaign(bench.response(BASE, []) + draws))
+    terms = [term_of(bench, *effect) for effect in effects]
+    return quiet_campaign(bench.response(BASE, terms) + draws)

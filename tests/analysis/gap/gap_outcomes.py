@@ -5,6 +5,7 @@ from dataclasses import replace
 import gap_bench as made
 import numpy as np
 
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.fit import Fit, make_problem
@@ -13,16 +14,19 @@ from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.naming import gate
 from jointbench.analysis.gap.screening import screen
+from jointbench.signal.one_thread import one_thread
 
 Hidden = tuple[str, str, list[float]]
 
 
+@one_thread()
 def outcome_of(
     hidden: list[Hidden],
     *tried: tuple[str, str],
     seed: int = 1,
     rivals: int = 1,
     continuous: bool = False,
+    at_truth: bool = False,
 ) -> tuple[Outcome, LumpedBench]:
     """Fit the base and the tried effects to a campaign with hidden ones.
 
@@ -32,6 +36,7 @@ def outcome_of(
         seed: of the noise.
         rivals: how many of them are not told apart.
         continuous: as if a shaker had done it, that never stops.
+        at_truth: start each try at the hidden values, which is quick and sure.
     """
     campaign = made.made_campaign(hidden, seed=seed)
     if continuous:
@@ -41,7 +46,11 @@ def outcome_of(
     assert isinstance(refined, LumpedBench)
     labels = [f"{name}@{site}" for name, site in tried]
     tests = screen(refined, base, [c for c in refined.candidates if linear(c.label)])
-    fits = [with_effect(refined, base, label) for label in labels]
+    truth = {
+        f"{name}@{site}": made.term_of(start, name, site, values).coordinates
+        for name, site, values in (hidden if at_truth else [])
+    }
+    fits = [with_effect(refined, base, label, truth.get(label)) for label in labels]
     if fits:
         again = refined.refine(fits[0].base, fits[0].terms)
         fits = [minimise(make_problem(again, f.candidates), f.x) for f in fits]
@@ -60,10 +69,14 @@ def linear(label: str) -> bool:
     return label.partition("@")[0] in {"delay", "gain_error", "added_mass", "maxwell"}
 
 
-def with_effect(bench: LumpedBench, base: Fit, label: str) -> Fit:
-    """Fit the base with one more effect, from a small amplitude."""
+def with_effect(
+    bench: LumpedBench, base: Fit, label: str, truth: FloatArray | None = None
+) -> Fit:
+    """Fit the base with one more effect, from a small amplitude or from the truth."""
     (candidate,) = [c for c in bench.candidates if c.label == label]
     problem = make_problem(bench, (candidate,))
+    if truth is not None:
+        return minimise(problem, np.concatenate([made.BASE, truth]))
     parameters = candidate.effect.parameters
     start = [p.encode(p.starts[0]) if p.starts else 1e-3 for p in parameters]
     return minimise(problem, np.concatenate([base.x, start]))

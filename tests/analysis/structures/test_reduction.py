@@ -5,12 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.errors import BadData, UsageError
 from jointbench.analysis.structures.assembly import Material
 from jointbench.analysis.structures.cache import cached, content_key
 from jointbench.analysis.structures.full_modes import solve_full
 from jointbench.analysis.structures.mesh import box_mesh
 from jointbench.analysis.structures.parts import (
+    GROUND,
     Joint,
     Support,
     SupportKind,
@@ -61,6 +62,7 @@ def test_the_bound_of_a_poor_basis_is_as_large_as_its_error(
         basis=reduced.basis[:, kept],
         riesz=reduced.riesz[:, columns],
         scale=reduced.scale,
+        strains=reduced.strains,
         shift=reduced.shift,
         box=reduced.box,
         modes=reduced.modes,
@@ -142,3 +144,29 @@ def test_a_support_that_holds_too_little_is_reduced_with_its_mechanisms(
     found, bound = frequency_bound(model, stiffness)
     assert np.count_nonzero(full == 0) == np.count_nonzero(found == 0) == 3
     assert np.all(np.abs(found - full) <= bound + 1e-7 * full)
+
+
+@pytest.mark.parametrize(
+    ("size", "box"), [((1.0, 0.8, 0.0375), (1e5, 1e9)), ((0.5, 0.4, 0.15), (1e3, 1e9))]
+)
+def test_close_and_slow_modes_are_iterated_until_their_bound_is_met(
+    size: tuple[float, float, float], box: tuple[float, float]
+) -> None:
+    """A table on the ground, from 0.5 Hz on: right wherever it is tried."""
+    steel = Material(youngs_modulus=200e9, poisson_ratio=0.3, density=7850.0)
+    body = solid_body("table", box_mesh(size, (4, 4, 1)), steel)
+    structure = build_structure([body], [Joint("bed", ("table", GROUND), face="z-")])
+    model = reduce_structure(structure, modes=8, box=box)
+    random = np.random.default_rng(1)
+    for _ in range(6):
+        stiffness = np.exp(random.uniform(*np.log(box), 3))
+        found, bound = frequency_bound(model, stiffness)
+        full = solve_full(structure, stiffness, 8).natural_frequency
+        assert np.all(found - full <= bound + 1e-7 * full)
+        assert np.all(np.abs(found / full - 1) < 1e-4)
+
+
+def test_a_bound_that_rounding_keeps_up_says_so(plates: Structure) -> None:
+    """No tolerance is met below rounding: the message does not blame the box first."""
+    with pytest.raises(BadData, match=r"solved to rounding.*larger tolerance"):
+        reduce_structure(plates, modes=8, box=(1e6, 1e8), tolerance=1e-18)

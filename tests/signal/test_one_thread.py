@@ -4,7 +4,7 @@
 import numpy as np
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from jointbench.signal.blas_threads import one_blas_thread
+from jointbench.signal.one_thread import one_thread
 
 
 def blas_threads() -> set[int]:
@@ -19,5 +19,5 @@ def test_the_limit_holds_within_the_function_and_ends_with_it() -> None:
     """Two threads outside, one inside, two again."""
     with threadpool_limits(limits=2, user_api="blas"):
         outside = blas_threads()
-        assert one_blas_thread(blas_threads)() == {1}
+        assert one_thread()(blas_threads)() == {1}
         assert blas_threads() == outside == {2}

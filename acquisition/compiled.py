@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Functions compiled by numba, kept on disk until any source that went into them moves.
+
+What a compiled function calls is compiled into it, and the constants that it looks at
+are taken in as numbers, from whatever file they come. Numba's own cache asks only
+whether the file of the function itself has changed (numba issue 1833), so that an edit
+of a file next to it would run the code of before.
+"""
+
+import ast
+import hashlib
+import importlib.util
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from numba import njit
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def compiled(**options: Any) -> Callable[[F], F]:
+    """Compile a function as `numba.njit` does, with a cache that is never stale.
+
+    Args:
+        options: of `numba.njit`, but for ``cache``.
+
+    Source:
+        https://numba.readthedocs.io/en/stable/developer/caching.html
+    """
+
+    def decorate(function: F) -> F:
+        dispatcher: Any = njit(**options)(function)
+        # As `enable_caching` does, which knows one kind of cache only.
+        dispatcher._cache = _Cache(function)  # noqa: SLF001
+        made: F = dispatcher
+        return made
+
+    return decorate
+
+
+class _Cache(FunctionCache):
+    """Numba's cache of a function, stamped with all sources that it may hold."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        self._cache_file = IndexDataCacheFile(  # type: ignore[no-untyped-call]
+            cache_path=self._cache_path,
+            filename_base=self._impl.filename_base,
+            source_stamp=digest_of(function.__module__),
+        )
+
+
+@cache
+def digest_of(module: str) -> str:
+    """Return a digest of a module's source and of all that it imports of its package.
+
+    Args:
+        module: its name, which need not be imported.
+    """
+    content = hashlib.sha256()
+    for name, path in sorted(_sources(module).items()):
+        content.update(name.encode())
+        content.update(path.read_bytes())
+    return content.hexdigest()
+
+
+def _sources(module: str) -> dict[str, Path]:
+    """Return the files of a module and of what it imports of its package, by name."""
+    package = module.partition(".")[0]
+    found: dict[str, Path] = {}
+    waiting = [module]
+    while waiting:
+        name = waiting.pop()
+        path = None if name in found else _file_of(name)
+        if path is not None:
+            found[name] = path
+            waiting += [n for n in _imported(path) if n.partition(".")[0] == package]
+    return found
+
+
+def _file_of(module: str) -> Path | None:
+    """Return the file of a module; None for a name inside one, and for a package."""
+    try:
+        spec = importlib.util.find_spec(module)
+    except (ModuleNotFoundError, ValueError):
+        return None
+    if spec is None or spec.origin is None or not Path(spec.origin).is_file():
+        return None
+    return Path(spec.origin)
+
+
+@cache
+def _imported(path: Path) -> tuple[str, ...]:
+    """Return what a file imports by absolute names, modules and names out of them."""
+    names: list[str] = []
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            names.append(node.module)
+            names += [f"{node.module}.{alias.name}" for alias in node.names]
+    return tuple(names)

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""The version of the code behind a stage: a digest of the sources that it runs.
+
+A stage is named with the modules that do its work. Their sources count, and the sources
+of all modules of this package that they import, directly or not; of the modules that
+call the stages, their own sources alone. The libraries that compute count by their
+versions. Comments count, too: a change that changes no number
+costs time, and never a number that is out of date.
+"""
+
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+
+PACKAGE = "jointbench"
+LIBRARIES = ("filterpy", "numba", "numpy", "scipy")
+CALLERS = (
+    "station.chain",
+    "station.process_joint",
+    "station.process_session",
+    "station.record_codec",
+    "station.stage_store",
+)
+"""Behind every stage: what calls it and keeps its record; what they import is not."""
+STAGE_MODULES = {
+    "hits": ("station.judge_again",),
+    "kalman": ("signal.kalman", "signal.windows"),
+    "frf": ("signal.frf", "signal.windows"),
+    "modes": ("signal.modes",),
+    "fill": ("station.chain",),
+    "structure": ("signal.structure_function",),
+    "surface": ("signal.fractal",),
+    "contact": ("station.contact", "station.joint"),
+    "joint": ("station.identify",),
+    "gap": (
+        "analysis.gap.catalogue",
+        "analysis.gap.diagnose",
+        "analysis.gap.records",
+        "analysis.gap.session_campaign",
+        "station.gap_model",
+    ),
+    "result": ("station.process_session", "station.processed_file"),
+}
+"""Modules that do the work of each stage; `result` is the whole results file."""
+_FROM = re.compile(
+    rf"^\s*from\s+({PACKAGE}(?:\.\w+)*)\s+import\s+(\([^)]*\)|[^\n]*)", re.MULTILINE
+)
+_IMPORT = re.compile(rf"^\s*import\s+({PACKAGE}(?:\.\w+)*)", re.MULTILINE)
+
+
+@cache
+def stage_version(stage: str) -> str:
+    """Return the version of the code of a stage: SHA-256, as hexadecimal text.
+
+    Args:
+        stage: name of the stage; one that is not in `STAGE_MODULES` has the code of
+            the result as a whole.
+    """
+    return code_version(stage_sources(stage))
+
+
+def stage_sources(stage: str) -> frozenset[str]:
+    """Return the full names of the modules that the version of a stage is made of."""
+    modules = STAGE_MODULES.get(stage, STAGE_MODULES["result"])
+    callers = {f"{PACKAGE}.{name}" for name in CALLERS}
+    return sources_behind(*(f"{PACKAGE}.{name}" for name in modules)) | callers
+
+
+def code_version(modules: Iterable[str]) -> str:
+    """Return the SHA-256 of the sources of modules and the versions of libraries.
+
+    Args:
+        modules: their full names.
+    """
+    digest = sha256()
+    for name in LIBRARIES:
+        digest.update(f"{name} {_library(name)}\n".encode())
+    for name in sorted(modules):
+        digest.update(f"{name} {source_digest(name)}\n".encode())
+    return digest.hexdigest()
+
+
+def sources_behind(*modules: str) -> frozenset[str]:
+    """Return the names of modules and of all modules of ours that they import."""
+    found: set[str] = set()
+    waiting = list(modules)
+    while waiting:
+        name = waiting.pop()
+        if name not in found and source_of(name) is not None:
+            found.add(name)
+            waiting += imports_of(name)
+    return frozenset(found)
+
+
+@cache
+def imports_of(name: str) -> tuple[str, ...]:
+    """Return what a module of ours imports of us, wherever in it the import stands."""
+    return tuple(dict.fromkeys(_imported((source_of(name) or b"").decode())))
+
+
+def _imported(text: str) -> Iterator[str]:
+    yield from _IMPORT.findall(text)
+    for base, names in _FROM.findall(text):
+        if source_of(base) is not None:
+            yield base
+            continue
+        for word in re.findall(r"(\w+)(?:\s+as\s+\w+)?", re.sub(r"#.*", "", names)):
+            yield f"{base}.{word}"
+
+
+@cache
+def source_of(name: str) -> bytes | None:
+    """Return the source of a module; None for a folder of modules, and for none."""
+    try:
+        spec = find_spec(name)
+    except ModuleNotFoundError:
+        return None
+    if spec is None or spec.origin is None or not Path(spec.origin).is_file():
+        return None
+    return Path(spec.origin).read_bytes()
+
+
+@cache
+def source_digest(name: str) -> str:
+    """Return the SHA-256 of the source of a module, as hexadecimal text."""
+    return sha256(source_of(name) or b"").hexdigest()
+
+
+def _library(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:  # vendored or frozen: its version is that of ours
+        return "-"

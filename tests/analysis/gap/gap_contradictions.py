@@ -1,0 +1,89 @@
+"""Look for sentences about one diagnosis that exclude each other."""
+
+import json
+import re
+
+from rich.console import Console
+
+from jointbench.analysis.gap.catalogue import CATALOGUE
+from jointbench.analysis.gap.records import Diagnosis, Finding, diagnosis_json
+from jointbench.station import gap_output
+from jointbench.station.gap_words import next_step
+from jointbench.station.report_gap import gap_report
+from jointbench.station.report_page import Text
+
+LINEAR = re.compile(r"(?<!not )in proportion to the hit|cause is linear")
+BENT = re.compile(
+    r"not in proportion to the hit|depends on the level|with level|even from odd"
+    r"|symmetry:|at high level"
+)
+UNLIKE = "unlike what the named effects do"
+GUESS = re.compile(
+    r"so the cause|suspect|rather than in one|so more than|law of your own"
+    r"|model leaves out|swap sensor|no effect"
+)
+APART = re.compile(r"tell the first two apart|: (hit|repeat|compare|look|phase|swap)")
+NO_LEVEL = ("loosening",)
+"""Effects that may look like either: they go with the order of the hits."""
+BENDING = {e.effect.name for e in CATALOGUE if e.law is not None or e.shape is not None}
+
+
+def sentences(found: Diagnosis) -> list[str]:
+    """Return what terminal, page and JSON say of a diagnosis, one text each."""
+    screen = Console(width=10_000, record=True, highlight=False, markup=False)
+    gap_output.show_on(screen, found)
+    page = gap_report(found, title="made")
+    words = [i.text for s in page.sections for i in s.items if isinstance(i, Text)]
+    exhibit = diagnosis_json(found)["exhibit"]
+    told = [exhibit["localisation"], *exhibit["looks_like"]] if exhibit else []
+    # Paragraphs hang behind their label: a line that begins with a blank goes on.
+    terminal = re.sub(r"\n +(?!- )", " ", screen.export_text())
+    return [
+        *terminal.splitlines(),
+        page.title,
+        page.lead,
+        *words,
+        *told,
+        diagnosis_json(found)["experiment"],
+        found.reason,
+    ]
+
+
+def contradictions(found: Diagnosis, hidden: frozenset[str]) -> list[str]:
+    """Return what does not go together, one line each; empty where all does.
+
+    Args:
+        found: the diagnosis.
+        hidden: names of what is missing, as far as it is known.
+    """
+    lines = sentences(found)
+    json.dumps(diagnosis_json(found))
+    linear = [x for x in lines if LINEAR.search(x) and UNLIKE not in x]
+    bent = [x for x in lines if BENT.search(x) and UNLIKE not in x]
+    faults = [f"{linear[0]} | {bent[0]}"] if linear and bent else []
+    faults += _against(found, hidden, linear, bent)
+    if found.verdict is not Finding.UNKNOWN:
+        faults += [f"guesses: {x}" for x in lines if GUESS.search(x)]
+    if len(found.explanations) < 2:
+        told = [found.experiment, next_step(found)]
+        faults += [f"no rival: {x}" for x in told if APART.search(x)]
+    if found.exhibit is not None and found.exhibit.advice not in ("", found.experiment):
+        faults.append(f"{found.exhibit.advice} | {found.experiment}")
+    steps = [x for x in lines if x.startswith(("next:", "Do next:"))]
+    faults += [f"{x} | {found.experiment}" for x in steps if found.experiment not in x]
+    return faults
+
+
+def _against(
+    found: Diagnosis, hidden: frozenset[str], linear: list[str], bent: list[str]
+) -> list[str]:
+    """Return what is said against the nature of what is named, or is hidden."""
+    faults = []
+    for names in ({e.name for e in found.effects}, hidden):
+        if not names or names & set(NO_LEVEL):
+            continue
+        if names <= BENDING:
+            faults += [f"{sorted(names)}: {x}" for x in linear]
+        elif not names & BENDING:
+            faults += [f"{sorted(names)}: {x}" for x in bent]
+    return faults
