@@ -25,7 +25,7 @@ from jointbench.analysis.gap.exhibit_where import (
     telling_view,
 )
 from jointbench.analysis.gap.exhibit_words import advise, describe
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.naming import PULL_LIMIT

@@ -7,11 +7,12 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
-from jointbench.analysis.gap.bench import Blocks
 from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE, candidates_of, check_names
+from jointbench.analysis.gap.fit_records import Blocks
 from jointbench.analysis.gap.forward import motion, undamped
-from jointbench.analysis.gap.lumped import LumpedBench, gated_excitation
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_residual import gated_excitation
 from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.probes import PROBES

@@ -15,7 +15,7 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray, freeze
 from jointbench.analysis.gap.assembly import Action
 from jointbench.analysis.gap.campaign import TAIL
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.forward import Excitation, respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.verify_channels import (

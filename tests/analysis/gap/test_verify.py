@@ -16,7 +16,7 @@ from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.curve_law import curve_law
 from jointbench.analysis.gap.effects import Effect, Parameter
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
