@@ -21,7 +21,8 @@ from jointbench.analysis.joint_problem import (
     split,
 )
 from jointbench.analysis.joint_search import Optimum, find_optima
-from jointbench.analysis.lumped import LumpedModel, incidence
+from jointbench.analysis.lumped import LumpedModel
+from jointbench.analysis.lumped_matrices import incidence
 from jointbench.analysis.lumped_modes import solve_modes
 from jointbench.analysis.measured_modes import MeasuredModes
 from jointbench.signal.one_thread import one_thread

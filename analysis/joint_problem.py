@@ -14,7 +14,8 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.errors import BadData, UsageError
-from jointbench.analysis.lumped import LumpedModel, incidence
+from jointbench.analysis.lumped import LumpedModel, require_tested_masses
+from jointbench.analysis.lumped_matrices import incidence
 from jointbench.analysis.lumped_modes import mode_derivatives, modes_of
 from jointbench.analysis.measured_modes import MeasuredModes
 
@@ -79,8 +80,10 @@ def pose_problem(
 
     Raises:
         BadData: more modes than the model can have, or one response given twice.
-        UsageError: a link, body or mode number that does not exist.
+        UsageError: a link, body or mode number that does not exist, or a body that
+            weighs what no tested body can weigh.
     """
+    require_tested_masses(model)
     n_modes = measured.natural_frequency.size
     numbers = np.asarray(
         range(n_modes) if mode_numbers is None else mode_numbers, dtype=np.int64
@@ -97,7 +100,7 @@ def pose_problem(
         mode_numbers=numbers,
         stiff=stiff,
         damped=stiff if measured.damping_ratio is not None else stiff[:0],
-        weighed=np.flatnonzero([body.mass_sd > 0 for body in model.bodies]),
+        weighed=np.flatnonzero([body.mass_spread > 0 for body in model.bodies]),
         damping_scale=float(2 * max(abs(ratio), 1e-6) * mass * omega),
         outputs=np.array([model.index(name) for name in measured.outputs], np.int64),
     )
@@ -113,7 +116,7 @@ def model_at(problem: JointProblem, unknowns: FloatArray) -> LumpedModel:
         links[i] = replace(links[i], damping=float(value * problem.damping_scale))
     for i, value in zip(problem.weighed, log_mass, strict=True):
         bodies[i] = replace(bodies[i], mass=float(bodies[i].mass * np.exp(value)))
-    return LumpedModel(tuple(bodies), tuple(links))
+    return replace(problem.model, bodies=tuple(bodies), links=tuple(links))
 
 
 def split(
@@ -245,15 +248,17 @@ def _prior_rows(
     links, bodies = problem.model.links, problem.model.bodies
     centre, sd = np.zeros(problem.size), np.full(problem.size, np.inf)
     for at, i in enumerate(problem.stiff):
-        if links[i].stiffness_sd and links[i].stiffness > 0:
+        spread = links[i].stiffness_spread
+        if spread and links[i].stiffness > 0:
             centre[at] = np.log(links[i].stiffness)
-            sd[at] = links[i].stiffness_sd / links[i].stiffness
+            sd[at] = spread
     for at, i in enumerate(problem.damped, start=log_stiffness.size):
-        if links[i].damping_sd:
+        spread = links[i].damping_spread
+        if spread and links[i].damping > 0:
             centre[at] = links[i].damping / problem.damping_scale
-            sd[at] = links[i].damping_sd / problem.damping_scale
+            sd[at] = spread * centre[at]
     for at, i in enumerate(problem.weighed, start=log_stiffness.size + damping.size):
-        sd[at] = bodies[i].mass_sd / bodies[i].mass
+        sd[at] = bodies[i].mass_spread
     known = np.isfinite(sd)
     value = (unknowns[known] - centre[known]) / sd[known]
     return value, np.diag(1 / sd)[known]

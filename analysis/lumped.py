@@ -1,23 +1,31 @@
 # SPDX-License-Identifier: MIT
-"""Rigid bodies joined by springs and dashpots: matrices and frequency response."""
+"""Rigid bodies joined by springs and dashpots: nominal values with priors, channels."""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.records import step
-from jointbench.signal.frf import Frf, FrfKind
 
 GROUND = "ground"
 # A microgram to a million tonnes [kg]: nothing a hammer tests is outside, and
 # eigenvalues of masses beyond lose all their digits.
 _MASS_RANGE = (1e-9, 1e9)
-# Far above any link [SI]; beyond, squares in the eigenvalue problem overflow.
+# Far above any link or body [SI], also in units that stand in for newton and metre;
+# beyond, squares in the eigenvalue problem overflow.
 _LARGEST_NUMBER = 1e30
+
+
+class Output(IntEnum):
+    """What the channels measure: the power of s that turns displacement into it."""
+
+    DISPLACEMENT = 0
+    VELOCITY = 1
+    ACCELERATION = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,13 +34,13 @@ class Body:
 
     Attributes:
         name: unique in its model; not ``"ground"``.
-        mass: [kg].
-        mass_sd: how well it was weighed [kg]; 0 stands for exactly.
+        mass: nominal [kg].
+        mass_spread: prior sd of log(mass / nominal) [-]; 0 where it is exact.
     """
 
     name: str
     mass: float
-    mass_sd: float = 0.0
+    mass_spread: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,32 +49,55 @@ class Link:
 
     Attributes:
         name: unique in its model.
-        ends: names of the bodies at its ends; one may be ``"ground"``.
-        stiffness: [N/m]; 0 where not known yet.
-        damping: viscous [N s/m].
-        stiffness_sd: how well the stiffness is known beforehand [N/m]; None: not.
-        damping_sd: how well the damping is known beforehand [N s/m]; None: not.
+        ends: names of the bodies at its negative and its positive end; one may be
+            ``"ground"``, which is the negative end wherever it stands.
+        stiffness: nominal [N/m]; 0 where not known yet.
+        damping: nominal, viscous [N s/m].
+        stiffness_spread: prior sd of log(stiffness / nominal) [-]; None for no prior.
+        damping_spread: prior sd of log(damping / nominal) [-]; None for no prior.
+        joint: True where effects of joints may sit.
     """
 
     name: str
     ends: tuple[str, str]
     stiffness: float = 0.0
     damping: float = 0.0
-    stiffness_sd: float | None = None
-    damping_sd: float | None = None
+    stiffness_spread: float | None = None
+    damping_spread: float | None = None
+    joint: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ResponseChannel:
+    """A response channel.
+
+    Attributes:
+        name: for example ``"a1"``.
+        body: name of the body it sits on.
+    """
+
+    name: str
+    body: str
 
 
 @dataclass(frozen=True, slots=True)
 class LumpedModel:
-    """Bodies and the links between them.
+    """Bodies, the links between them, and the channels on them.
+
+    Base parameters are the masses, then the stiffnesses, then the dampings.
 
     Attributes:
         bodies: each one degree of freedom, in this order in every matrix.
         links: at least one.
+        channels: in the order of the rows of a response; empty where the bodies
+            themselves name the outputs.
+        output: what all channels measure.
     """
 
     bodies: tuple[Body, ...]
     links: tuple[Link, ...]
+    channels: tuple[ResponseChannel, ...] = ()
+    output: Output = Output.ACCELERATION
 
     def __post_init__(self) -> None:
         """Check names, ends and numbers once."""
@@ -75,15 +106,60 @@ class LumpedModel:
         _require_unique("link", [link.name for link in self.links])
         for body in self.bodies:
             _require_number(f"mass of body {body.name!r}", body.mass, above=True)
-            _require_mass(body)
-            _require_number(f"mass_sd of body {body.name!r}", body.mass_sd)
+            _require_mass(body, 1 / _LARGEST_NUMBER, _LARGEST_NUMBER)
+            _require_number(f"mass_spread of body {body.name!r}", body.mass_spread)
         for link in self.links:
             _require_ends(link, names)
-            for what in ("stiffness", "damping", "stiffness_sd", "damping_sd"):
+            for what in ("stiffness", "damping", "stiffness_spread", "damping_spread"):
                 value = getattr(link, what)
                 if value is not None:
                     _require_number(f"{what} of link {link.name!r}", value)
                     _require_moderate(link.name, what, value)
+        for channel in self.channels:
+            self.index(channel.body)
+
+    @property
+    def nominal(self) -> FloatArray:
+        """Nominal masses, stiffnesses and dampings [SI], shape (n_base,)."""
+        return np.array(
+            [body.mass for body in self.bodies]
+            + [link.stiffness for link in self.links]
+            + [link.damping for link in self.links]
+        )
+
+    @property
+    def spread(self) -> FloatArray:
+        """Prior sd of log(parameter / nominal), shape (n_base,).
+
+        Raises:
+            UsageError: a parameter has no prior, or is exact.
+        """
+        priors = (
+            *(body.mass_spread for body in self.bodies),
+            *(link.stiffness_spread for link in self.links),
+            *(link.damping_spread for link in self.links),
+        )
+        for name, prior in zip(self.base_names, priors, strict=True):
+            if not prior:
+                raise UsageError(
+                    f"the prior sd of {name} is {prior}, each base parameter needs one "
+                    "above zero; complete the model"
+                )
+        return np.array(priors, dtype=float)
+
+    @property
+    def base_names(self) -> tuple[str, ...]:
+        """Names in the order of `nominal`."""
+        return (
+            *(body.name for body in self.bodies),
+            *(f"k_{link.name}" for link in self.links),
+            *(f"c_{link.name}" for link in self.links),
+        )
+
+    @property
+    def first_joint(self) -> int:
+        """Index of the first link that is a joint; 0 where none is."""
+        return next((i for i, link in enumerate(self.links) if link.joint), 0)
 
     def index(self, body: str) -> int:
         """Return the degree of freedom of `body`.
@@ -96,89 +172,30 @@ class LumpedModel:
             raise UsageError(f"no body {body!r} in the model; its bodies are {names}")
         return names.index(body)
 
+    def ends(self, link: int) -> tuple[int, int]:
+        """Return the degrees of freedom at a link's negative and positive end.
 
-def incidence(model: LumpedModel) -> FloatArray:
-    """Return the elongation of each link per displacement of each body [-].
+        Args:
+            link: its index.
 
-    Returns:
-        Shape (n_links, n_bodies): 1 at one end, -1 at the other; the ground has no
-        column. Stiffness matrix = incidence^T diag(stiffness) incidence.
-    """
-    rows = np.zeros((len(model.links), len(model.bodies)))
-    for row, link in zip(rows, model.links, strict=True):
-        for sign, end in zip((1.0, -1.0), link.ends, strict=True):
-            if end != GROUND:
-                row[model.index(end)] = sign
-    return rows
-
-
-def mass_matrix(model: LumpedModel) -> FloatArray:
-    """Return M [kg], shape (n_bodies, n_bodies), diagonal."""
-    return np.diag([body.mass for body in model.bodies])
+        Returns:
+            The ground is -1, and never the positive end: a link to the ground grows
+            longer as its body moves up.
+        """
+        first, second = self.links[link].ends
+        if second == GROUND:
+            first, second = second, first
+        return (-1 if first == GROUND else self.index(first)), self.index(second)
 
 
-def damping_matrix(model: LumpedModel) -> FloatArray:
-    """Return C [N s/m], shape (n_bodies, n_bodies)."""
-    rows = incidence(model)
-    return np.asarray((rows.T * [link.damping for link in model.links]) @ rows)
-
-
-def stiffness_matrix(model: LumpedModel) -> FloatArray:
-    """Return K [N/m], shape (n_bodies, n_bodies)."""
-    rows = incidence(model)
-    return np.asarray((rows.T * [link.stiffness for link in model.links]) @ rows)
-
-
-def predict_frf(
-    model: LumpedModel,
-    frequency: FloatArray,
-    *,
-    kind: FrfKind = FrfKind.ACCELERANCE,
-    outputs: Sequence[str] | None = None,
-    inputs: Sequence[str] | None = None,
-) -> Frf:
-    """Predict what a hammer test would measure.
-
-    Args:
-        model: bodies and links, all stiffnesses known.
-        frequency: lines [Hz], shape (n_lines,), ascending.
-        kind: receptance, mobility or accelerance.
-        outputs: bodies whose motion is wanted; default all.
-        inputs: bodies that are struck; default all.
-
-    Returns:
-        (K + j omega C - omega^2 M)^-1 times (j omega)^derivatives.
+def require_tested_masses(model: LumpedModel) -> None:
+    """Raise unless every body weighs what a body under a hammer can weigh.
 
     Raises:
-        UsageError: a body that the model does not have.
-
-    Source:
-        Appl. Sci. 2023, 13, 11680, eq. (4), for several bodies.
+        UsageError: one is lighter than a microgram or heavier than a million tonnes.
     """
-    names = tuple(body.name for body in model.bodies)
-    rows, columns = tuple(outputs or names), tuple(inputs or names)
-    s = 2j * math.pi * np.asarray(frequency, dtype=float)[:, None, None]
-    dynamic = (
-        s**2 * mass_matrix(model) + s * damping_matrix(model) + stiffness_matrix(model)
-    )
-    struck = np.eye(len(names))[:, [model.index(name) for name in columns]]
-    response = np.linalg.solve(dynamic, struck) * s**kind.derivatives
-    chosen = response[:, [model.index(name) for name in rows], :]
-    return Frf(
-        frequency=np.asarray(frequency, dtype=float),
-        response=np.moveaxis(chosen, 0, -1),
-        kind=kind,
-        outputs=rows,
-        inputs=columns,
-        provenance=(step("predict_frf", links=", ".join(_links(model))),),
-    )
-
-
-def _links(model: LumpedModel) -> list[str]:
-    return [
-        f"{link.name}: {link.stiffness:.6g} N/m, {link.damping:.6g} N s/m"
-        for link in model.links
-    ]
+    for body in model.bodies:
+        _require_mass(body, *_MASS_RANGE)
 
 
 def _require_unique(what: str, names: Sequence[str]) -> None:
@@ -200,10 +217,10 @@ def _require_ends(link: Link, names: Sequence[str]) -> None:
         )
 
 
-def _require_mass(body: Body) -> None:
-    """Raise unless a body weighs what a tested body can weigh."""
-    low, high = _MASS_RANGE
-    if not low <= body.mass <= high:
+def _require_mass(body: Body, least: float, most: float) -> None:
+    """Raise unless the mass of a body lies within limits [kg]."""
+    if not least <= body.mass <= most:
+        low, high = _MASS_RANGE
         raise UsageError(
             f"mass of body {body.name!r} is {body.mass:g} kg, a body weighs {low:g} to "
             f"{high:g} kg; give it in kg"

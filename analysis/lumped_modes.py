@@ -7,8 +7,8 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, freeze
-from jointbench.analysis.lumped import (
-    LumpedModel,
+from jointbench.analysis.lumped import LumpedModel, require_tested_masses
+from jointbench.analysis.lumped_matrices import (
     damping_matrix,
     mass_matrix,
     stiffness_matrix,
@@ -61,9 +61,13 @@ def solve_modes(model: LumpedModel) -> ComplexModes:
         receptance of the rest is the sum of shape shape^T / (2j Im(pole) (s - pole))
         and its conjugate.
 
+    Raises:
+        UsageError: a body weighs what no tested body can weigh.
+
     Source:
         Ewins, Modal Testing (2000), sec. 2.7.
     """
+    require_tested_masses(model)
     return modes_of(
         np.diag(mass_matrix(model)), damping_matrix(model), stiffness_matrix(model)
     )

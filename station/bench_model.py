@@ -10,11 +10,22 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from jointbench.analysis.lumped import (
+    GROUND,
+    Body,
+    Link,
+    LumpedModel,
+    Output,
+    ResponseChannel,
+)
 from jointbench.station.record_model import RecordTable, with_mechanical_units
 from jointbench.station.toml_file import StrictTable, with_unit
 
-GROUND = "ground"
-
+OUTPUTS = {
+    "displacement": Output.DISPLACEMENT,
+    "velocity": Output.VELOCITY,
+    "acceleration": Output.ACCELERATION,
+}
 
 Mass = Annotated[float, with_unit("mass"), Field(gt=0)]
 Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
@@ -114,3 +125,40 @@ class BenchModel(StrictTable):
                 f"contact.link is {self.contact.link!r}; links are {list(self.links)}"
             )
         return self
+
+
+def lumped_model(bench: BenchModel) -> LumpedModel:
+    """Return the bodies, links and channels of a model file, as the analysis has them.
+
+    A mass without a standard deviation is exact; a stiffness or damping without one,
+    or without a value, has no prior.
+    """
+    return LumpedModel(
+        bodies=tuple(
+            Body(name, body.mass, _spread(body.mass, body.mass_sd) or 0.0)
+            for name, body in bench.bodies.items()
+        ),
+        links=tuple(
+            Link(
+                name,
+                link.between,
+                stiffness=link.stiffness or 0.0,
+                damping=link.damping or 0.0,
+                stiffness_spread=_spread(link.stiffness, link.stiffness_sd),
+                damping_spread=_spread(link.damping, link.damping_sd),
+                joint=link.joint,
+            )
+            for name, link in bench.links.items()
+        ),
+        channels=tuple(
+            ResponseChannel(body.channel, name)
+            for name, body in bench.bodies.items()
+            if body.channel is not None
+        ),
+        output=OUTPUTS[bench.gap.output],
+    )
+
+
+def _spread(value: float | None, sd: float | None) -> float | None:
+    """Return the prior sd of log(parameter / nominal) [-], None for no prior."""
+    return sd / value if value and sd else None

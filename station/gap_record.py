@@ -140,7 +140,7 @@ def _centred(values: FloatArray, table: RecordTable) -> FloatArray:
 
 def _driven(table: RecordTable, bench: BenchModel, sheet: Sheet) -> int:
     if table.driven is None:
-        return sheet.model.channels[0].body
+        return sheet.model.index(sheet.model.channels[0].body)
     names = list(bench.bodies)
     if table.driven not in names:
         raise BadData(

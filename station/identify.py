@@ -2,6 +2,7 @@
 """``jointbench identify``: the links of a lumped bench from its measured modes."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,11 +15,11 @@ from jointbench.analysis.identification import (
     identification_json,
 )
 from jointbench.analysis.identify import identify_links
-from jointbench.analysis.lumped import Body, Link, LumpedModel
+from jointbench.analysis.lumped import LumpedModel
 from jointbench.analysis.measured_modes import MeasuredModes
 from jointbench.signal.modal_model import ModalModel
 from jointbench.signal.modes import ModalSettings
-from jointbench.station.bench_model import BenchModel
+from jointbench.station.bench_model import BenchModel, lumped_model
 from jointbench.station.chain import ChainSettings, run_chain
 from jointbench.station.inputs import read_recordings
 from jointbench.station.joint_text import WHAT_IS_SHOWN, parameter_text
@@ -115,26 +116,18 @@ def identify_joint(bench: BenchModel, modes: ModalModel) -> Identification:
         BadData: a body's channel is not among the outputs, or there are more modes
             than bodies.
     """
-    return identify_links(lumped_model(bench), measured_modes(bench, modes))
+    return identify_links(mode_model(bench), measured_modes(bench, modes))
 
 
-def lumped_model(bench: BenchModel) -> LumpedModel:
-    """Return the bodies and links of a model file as the analysis takes them."""
-    bodies = tuple(
-        Body(name, body.mass, body.mass_sd or 0.0)
-        for name, body in bench.bodies.items()
-    )
-    links = tuple(
-        Link(
-            name,
-            link.between,
-            stiffness=link.stiffness or 0.0,
-            damping=link.damping or 0.0,
-            stiffness_sd=link.stiffness_sd,
-        )
-        for name, link in bench.links.items()
-    )
-    return LumpedModel(bodies, links)
+def mode_model(bench: BenchModel) -> LumpedModel:
+    """Return the lumped model of a bench without the priors of its dampings.
+
+    The measured damping ratios alone say what the damping is: a stated damping is a
+    start of the search. Only `gap` weighs it by its standard deviation.
+    """
+    model = lumped_model(bench)
+    links = tuple(replace(link, damping_spread=None) for link in model.links)
+    return replace(model, links=links)
 
 
 def measured_modes(bench: BenchModel, modes: ModalModel) -> MeasuredModes:

@@ -1,6 +1,7 @@
 """The house itself: packaging, the direction of imports, what starting up costs."""
 
 import ast
+import graphlib
 import subprocess
 import sys
 from collections.abc import Collection, Mapping
@@ -110,6 +111,20 @@ def test_every_product_module_is_reached_from_the_command_line() -> None:
     known = modules()
     unreached = set(known) - reached("jointbench.station.main", known)
     assert not unreached, sorted(unreached)
+
+
+def dotted(path: Path) -> str:
+    """Return the dotted name under which a module is imported."""
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(("jointbench", *parts))
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_modules_import_each_other_in_a_circle(room: str) -> None:
+    """Imports for type checkers alone and inside functions count as well."""
+    graph = {dotted(path): imported(path) for path in sources(room)}
+    known = {module: names & graph.keys() for module, names in graph.items()}
+    graphlib.TopologicalSorter(known).prepare()
 
 
 @pytest.mark.parametrize("package", sorted(ONE_HOME))

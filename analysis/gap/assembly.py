@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
-from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.physics import Conditions, ElementState, LumpedEffect
+from jointbench.analysis.lumped import LumpedModel
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +53,7 @@ def dynamic_stiffness(
         ((i,), value[None, :]) for i, _, _, value in rows
     ]
     for j, link in enumerate(model.links):
-        ends = tuple(e for e in (link.first, link.second) if e >= 0)
+        ends = tuple(e for e in model.ends(j) if e >= 0)
         stiffness = (theta[n + j] + theta[n + links + j] * s)[None, :]
         if link.joint and conditions.settling is not None:
             rise = theta[n + j] * np.expm1(conditions.settling)
@@ -67,10 +67,8 @@ def dynamic_stiffness(
         if action.kind == "body":
             elements.append(((action.index,), added))
         else:
-            link = model.links[action.index]
-            elements.append(
-                (tuple(e for e in (link.first, link.second) if e >= 0), added)
-            )
+            ends = tuple(e for e in model.ends(action.index) if e >= 0)
+            elements.append((ends, added))
     variants = max(value.shape[0] for _, value in elements)
     z = np.zeros((n, n, variants, s.size), dtype=np.complex128)
     for ends, value in elements:

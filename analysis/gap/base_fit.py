@@ -5,7 +5,8 @@ import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.judging import far_off
 from jointbench.signal.one_thread import one_thread
 

@@ -2,61 +2,24 @@
 """What the engine asks of a bench: residuals of a base model plus effects."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray, IntArray
+from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.effects import Candidate, Term
-
-if TYPE_CHECKING:
-    from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Blocks, Fit, Stage
 
 
-@dataclass(frozen=True, slots=True)
-class Stage:
-    """How thoroughly a residual is evaluated.
+class Scaled(Protocol):
+    """What turns the words of a catalogue's scales into sizes of one measurement."""
 
-    Attributes:
-        window: decay of the exponential window [s], or None for the whole record;
-            short windows make the cost of a misplaced resonance smooth.
-        oversampling: steps of the nonlinear march per sample.
-    """
-
-    window: float | None = None
-    oversampling: int = 4
+    def scale(self, word: str) -> float:
+        """Return the bench's scale of that word [SI]."""
+        ...
 
 
-MIDDLE = Stage(oversampling=2)
-FULL = Stage()
-FINE = Stage(oversampling=8)
-EVERYDAY = 30.0
-"""Chi2 over dof beyond which a misfit is a missing effect of everyday size: directed
-tests may point the wrong way, and nothing can be told of noise, settling or filter."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Blocks:
-    """Which rows of a residual belong together.
-
-    Attributes:
-        group: group of each row (a record), shape (n_rows,), 0-based.
-        labels: words of each group by view, for example ``{"level": "300 N"}``.
-        dof: number of residual rows with any weight.
-        shape: records, channels and samples, whose product is the number of rows.
-        white: False where sigma holds a repeatability from a sheet: then a residual
-            below it may have any shape, and directed tests say nothing.
-    """
-
-    group: IntArray
-    labels: tuple[dict[str, str], ...]
-    dof: int
-    shape: tuple[int, int, int]
-    white: bool = True
-
-
-class Bench(Protocol):
+class Bench(Scaled, Protocol):
     """A measurement with its model: everything the engine knows of either."""
 
     @property
@@ -89,15 +52,11 @@ class Bench(Protocol):
         """Whether the model is expanded about a fit, so that others fit less well."""
         ...
 
-    def scale(self, word: str) -> float:
-        """Return the bench's scale of that word [SI]."""
-        ...
-
     def phases(self, candidate: Candidate) -> int:
         """Return how many free phases an effect fits by itself; 0 for most."""
         ...
 
-    def hints(self, fit: "Fit", candidate: Candidate) -> list[FloatArray]:
+    def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
         """Return starts that a fit's own residual suggests, besides the grid's."""
         ...
 
@@ -127,7 +86,7 @@ class Bench(Protocol):
         ...
 
 
-def values_of(bench: Bench, term: Term) -> FloatArray:
+def values_of(bench: Scaled, term: Term) -> FloatArray:
     """Return the values [SI] of a term's parameters, shape (n_parameters,)."""
     parameters = term.candidate.effect.parameters
     return np.array(

@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 
 from jointbench.acquisition.arrays import FloatArray, IntArray, freeze
-from jointbench.analysis.gap.model import LumpedModel
+from jointbench.analysis.lumped import LumpedModel
 
 TAIL = 64
 """Last samples without weight: a channel's filter acts on a cut record there."""

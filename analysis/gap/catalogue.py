@@ -12,8 +12,8 @@ from jointbench.acquisition.errors import UsageError
 from jointbench.analysis.gap.catalogue_linear import LINEAR
 from jointbench.analysis.gap.catalogue_nonlinear import NONLINEAR
 from jointbench.analysis.gap.effects import Candidate, Site
-from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.physics import LumpedEffect
+from jointbench.analysis.lumped import LumpedModel
 
 CATALOGUE: tuple[LumpedEffect, ...] = (*NONLINEAR, *LINEAR)
 ALL_CHANNELS = "all"

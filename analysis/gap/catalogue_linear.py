@@ -176,6 +176,7 @@ HIDDEN_MODE = LumpedEffect(
             "added_mass": "excite well above the mode, where the mass lets go",
         },
         report=_hidden_mode_report,
+        starts_at_peaks=True,
     ),
     ("body",),
     stiffness=_hidden_mode,

@@ -300,6 +300,8 @@ HUM = LumpedEffect(
         ),
         "Ott 2009, Electromagnetic Compatibility Engineering, ch. 3: mains pick-up",
         {"hidden_mode": "record without a hit"},
+        starts_at_peaks=True,
+        own_phases=True,
     ),
     ("channel",),
     shape=_hum,

@@ -11,17 +11,14 @@ shape of its end, so the shape is a nuisance: splines over frequency, by least s
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import EVERYDAY, FINE, FULL
 from jointbench.analysis.gap.effects import Term
+from jointbench.analysis.gap.fit_records import EVERYDAY, FINE, FULL
 from jointbench.analysis.gap.forward import pass_band_end
-
-if TYPE_CHECKING:
-    from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_residual import SomeBench
 
 KNOTS = np.arange(0.37, 0.505, 0.01)
 """Middles of the splines over the sample rate."""
@@ -32,8 +29,8 @@ AUDIBLE = 10.0
 
 
 def with_converter_edge(
-    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
-) -> "LumpedBench":
+    bench: SomeBench, base: FloatArray, terms: Sequence[Term]
+) -> SomeBench:
     """Return the bench with the end of the pass band estimated at a solution.
 
     Args:
@@ -65,7 +62,7 @@ def with_converter_edge(
     return _with_taper(bench, usual + change @ splines)
 
 
-def _frequency(bench: "LumpedBench") -> FloatArray:
+def _frequency(bench: SomeBench) -> FloatArray:
     """Return the lines over the sample rate, shape (n_lines,)."""
     excitation = bench.excitation
     return np.asarray(excitation.s.imag / (2 * np.pi * excitation.sample_rate))
@@ -83,6 +80,6 @@ def _splines(frequency: FloatArray) -> FloatArray:
     return np.asarray(np.where(away < 1.0, inner, outer))
 
 
-def _with_taper(bench: "LumpedBench", taper: FloatArray) -> "LumpedBench":
+def _with_taper(bench: SomeBench, taper: FloatArray) -> SomeBench:
     excitation = replace(bench.excitation, taper=taper)
     return replace(bench, excitation=excitation, short={})

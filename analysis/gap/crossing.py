@@ -6,10 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import MIDDLE, Bench
+from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.descent import cost_at, minimise
 from jointbench.analysis.gap.effects import Candidate, words_of
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import MIDDLE, Fit
 from jointbench.analysis.gap.race import MOST_STEPS, Progress, finish
 
 ASTRAY = 4.0

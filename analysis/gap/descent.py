@@ -6,8 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import FULL, Stage
-from jointbench.analysis.gap.fit import Fit, Problem
+from jointbench.analysis.gap.fit import Problem
+from jointbench.analysis.gap.fit_records import FULL, Fit, Stage
 from jointbench.analysis.gap.side_by_side import each
 
 EXCESS_TOLERANCE = 1e-3

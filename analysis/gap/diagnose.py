@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import FULL, Bench, values_of
+from jointbench.analysis.gap.bench import Bench, values_of
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.checks import campaign_limits
@@ -19,7 +19,8 @@ from jointbench.analysis.gap.effects import (
     Term,
 )
 from jointbench.analysis.gap.exhibit import make_exhibit
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import FULL, Fit
 from jointbench.analysis.gap.heldout import HeldOut, hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate
 from jointbench.analysis.gap.lumped import LumpedBench

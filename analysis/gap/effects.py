@@ -125,6 +125,10 @@ class Effect:
             priors of the base see it (an added mass, a gain).
         refit_nominal: True where the fit must start from the nominal base as well.
         has_sliders: True for friction laws made of sliders that stick and slip.
+        starts_at_peaks: True where the second parameter is a frequency at which a
+            residual without the effect peaks: fits start at those peaks as well.
+        own_phases: True where the effect finds a phase for itself in each record and
+            channel; each is a free number that its comparison with others pays for.
     """
 
     name: str
@@ -136,6 +140,8 @@ class Effect:
     by_prior: bool = False
     refit_nominal: bool = False
     has_sliders: bool = False
+    starts_at_peaks: bool = False
+    own_phases: bool = False
 
     def reported(self, values: FloatArray) -> tuple[Reported, ...]:
         """Return what the user reads of fitted `values`, shape (n_parameters,)."""

@@ -3,10 +3,10 @@
 
 from collections.abc import Collection
 
-from jointbench.analysis.gap.bench import MIDDLE, Bench
+from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.effects import labels_of, may_join
 from jointbench.analysis.gap.far_pairs import without
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import MIDDLE, Fit
 from jointbench.analysis.gap.race import Progress, race
 from jointbench.analysis.gap.screening import screen
 

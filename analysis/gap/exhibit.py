@@ -25,12 +25,12 @@ from jointbench.analysis.gap.exhibit_where import (
     telling_view,
 )
 from jointbench.analysis.gap.exhibit_words import advise, describe
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import PULL_LIMIT
 from jointbench.analysis.gap.records import Finding
+from jointbench.analysis.lumped import Output
 
 UNITS = {
     Output.DISPLACEMENT: "m",

@@ -10,7 +10,7 @@ from jointbench.analysis.gap.exhibit_level import (
     levels_of,
     scaling_of,
 )
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.records import Finding

@@ -22,10 +22,11 @@ from jointbench.acquisition.arrays import (
     FloatArray,
     IntArray,
 )
-from jointbench.analysis.gap.bench import Stage
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages
-from jointbench.analysis.gap.fit import Fit, Problem, make_problem
+from jointbench.analysis.gap.fit import Problem, make_problem
+from jointbench.analysis.gap.fit_records import Fit, Stage
 from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.settling import joint_at
 
 FORCE_FLOOR = 0.05
 """Of the largest line of a force, below which a ratio to it says nothing."""
@@ -115,7 +116,7 @@ def _scatters(
 ) -> tuple[Scatter, ...]:
     """Return how hits scatter: in strength, and in the stiffness of the joint."""
     moved = base.copy()
-    moved[bench.joint_at] += STEP
+    moved[joint_at(bench.campaign.model)] += STEP
     gain, joint = bench.noise.scatter[0], max(bench.noise.scatter[1:], default=0.0)
     slope = (bench.response(moved, ()) - model) / STEP
     return Scatter(gain, model), Scatter(joint, slope)

@@ -14,7 +14,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.exhibit_facts import UNEVEN, Facts
 from jointbench.analysis.gap.exhibit_level import Scaling
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.lumped import LumpedBench
 
 GROWS = 0.7

@@ -12,10 +12,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointbench.analysis.gap.bench import Bench, Stage
+from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.descent import fit_stages, minimise
 from jointbench.analysis.gap.effects import labels_of, may_join, words_of
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import Fit, Stage
 from jointbench.analysis.gap.race import Progress, along
 from jointbench.analysis.gap.screening import screen
 

@@ -31,9 +31,9 @@ from jointbench.analysis.gap.march import (
     QUADRATIC_DAMPING,
     march,
 )
-from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.packed_laws import pack_laws
 from jointbench.analysis.gap.physics import Conditions, Law
+from jointbench.analysis.lumped import LumpedModel
 
 DAMPING_EXPONENT = 16.0
 PADDED = 1.5
@@ -146,7 +146,7 @@ def respond(
     x = motion(model, theta, excitation, actions, oversampling=oversampling)
     s = excitation.s
     power = s ** int(model.output) if model.output else np.ones_like(s)
-    spectra = np.stack([x[c.body] * power for c in model.channels], axis=1)
+    spectra = np.stack([x[model.index(c.body)] * power for c in model.channels], axis=1)
     spectra = _channels(spectra, s, actions)
     response = undamped(spectra, excitation)
     for action in actions:
@@ -189,10 +189,10 @@ def undamped(spectra: ComplexArray, excitation: Excitation) -> FloatArray:
 
 def _across(model: LumpedModel, h: ComplexArray, body: int, link: int) -> ComplexArray:
     """Motion of a body per force pulling the ends of a link together."""
-    ends = model.links[link]
-    value = h[body, ends.second]
-    if ends.first >= 0:
-        value = value - h[body, ends.first]
+    first, second = model.ends(link)
+    value = h[body, second]
+    if first >= 0:
+        value = value - h[body, first]
     return np.asarray(value)
 
 
@@ -211,10 +211,10 @@ def _link_force(
     The march errs with the square of its step, so that half as many steps tell what
     is left of the error; friction at a standstill is too sharp for that.
     """
-    ends = model.links[link]
-    x = linear[ends.second]
-    if ends.first >= 0:
-        x = x - linear[ends.first]
+    first, second = model.ends(link)
+    x = linear[second]
+    if first >= 0:
+        x = x - linear[first]
     modes = link_modes(model, theta, excitation.conditions, link, actions)
     fine = _between_samples(excitation, x, laws, oversampling)
     force = _marched(excitation, fine, modes, laws, oversampling)

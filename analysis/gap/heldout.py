@@ -14,10 +14,11 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray, IntArray, freeze
-from jointbench.analysis.gap.bench import FINE, MIDDLE, Bench, Blocks, Stage
+from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import Transform
-from jointbench.analysis.gap.fit import Fit, Problem, make_problem
+from jointbench.analysis.gap.fit import Problem, make_problem
+from jointbench.analysis.gap.fit_records import FINE, MIDDLE, Blocks, Fit, Stage
 
 LONG_STEP = 1.5
 """Growth of a group's chi2 by being held out beyond which it is fitted again."""

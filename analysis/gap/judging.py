@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.analysis.gap.bench import EVERYDAY, FULL, Bench
+from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.crossing import caught_up
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import PROBE_FAMILY, labels_of
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import EVERYDAY, FULL, Fit
 from jointbench.analysis.gap.naming import (
     AMPLITUDE_SD,
     Gate,

@@ -13,8 +13,9 @@ import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.assembly import Action, state_of
-from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.physics import Conditions
+from jointbench.analysis.lumped import LumpedModel
+from jointbench.analysis.lumped_matrices import incidence
 
 REAL = 1e-9
 """Imaginary part over the modulus of a pole, below which it is real."""
@@ -62,7 +63,7 @@ def link_modes(
     parts = _base_parts(model, theta, conditions)
     parts += [_part(model, theta, conditions, action) for action in linear]
     variants = max(p.polynomial.shape[0] for p in parts)
-    across = _across(model, link)
+    across = incidence(model)[link]
     poles, right = np.linalg.eig(_state_matrix(theta[: across.size], parts, variants))
     push = np.zeros((variants, poles.shape[1], 1), dtype=np.complex128)
     inertia = _inertia(theta[: across.size], parts, variants)
@@ -92,18 +93,11 @@ def _one_of_each_pair(
     return poles[rows, kept], (residues * weight)[rows, kept]
 
 
-def _across(model: LumpedModel, link: int) -> FloatArray:
-    ends, out = model.links[link], np.zeros(len(model.bodies))
-    out[ends.second] = 1.0
-    if ends.first >= 0:
-        out[ends.first] = -1.0
-    return out
-
-
 def _base_parts(
     model: LumpedModel, theta: FloatArray, conditions: Conditions
 ) -> list[_Part]:
     n, links = len(model.bodies), len(model.links)
+    rows = incidence(model)
     nothing = np.zeros(0, dtype=np.complex128)
     parts = []
     for j, link in enumerate(model.links):
@@ -115,7 +109,7 @@ def _base_parts(
             [k * factor, np.full_like(factor, c), np.zeros_like(factor)], axis=1
         )
         none = np.zeros((factor.size, 0), dtype=np.complex128)
-        parts.append(_Part(_across(model, j), polynomial, nothing, none))
+        parts.append(_Part(rows[j], polynomial, nothing, none))
     return parts
 
 
@@ -126,7 +120,7 @@ def _part(
     if action.kind == "body":
         across = np.eye(len(model.bodies))[action.index]
     else:
-        across = _across(model, action.index)
+        across = incidence(model)[action.index]
     own = np.zeros(0, dtype=np.complex128)
     if action.entry.poles is not None:
         own = np.asarray(action.entry.poles(action.values), dtype=np.complex128)

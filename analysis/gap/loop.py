@@ -19,7 +19,8 @@ from jointbench.analysis.gap.effort import (
 )
 from jointbench.analysis.gap.exchange import exchanged
 from jointbench.analysis.gap.far_pairs import far_pairs
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.judging import Hopes, far_off, judge
 from jointbench.analysis.gap.naming import (
     CROWDED_WITHIN,

@@ -7,11 +7,12 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.assembly import dynamic_stiffness, invert
-from jointbench.analysis.gap.bench import Blocks
 from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE, candidates_of, check_names
+from jointbench.analysis.gap.fit_records import Blocks
 from jointbench.analysis.gap.forward import motion, undamped
-from jointbench.analysis.gap.lumped import LumpedBench, gated_excitation
+from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.lumped_residual import gated_excitation
 from jointbench.analysis.gap.noise import Noise
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.probes import PROBES
@@ -106,14 +107,14 @@ def _scales(bench: LumpedBench) -> dict[str, float]:
     """Characteristic sizes at the nominal sheet, from which starts are scaled."""
     model, excitation = bench.campaign.model, bench.excitation
     theta = model.nominal
-    joint = next((i for i, x in enumerate(model.links) if x.joint), 0)
+    joint = model.first_joint
     n, links = len(model.bodies), len(model.links)
     x = motion(model, theta, excitation, (), oversampling=1)
-    ends = model.links[joint]
-    r = x[ends.second] - (x[ends.first] if ends.first >= 0 else 0.0)
+    first, second = model.ends(joint)
+    r = x[second] - (x[first] if first >= 0 else 0.0)
     travel, speed = undamped(r, excitation), undamped(r * excitation.s, excitation)
     z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, ())
-    peak = np.argmax(np.abs(invert(z)[ends.second, ends.second, 0]))
+    peak = np.argmax(np.abs(invert(z)[second, second, 0]))
     frequency = max(float(excitation.s[peak].imag) / (2 * np.pi), 1.0)
     stiffness = float(theta[n + joint])
     return {

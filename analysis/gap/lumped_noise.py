@@ -2,17 +2,17 @@
 """What the noise of a lumped bench is, at a solution: channels, force, scatter."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import EVERYDAY, FULL
 from jointbench.analysis.gap.campaign import TAIL
 from jointbench.analysis.gap.converter_edge import with_converter_edge
 from jointbench.analysis.gap.effects import Term
+from jointbench.analysis.gap.fit_records import EVERYDAY, FULL, Settled
 from jointbench.analysis.gap.forward import prepare_excitation, respond
+from jointbench.analysis.gap.lumped_residual import SomeBench, settle
 from jointbench.analysis.gap.noise import (
     FORCE_SHAPES,
     Noise,
@@ -24,9 +24,7 @@ from jointbench.analysis.gap.noise import (
     without_trend,
 )
 from jointbench.analysis.gap.physics import Conditions
-
-if TYPE_CHECKING:
-    from jointbench.analysis.gap.lumped import LumpedBench
+from jointbench.analysis.gap.settling import hit_stiffness, joint_at, mean_stiffness
 
 TELLS_NOTHING = 0.3
 """Misfit over response above which a fit says nothing about the settling."""
@@ -44,33 +42,13 @@ SCATTER_STEP = 1e-6
 hundredth away from its slope, and a trend hides in that hundredth."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Settled:
-    """An expansion of the model about the joint's stiffness as it was in each hit.
-
-    The data know that stiffness far better than its mean, so the mean must move
-    without it: the response is taken at the stiffness of each hit, and mean and
-    scatter about it enter by the slope. A record of a hundred radians bends within
-    the scatter; what does not bend cannot leave the base stuck.
-
-    Attributes:
-        anchor: base at which the model was expanded, shape (n_base,).
-        slope: change of the response with it, shape of the response.
-        rise: what laws added to the joint's stiffness there [-], (n_records,).
-    """
-
-    anchor: FloatArray
-    slope: FloatArray
-    rise: FloatArray
-
-
 def refine_noise(
-    bench: "LumpedBench",
+    bench: SomeBench,
     base: FloatArray,
     terms: Sequence[Term],
     *,
     astray: bool = False,
-) -> "LumpedBench":
+) -> SomeBench:
     """Return the bench with its noise estimated at a solution.
 
     Args:
@@ -118,23 +96,23 @@ def refine_noise(
     return expanded
 
 
-def _centred(
-    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term]
-) -> "LumpedBench":
+def _centred(bench: SomeBench, base: FloatArray, terms: Sequence[Term]) -> SomeBench:
     """Return the bench with each hit's stiffness kept, about the base's mean.
 
     A settling is what base and laws leave of that stiffness.
     """
     if bench.settled is None:
         return bench
-    mean = bench.mean_stiffness(base, bench.settled)
-    kept = np.exp(mean - base[bench.joint_at] + bench.hit_stiffness(bench.settled))
+    model = bench.campaign.model
+    mean = mean_stiffness(model, base, bench.settled)
+    hits = hit_stiffness(bench.excitation.conditions, bench.settled)
+    kept = np.exp(mean - base[joint_at(model)] + hits)
     rest = np.maximum(kept - bench.rise(terms), LEAST_FACTOR)
     return settle(bench, np.log(rest))
 
 
 def _channel_noise(
-    bench: "LumpedBench", model: FloatArray, residual: FloatArray
+    bench: SomeBench, model: FloatArray, residual: FloatArray
 ) -> FloatArray:
     """Return the noise of each record and channel, (n_records, n_channels)."""
     peak = np.abs(model).max(axis=2)
@@ -145,7 +123,7 @@ def _channel_noise(
 
 
 def _scatter_of(
-    bench: "LumpedBench", coefficients: FloatArray, variances: FloatArray
+    bench: SomeBench, coefficients: FloatArray, variances: FloatArray
 ) -> tuple[float, ...]:
     """Return the scatter along each way."""
     campaign = bench.campaign
@@ -165,12 +143,12 @@ def _scatter_of(
 
 
 def _expanded(
-    bench: "LumpedBench",
+    bench: SomeBench,
     settling: FloatArray,
     base: FloatArray,
     terms: Sequence[Term],
     columns: list[FloatArray],
-) -> "LumpedBench":
+) -> SomeBench:
     """Return the bench expanded about a settling, with its scatter whitened there.
 
     What is taken by the slope is then the very direction that whitening blurs,
@@ -192,7 +170,7 @@ def _patterns(conditions: Conditions) -> FloatArray:
 
 
 def _force_columns(
-    bench: "LumpedBench", base: FloatArray, sigma: FloatArray
+    bench: SomeBench, base: FloatArray, sigma: FloatArray
 ) -> list[FloatArray]:
     """Responses to the force's own noise, over sigma, one array for each record."""
     first, last = bench.gate
@@ -230,7 +208,7 @@ def _leading(rows: FloatArray) -> FloatArray:
 
 
 def _scatter_ways(
-    bench: "LumpedBench",
+    bench: SomeBench,
     base: FloatArray,
     terms: Sequence[Term],
     model: FloatArray,
@@ -255,7 +233,7 @@ def _scatter_ways(
 
 
 def _harder(
-    bench: "LumpedBench", base: FloatArray, terms: Sequence[Term], model: FloatArray
+    bench: SomeBench, base: FloatArray, terms: Sequence[Term], model: FloatArray
 ) -> FloatArray:
     """Return the change of the response per relative change of the force.
 
@@ -269,21 +247,9 @@ def _harder(
     return (pushed.response(base, terms) - model) / SCATTER_STEP
 
 
-def settle(bench: "LumpedBench", settling: FloatArray | None) -> "LumpedBench":
-    """Return the bench with its model taken at a settling of the joint.
-
-    Args:
-        bench: to be changed.
-        settling: log of the joint's stiffness in each hit over its mean, (n_records,).
-    """
-    conditions = replace(bench.excitation.conditions, settling=settling)
-    excitation = replace(bench.excitation, conditions=conditions)
-    return replace(bench, excitation=excitation, settled=None, short={})
-
-
 def _with_noise(
-    bench: "LumpedBench", noise: Noise, columns: list[FloatArray], ways: FloatArray
-) -> "LumpedBench":
+    bench: SomeBench, noise: Noise, columns: list[FloatArray], ways: FloatArray
+) -> SomeBench:
     """Return the bench with the whitening of `noise`."""
     parts = []
     for own, way in zip(columns, ways, strict=True):

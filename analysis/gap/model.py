@@ -1,119 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Lumped bodies and links with priors: what a base model is made of."""
+"""The base model of a two-body campaign, of its nominal values and their priors."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
-
-
-class Output(IntEnum):
-    """What the channels measure: the power of s that turns displacement into it."""
-
-    DISPLACEMENT = 0
-    VELOCITY = 1
-    ACCELERATION = 2
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """A rigid mass.
-
-    Attributes:
-        name: for example ``"m2"``.
-        mass: nominal [kg].
-        spread: prior sd of log(mass / nominal) [-].
-    """
-
-    name: str
-    mass: float
-    spread: float
-
-
-@dataclass(frozen=True, slots=True)
-class Link:
-    """A spring and damper between two bodies, or a body and the ground.
-
-    Attributes:
-        name: for example ``"joint"``.
-        first: index of the body at the negative end, -1 for the ground.
-        second: index of the body at the positive end.
-        stiffness: nominal [N/m].
-        damping: nominal [N s/m].
-        stiffness_spread: prior sd of log(stiffness / nominal) [-].
-        damping_spread: prior sd of log(damping / nominal) [-].
-        joint: True where effects of joints may sit.
-    """
-
-    name: str
-    first: int
-    second: int
-    stiffness: float
-    damping: float
-    stiffness_spread: float
-    damping_spread: float
-    joint: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Channel:
-    """A response channel.
-
-    Attributes:
-        name: for example ``"a1"``.
-        body: index of the body it sits on.
-    """
-
-    name: str
-    body: int
-
-
-@dataclass(frozen=True, slots=True)
-class LumpedModel:
-    """Bodies, links and channels; base parameters are masses, then k, then c.
-
-    Attributes:
-        bodies: in order.
-        links: in order.
-        channels: in the order of the rows of a response.
-        output: what all channels measure.
-    """
-
-    bodies: tuple[Body, ...]
-    links: tuple[Link, ...]
-    channels: tuple[Channel, ...]
-    output: Output = Output.ACCELERATION
-
-    @property
-    def nominal(self) -> FloatArray:
-        """Nominal masses, stiffnesses and dampings [SI], shape (n_base,)."""
-        return np.array(
-            [b.mass for b in self.bodies]
-            + [link.stiffness for link in self.links]
-            + [link.damping for link in self.links]
-        )
-
-    @property
-    def spread(self) -> FloatArray:
-        """Prior sd of log(parameter / nominal), shape (n_base,)."""
-        return np.array(
-            [b.spread for b in self.bodies]
-            + [link.stiffness_spread for link in self.links]
-            + [link.damping_spread for link in self.links]
-        )
-
-    @property
-    def base_names(self) -> tuple[str, ...]:
-        """Names in the order of `nominal`."""
-        return (
-            *(b.name for b in self.bodies),
-            *(f"k_{link.name}" for link in self.links),
-            *(f"c_{link.name}" for link in self.links),
-        )
+from jointbench.analysis.lumped import (
+    GROUND,
+    Body,
+    Link,
+    LumpedModel,
+    ResponseChannel,
+)
 
 
 def two_body_model(
@@ -139,17 +38,16 @@ def two_body_model(
     return LumpedModel(
         bodies=tuple(Body(key, nominal[key], spread[key]) for key in ("m1", "m2")),
         links=(
-            _link("ground", -1, 0, "0", nominal, spread, joint=False),
-            _link("joint", 0, 1, "j", nominal, spread, joint=True),
+            _link("ground", (GROUND, "m1"), "0", nominal, spread, joint=False),
+            _link("joint", ("m1", "m2"), "j", nominal, spread, joint=True),
         ),
-        channels=(Channel("a0", 0), Channel("a1", 1)),
+        channels=(ResponseChannel("a0", "m1"), ResponseChannel("a1", "m2")),
     )
 
 
 def _link(
     name: str,
-    first: int,
-    second: int,
+    ends: tuple[str, str],
     key: str,
     nominal: Mapping[str, float],
     spread: Mapping[str, float],
@@ -157,9 +55,8 @@ def _link(
     joint: bool,
 ) -> Link:
     return Link(
-        name=name,
-        first=first,
-        second=second,
+        name,
+        ends,
         stiffness=nominal[f"k{key}"],
         damping=nominal[f"c{key}"],
         stiffness_spread=spread[f"k{key}"],

@@ -8,7 +8,7 @@ import numpy as np
 
 from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.effects import PROBE_FAMILY, labels_of
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.own_parameters import most_unlike
 from jointbench.analysis.gap.race import score
 from jointbench.analysis.gap.screening import Direction, Screening

@@ -20,7 +20,7 @@ import scipy.stats
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.bench import Bench
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 
 BANDS = 6
 ALIKE = 1e-10

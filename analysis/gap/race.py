@@ -7,10 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import EVERYDAY, FINE, FULL, MIDDLE, Bench, Stage
+from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.descent import BASE_STAGES, chi2_between, cost_at, minimise
 from jointbench.analysis.gap.effects import Candidate, Term, words_of
-from jointbench.analysis.gap.fit import Fit, Problem, make_problem
+from jointbench.analysis.gap.fit import Problem, make_problem
+from jointbench.analysis.gap.fit_records import EVERYDAY, FINE, FULL, MIDDLE, Fit, Stage
 from jointbench.analysis.gap.screening import Direction, Screening
 
 Progress = Callable[[str], None]

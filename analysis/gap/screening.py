@@ -17,9 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray
-from jointbench.analysis.gap.bench import Bench, Stage
+from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.effects import Candidate, Term
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit, Stage
 from jointbench.analysis.gap.side_by_side import each
 
 PROBE = 1e-6

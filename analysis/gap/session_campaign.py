@@ -11,8 +11,8 @@ from jointbench.acquisition.errors import BadData
 from jointbench.acquisition.records import Hit, Quantity, Recording
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.cut_hits import CutHits, cut_hits
-from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.sheet import Sheet
+from jointbench.analysis.lumped import Output
 
 SAME_LEVEL = 1.6
 """Ratio between neighbouring peaks up to which hits may share a nominal level."""
@@ -157,7 +157,7 @@ def _body(recording: Recording, hit: Hit, sheet: Sheet) -> int:
     at = {channel.name: channel.point for channel in recording.channels}
     for channel in sheet.model.channels:
         if hit.point and at.get(channel.name) == hit.point:
-            return channel.body
+            return sheet.model.index(channel.body)
     names = [body.name for body in sheet.model.bodies]
     if hit.point in names:
         return names.index(hit.point)

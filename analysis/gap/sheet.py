@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from jointbench.analysis.gap.model import LumpedModel
+from jointbench.analysis.lumped import LumpedModel
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from jointbench.acquisition.errors import BadData, SamplingError
 from jointbench.analysis.gap.campaign import TAIL, Campaign
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnose import conclude
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.loop import investigate
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench

@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.analysis.gap.checks import flat_tops
 from jointbench.analysis.gap.effects import labels_of, words_of
 from jointbench.analysis.gap.exhibit_where import counted_samples
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.naming import GLOBAL_SD, noise_sd, rival_within

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.fft
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import Blocks
+from jointbench.analysis.gap.fit_records import Blocks
 from jointbench.analysis.gap.records import View
 
 BANDS = 8

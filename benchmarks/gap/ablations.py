@@ -29,7 +29,7 @@ KINDS = ("null", "single")
 def no_coarse_stages() -> None:
     """Fit whole records from the first step on."""
     from jointbench.analysis.gap import base_fit, race
-    from jointbench.analysis.gap.bench import FULL
+    from jointbench.analysis.gap.fit_records import FULL
 
     base_fit.BASE_STAGES = ((FULL, 19), (FULL, 20))
     race.EVERYDAY = np.inf

@@ -36,13 +36,14 @@ from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.campaign import Campaign
 from jointbench.analysis.gap.campaign_file import read_campaign
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.model import LumpedModel
 from jointbench.analysis.gap.naming import gate, noise_sd
 from jointbench.analysis.gap.screening import screen
+from jointbench.analysis.lumped import LumpedModel
 from jointbench.simulators.campaign import make_campaign
 from jointbench.simulators.campaign_file import write_campaign
 

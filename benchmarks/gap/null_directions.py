@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.effects import Candidate, Term
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.forward import prepare_excitation, respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.physics import Conditions

@@ -22,7 +22,7 @@ M1, M2 = 9.3, 3.7
 def chain(k0=0.0, kj=0.0, c0=0.0, cj=0.0, mass_sd=0.0):
     """Return ground - (k0, c0) - base - (kj, cj) - top."""
     return LumpedModel(
-        (Body("base", M1, mass_sd * M1), Body("top", M2, mass_sd * M2)),
+        (Body("base", M1, mass_sd), Body("top", M2, mass_sd)),
         (
             Link("ground", ("ground", "base"), k0, c0),
             Link("joint", ("base", "top"), kj, cj),
@@ -112,7 +112,7 @@ def test_shapes_that_are_too_uncertain_leave_both_solutions():
 def test_stiffness_known_beforehand_chooses_between_the_two_solutions():
     """A ground stiffness good to 5 % stands in for the missing shapes."""
     model = chain(4.1e7, 0.0)
-    known = replace(model.links[0], stiffness_sd=0.05 * 4.1e7)
+    known = replace(model.links[0], stiffness_spread=0.05)
     model = LumpedModel(model.bodies, (known, model.links[1]))
     result = identify_links(model, measure(TRUTH, shapes=False))
     assert result.verdict is IdentificationVerdict.DETERMINED

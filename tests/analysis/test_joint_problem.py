@@ -10,9 +10,9 @@ from jointbench.analysis.lumped_modes import solve_modes
 from jointbench.analysis.measured_modes import MeasuredModes
 
 MODEL = LumpedModel(
-    (Body("a", 5.0, 0.02), Body("b", 3.0), Body("c", 2.0, 0.01)),
+    (Body("a", 5.0, 0.004), Body("b", 3.0), Body("c", 2.0, 0.005)),
     (
-        Link("g", ("ground", "a"), 1e7, 150.0, stiffness_sd=2e6, damping_sd=40.0),
+        Link("g", ("ground", "a"), 1e7, 150.0, 0.2, 40.0 / 150.0),
         Link("j", ("a", "b"), 2e7, 90.0),
         Link("k", ("b", "c"), 3e7, 80.0),
     ),

@@ -4,10 +4,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.lumped import (
-    Body,
-    Link,
-    LumpedModel,
+from jointbench.analysis.lumped import Body, Link, LumpedModel
+from jointbench.analysis.lumped_matrices import (
     damping_matrix,
     mass_matrix,
     predict_frf,

@@ -2,13 +2,8 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.lumped import (
-    Body,
-    Link,
-    LumpedModel,
-    mass_matrix,
-    stiffness_matrix,
-)
+from jointbench.analysis.lumped import Body, Link, LumpedModel
+from jointbench.analysis.lumped_matrices import mass_matrix, stiffness_matrix
 from jointbench.analysis.lumped_modes import solve_modes
 
 

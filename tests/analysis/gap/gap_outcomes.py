@@ -8,7 +8,8 @@ import numpy as np
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.loop import Outcome
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench

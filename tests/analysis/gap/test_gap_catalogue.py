@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Every effect of the catalogue: off is off, and it grows from there in a line."""
 
+from dataclasses import replace
+
 import gap_bench as made
 import numpy as np
 import pytest
 
 from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.gap.bench import FULL
 from jointbench.analysis.gap.catalogue import CATALOGUE, check_names
+from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.effects import Candidate, Term
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import FULL
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.screening import start_grid
 
@@ -74,3 +78,30 @@ def test_without_takes_an_effect_out_at_every_site() -> None:
     bench = make_bench(BENCH.campaign, without=frozenset({"delay"}))
     assert all(c.effect.name != "delay" for c in bench.candidates)
     assert len(bench.candidates) == len(BENCH.candidates) - 3
+
+
+def test_the_catalogue_says_which_effects_start_at_peaks_and_find_phases() -> None:
+    """A hum is one line of the residual, a hidden mode one resonance."""
+    effects = [entry.effect for entry in CATALOGUE]
+    assert {e.name for e in effects if e.starts_at_peaks} == {"hum", "hidden_mode"}
+    assert {e.name for e in effects if e.own_phases} == {"hum"}
+
+
+def test_what_an_effect_declares_holds_whatever_it_is_called() -> None:
+    """Starts at peaks and free phases go with the declaration, not with a name."""
+    entry = next(e for e in CATALOGUE if e.effect.name == "hum")
+    own = replace(entry, effect=replace(entry.effect, name="pick_up"))
+    silent = replace(
+        entry,
+        effect=replace(entry.effect, starts_at_peaks=False, own_phases=False),
+    )
+    campaign = made.made_campaign([("hum", "channel:all", [1.0, 50.0])])
+    bench = make_bench(campaign, entries=(own, silent))
+    fit = minimise(make_problem(bench, ()), np.zeros(6))
+    records, channels, _ = bench.campaign.response.shape
+    free = {str(c.site): records for c in bench.candidates}
+    free["channel:all"] = records * channels
+    for candidate in bench.candidates:
+        declared = candidate.effect.name == "pick_up"
+        assert bool(bench.hints(fit, candidate)) is declared
+        assert bench.phases(candidate) == (free[str(candidate.site)] if declared else 0)

@@ -19,7 +19,8 @@ from jointbench.analysis.gap.catalogue_linear import LINEAR
 from jointbench.analysis.gap.checks import campaign_limits, flat_tops
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.diagnose import conclude, diagnose
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.records import Finding, diagnosis_json
 

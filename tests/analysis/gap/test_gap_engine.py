@@ -10,7 +10,6 @@ import scipy.optimize
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.analysis.gap import judging
-from jointbench.analysis.gap.bench import Blocks, Stage
 from jointbench.analysis.gap.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.crossing import caught_up, crossed
 from jointbench.analysis.gap.descent import minimise
@@ -25,7 +24,8 @@ from jointbench.analysis.gap.effects import (
     labels_of,
 )
 from jointbench.analysis.gap.exchange import exchanged
-from jointbench.analysis.gap.fit import Fit, make_problem
+from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import Blocks, Fit, Stage
 from jointbench.analysis.gap.heldout import hold_out
 from jointbench.analysis.gap.loop import Outcome, investigate, judged
 from jointbench.analysis.gap.screening import null_threshold

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from jointbench.analysis.gap.bench import Blocks
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Blocks, Fit
 from jointbench.analysis.gap.own_parameters import most_unlike
 
 RECORDS, CHANNELS, SAMPLES = 6, 2, 400

@@ -5,7 +5,8 @@ import gap_bench as made
 import numpy as np
 
 from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.fit import Fit, Problem, make_problem
+from jointbench.analysis.gap.fit import Problem, make_problem
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.lumped_noise import refine_noise
 from jointbench.analysis.gap.naming import GLOBAL_SD, noise_sd

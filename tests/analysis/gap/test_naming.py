@@ -14,7 +14,7 @@ from jointbench.analysis.gap.catalogue_nonlinear import (
     SATURATION,
 )
 from jointbench.analysis.gap.effects import Candidate, Effect, Site
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.naming import at_the_end, forgiven, without_twins
 

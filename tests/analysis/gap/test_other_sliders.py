@@ -5,10 +5,10 @@ import gap_bench as made
 import numpy as np
 import pytest
 
-from jointbench.analysis.gap.bench import MIDDLE
 from jointbench.analysis.gap.crossing import other_sliders
 from jointbench.analysis.gap.descent import minimise
 from jointbench.analysis.gap.fit import make_problem
+from jointbench.analysis.gap.fit_records import MIDDLE
 from jointbench.analysis.gap.lumped_make import make_bench
 
 STIFFNESS, SLIP, SHARPNESS = 8e5, 4e-6, 11.0

@@ -22,14 +22,14 @@ from jointbench.analysis.gap.base_fit import fit_base
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.curve_law import curve_law
 from jointbench.analysis.gap.effects import Effect, Parameter
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.forward import respond
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.model import Output
 from jointbench.analysis.gap.naming import noise_sd
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.screening import screen
+from jointbench.analysis.lumped import Output
 
 
 def load(path: Path) -> ModuleType:

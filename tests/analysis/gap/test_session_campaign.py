@@ -9,19 +9,24 @@ from numpy.testing import assert_array_equal
 from jointbench.acquisition.errors import BadData
 from jointbench.acquisition.records import Channel, Hit, Quantity, Recording, Verdict
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.model import Body, Link, LumpedModel, Output
-from jointbench.analysis.gap.model import Channel as Output1
 from jointbench.analysis.gap.session_campaign import nominal_levels, session_campaign
 from jointbench.analysis.gap.sheet import Sheet
+from jointbench.analysis.lumped import (
+    Body,
+    Link,
+    LumpedModel,
+    Output,
+    ResponseChannel,
+)
 
 MODEL = LumpedModel(
     bodies=(Body("bed", 9.0, 0.01), Body("column", 4.0, 0.01), Body("head", 2.0, 0.01)),
     links=(
-        Link("feet", -1, 0, 2e7, 300.0, 0.1, 0.3),
-        Link("bolts", 0, 1, 6e7, 200.0, 0.1, 0.3, joint=True),
-        Link("slide", 1, 2, 5e7, 200.0, 0.1, 0.3, joint=True),
+        Link("feet", ("ground", "bed"), 2e7, 300.0, 0.1, 0.3),
+        Link("bolts", ("bed", "column"), 6e7, 200.0, 0.1, 0.3, joint=True),
+        Link("slide", ("column", "head"), 5e7, 200.0, 0.1, 0.3, joint=True),
     ),
-    channels=(Output1("a2", 2), Output1("a0", 0)),
+    channels=(ResponseChannel("a2", "head"), ResponseChannel("a0", "bed")),
 )
 SHEET = Sheet(MODEL, {}, preload_reference=4000.0)
 

@@ -13,7 +13,7 @@ from jointbench.analysis.gap.fit import make_problem
 from jointbench.analysis.gap.judging import far_off
 from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.lumped_noise import settle
+from jointbench.analysis.gap.lumped_residual import settle
 
 SETTLING = 1.5e-3 * np.array([0.4, -1.1, 0.8, 1.3, -0.6, 0.2, -0.9, 0.1])
 BASE = made.BASE

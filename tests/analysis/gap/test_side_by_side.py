@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.bench import MIDDLE
 from jointbench.analysis.gap.descent import jacobian_of
 from jointbench.analysis.gap.effort import (
     SearchExhausted,
@@ -14,6 +13,7 @@ from jointbench.analysis.gap.effort import (
     limited,
 )
 from jointbench.analysis.gap.fit import Problem, make_problem
+from jointbench.analysis.gap.fit_records import MIDDLE
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.side_by_side import each, side_by_side
 

@@ -8,7 +8,6 @@ import scipy.signal
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData, SamplingError
-from jointbench.analysis.gap.model import Body, Channel, Link, LumpedModel, Output
 from jointbench.analysis.gap.records import Finding
 from jointbench.analysis.gap.sheet import Sheet
 from jointbench.analysis.gap.single_record import (
@@ -17,13 +16,20 @@ from jointbench.analysis.gap.single_record import (
     diagnose_record,
     stretch_campaign,
 )
+from jointbench.analysis.lumped import (
+    Body,
+    Link,
+    LumpedModel,
+    Output,
+    ResponseChannel,
+)
 
 RATE = 1000.0
 SHEET = Sheet(
     LumpedModel(
         bodies=(Body("body", 1.0, 0.3),),
-        links=(Link("joint", -1, 0, 1e5, 12.0, 0.3, 0.3, joint=True),),
-        channels=(Channel("y", 0),),
+        links=(Link("joint", ("ground", "body"), 1e5, 12.0, 0.3, 0.3, joint=True),),
+        channels=(ResponseChannel("y", "body"),),
         output=Output.DISPLACEMENT,
     ),
     {},

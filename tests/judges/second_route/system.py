@@ -21,7 +21,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import UsageError
 from jointbench.analysis.gap.assembly import Action
 from jointbench.analysis.gap.forward import Excitation
-from jointbench.analysis.gap.model import LumpedModel
+from jointbench.analysis.lumped import LumpedModel
 
 LINEAR = (
     "added_mass",
@@ -142,9 +142,10 @@ def _name(action: Action) -> str:
 def _ends(model: LumpedModel, link: int, total: int) -> FloatArray:
     """Return the elongation of a link per motion of each body, shape (total,)."""
     e = np.zeros(total)
-    e[model.links[link].second] = 1.0
-    if model.links[link].first >= 0:
-        e[model.links[link].first] = -1.0
+    first, second = model.ends(link)
+    e[second] = 1.0
+    if first >= 0:
+        e[first] = -1.0
     return e
 
 

@@ -22,10 +22,10 @@ from second_route.system import make_system
 from jointbench.acquisition.arrays import FloatArray, freeze
 from jointbench.analysis.gap.assembly import Action
 from jointbench.analysis.gap.campaign import TAIL
-from jointbench.analysis.gap.fit import Fit
+from jointbench.analysis.gap.fit_records import Fit
 from jointbench.analysis.gap.forward import Excitation, respond
 from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.gap.model import LumpedModel
+from jointbench.analysis.lumped import LumpedModel
 
 TOLERANCE = 1e-9
 BEYOND = 64
@@ -102,7 +102,7 @@ def _fine(
     """Return what the bodies under the channels do, between the samples as well."""
     system = make_system(model, theta, excitation, actions)
     motion = integrate_motion(system, excitation, beyond=BEYOND, tolerance=tolerance)
-    rows = [channel.body for channel in model.channels]
+    rows = [model.index(channel.body) for channel in model.channels]
     return np.asarray(motion.derivatives[int(model.output)][:, rows])
 
 
