@@ -12,6 +12,7 @@ from enum import StrEnum
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.errors import UsageError
 
 PROBE_FAMILY = "probe"
 """Family of what is tested of a fit but never named."""
@@ -142,6 +143,15 @@ class Effect:
     has_sliders: bool = False
     starts_at_peaks: bool = False
     own_phases: bool = False
+
+    def __post_init__(self) -> None:
+        """Check that what starts at peaks has a frequency."""
+        if self.starts_at_peaks and len(self.parameters) < 2:
+            raise UsageError(
+                f"effect {self.name!r} starts at peaks but has "
+                f"{len(self.parameters)} parameter; the second one must be its "
+                "frequency: add it, or leave out starts_at_peaks"
+            )
 
     def reported(self, values: FloatArray) -> tuple[Reported, ...]:
         """Return what the user reads of fitted `values`, shape (n_parameters,)."""

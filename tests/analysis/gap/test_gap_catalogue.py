@@ -105,3 +105,10 @@ def test_what_an_effect_declares_holds_whatever_it_is_called() -> None:
         declared = candidate.effect.name == "pick_up"
         assert bool(bench.hints(fit, candidate)) is declared
         assert bench.phases(candidate) == (free[str(candidate.site)] if declared else 0)
+
+
+def test_an_effect_without_a_frequency_cannot_start_at_peaks() -> None:
+    """The message names the effect and the way out."""
+    delay = next(e.effect for e in CATALOGUE if e.effect.name == "delay")
+    with pytest.raises(UsageError, match=r"'delay' starts at peaks but has 1 param"):
+        replace(delay, starts_at_peaks=True)
