@@ -60,7 +60,6 @@ def markers(
     size: float = 7,
     axes: tuple[str, str] = ("x", "y"),
     error: Any = None,
-    text: Sequence[str] | None = None,
 ) -> Trace:
     """Return points, with symmetric error bars when `error` is given."""
     trace: dict[str, object] = {
@@ -75,9 +74,6 @@ def markers(
     }
     if error is not None:
         trace["error_y"] = {"array": numbers(error), "thickness": 1, "width": 2}
-    if text is not None:
-        trace["text"] = list(text)
-        trace["hoverinfo"] = "text"
     return trace
 
 

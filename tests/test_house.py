@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from jointbench.station.main import app
+
 ROOT = Path(__file__).parents[1]
 ROOMS = ("acquisition", "signal", "analysis", "simulators", "station")
 MAY_IMPORT = {
@@ -34,6 +36,14 @@ NOT_AT_START = (
     "h5py",
     "pydantic",
 )
+
+
+MOST_PARAMETERS = 8
+# Functions that still wait for a record of their inputs; none may be added.
+OVER_THE_LIMIT = {
+    "analysis/structures/identify_structure.py:identify_structure",
+    "analysis/gap/verify.py:verify_response",
+}
 
 
 def sources(room: str) -> list[Path]:
@@ -138,6 +148,48 @@ def test_a_heavy_dependency_has_at_most_one_home(package: str) -> None:
         and path.relative_to(ROOT).as_posix() not in SECOND_HOMES.get(package, set())
     ]
     assert len(homes) <= 1, homes
+
+
+def parameters_of(node: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
+    """Return how many parameters a function declares, starred ones included."""
+    given = node.args
+    named = [*given.posonlyargs, *given.args, *given.kwonlyargs]
+    return len(named) + (given.vararg is not None) + (given.kwarg is not None)
+
+
+def callbacks() -> set[str]:
+    """Return the functions that Typer registers as commands, as file:name."""
+    found = [one.callback for one in app.registered_commands if one.callback]
+    places = [f.__module__.split(".")[1:] for f in found]
+    return {
+        f"{'/'.join(place)}.py:{f.__name__}"
+        for f, place in zip(found, places, strict=True)
+    }
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_function_has_more_than_eight_parameters(room: str) -> None:
+    """What belongs together is one record; callbacks have a parameter an option."""
+    over = {
+        f"{path.relative_to(ROOT).as_posix()}:{node.name}"
+        for path in sources(room)
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and parameters_of(node) > MOST_PARAMETERS
+    }
+    assert over <= callbacks() | OVER_THE_LIMIT
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_no_module_takes_its_local_names_as_data(room: str) -> None:
+    """Options that pass through `locals()` are checked by nobody."""
+    called = [
+        path.name
+        for path in sources(room)
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Name) and node.id == "locals"
+    ]
+    assert not called
 
 
 def test_the_standard_library_signal_is_not_shadowed_at_the_root() -> None:

@@ -20,7 +20,7 @@ import numpy as np
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.compiled import compiled
 from jointbench.analysis.gap.curve_march import curve_force
-from jointbench.analysis.gap.slider_march import bank_forces
+from jointbench.analysis.gap.slider_march import Bank, Sliders, bank_forces
 
 POLYNOMIAL = 0
 ONE_SIDED = 1
@@ -188,7 +188,7 @@ def _march_lanes(
     active = np.zeros((n_laws, LANES), dtype=np.int64)
     # Taken out once: each look into a tuple counts a reference up and down.
     kinds, p, ends, slips, weights, tables, tops, curves = laws
-    rates, f = 1.0 / slips, np.zeros(n_laws * LAW)
+    sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * LAW)
     for i in range(displacement.shape[0]):
         for k in range(LANES):
             w[GUESS + k] = 0.0
@@ -211,20 +211,16 @@ def _march_lanes(
                     w[SPEED + k] -= w[at + POLE_I] * w[at + IMAGINARY]
         for a in range(n_laws):
             if kinds[a] == SLIDERS:
-                bank_forces(
-                    a,
-                    (LANES, MOTION, BEFORE, a * LAW + OWN),
-                    w,
-                    f,
-                    states,
-                    active,
-                    ends,
-                    slips,
-                    rates,
-                    weights,
-                    tables,
-                    tops,
+                bank = Bank(
+                    law=a,
+                    first=ends[a],
+                    beyond=ends[a + 1],
+                    lanes=LANES,
+                    now=MOTION,
+                    last=BEFORE,
+                    force=a * LAW + OWN,
                 )
+                bank_forces(bank, w, f, states, active, sliders, tables, tops)
             else:
                 _forces(a, w, f, kinds, p, curves)
         for k in range(LANES):

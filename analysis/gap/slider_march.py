@@ -6,6 +6,8 @@ slip; unloading it is elastic, or follows a second curve (Bouc and Wen). Both cu
 tabulated once for a set of shape parameters, so that a step is one or two lookups.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray, IntArray
@@ -77,44 +79,72 @@ def slide(
     return side * (left if elastic else _lookup(tables, row + 3, tops[3], left)), STALE
 
 
+class Bank(NamedTuple):
+    """A bank of sliders in a march: plain numbers, which cost nothing to hand over.
+
+    Attributes:
+        law: which law of the link it is.
+        first: where its sliders begin.
+        beyond: where they end.
+        lanes: records that are marched side by side.
+        now: where in the motions its own begin [m].
+        last: where those of the step before begin [m].
+        force: where in the forces its own begin [N].
+    """
+
+    law: int
+    first: int
+    beyond: int
+    lanes: int
+    now: int
+    last: int
+    force: int
+
+
+class Sliders(NamedTuple):
+    """The sliders of all banks, in order of rising slip displacement within a bank.
+
+    Attributes:
+        slips: slip displacements [m], shape (n_sliders,).
+        rates: their inverse [1/m], same shape.
+        weights: stiffness of each [N/m], same shape.
+    """
+
+    slips: FloatArray
+    rates: FloatArray
+    weights: FloatArray
+
+
 @compiled(fastmath=True, inline="always")
 def bank_forces(
-    a: int,
-    lanes: tuple[int, int, int, int],
+    bank: Bank,
     w: FloatArray,
     f: FloatArray,
     states: FloatArray,
     active: IntArray,
-    ends: IntArray,
-    slips: FloatArray,
-    rates: FloatArray,
-    weights: FloatArray,
+    sliders: Sliders,
     tables: FloatArray,
     tops: FloatArray,
 ) -> None:
-    """Write the force of bank `a`, less that of the same bank held fast.
+    """Write the force of a bank, less that of the same bank held fast.
 
     Sliders come in order of rising slip displacement. Those that have never left their
     elastic range follow the joint, and are passed over.
 
     Args:
-        a: which bank.
-        lanes: how many, and where in `w` their motion [m] and that of the step before
-            begin, and where in `f` their force [N].
+        bank: which one, and where its numbers are.
         w: motions of the lanes among other things.
         f: forces of the lanes among other things; written.
         states: displacement over slip displacement, and loading coordinate, shape
             (n_lanes, n_sliders, 2); moved.
-        active: sliders that have left their elastic range, shape (n_banks, n_lanes).
-        ends: where the sliders of each bank begin, and end, shape (n_banks + 1,).
-        slips: [m], shape (n_sliders,).
-        rates: their inverse, same shape.
-        weights: [N/m], same shape.
-        tables: four rows a bank, shape (4 n_banks, n_points).
-        tops: what goes with them, shape (n_banks, 7).
+        active: sliders that have left their elastic range, shape (n_laws, n_lanes).
+        sliders: of all banks.
+        tables: four rows a law, shape (4 n_laws, n_points).
+        tops: what goes with them, shape (n_laws, 7).
     """
-    count, now, last, force = lanes
-    first, beyond = ends[a], ends[a + 1]
+    # Taken out once: each look into a tuple of arrays counts a reference up and down.
+    slips, rates, weights = sliders
+    a, first, beyond = bank.law, bank.first, bank.beyond
     # Numbers of their own: an array might change with `states`, and is read each time.
     own = (
         tops[a, 0],
@@ -125,8 +155,8 @@ def bank_forces(
         tops[a, 5],
         tops[a, 6],
     )
-    for k in range(count):
-        r, before = w[now + k], w[last + k]
+    for k in range(bank.lanes):
+        r, before = w[bank.now + k], w[bank.last + k]
         total, end = 0.0, first + active[a, k]
         while end < beyond and abs(r) > own[4] * slips[end]:
             states[k, end, 0] = before / slips[end]
@@ -139,7 +169,7 @@ def bank_forces(
             u, loading = slide(u, loading, step * rates[i], tables, own, 4 * a)
             states[k, i, 0], states[k, i, 1] = u, loading
             total += weights[i] * (slips[i] * u - r)
-        f[force + k] = total
+        f[bank.force + k] = total
 
 
 def slider_tables(
