@@ -17,7 +17,6 @@ from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.records import Diagnosis
-from jointbench.analysis.gap.session_campaign import session_campaign
 from jointbench.analysis.gap.single_record import StretchScore, diagnose_record
 from jointbench.signal.campaign_level import compare_levels
 from jointbench.signal.hit_verdicts import HitLimits
@@ -26,6 +25,7 @@ from jointbench.station.bench_model import BenchModel
 from jointbench.station.gap_model import gap_sheet
 from jointbench.station.gap_record import read_record
 from jointbench.station.inputs import is_session_name, refuse_twice
+from jointbench.station.joint_stages import gap_of
 from jointbench.station.record_command import write_visit
 from jointbench.station.sources import is_url
 from jointbench.station.toml_file import read_toml
@@ -199,9 +199,13 @@ def _examine_sessions(
         names = ", ".join(path.name for path in paths)
         raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
     title = ", ".join(path.stem for path in paths)
-    campaign, left_out = session_campaign(title, recordings, sheet)
-    found = diagnose(
-        campaign, without=wanted.without, entries=wanted.entries, progress=progress
+    found, left_out = gap_of(
+        title,
+        recordings,
+        sheet,
+        without=wanted.without,
+        entries=wanted.entries,
+        progress=progress,
     )
     return Examined(title, found, remarks=(*remarks, *left_out))
 

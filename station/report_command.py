@@ -12,7 +12,7 @@ from jointbench.station.geometry import Geometry
 from jointbench.station.joint_text import interval_text
 from jointbench.station.output import console, engineering, with_sd, write_json
 from jointbench.station.outputs import check_outputs
-from jointbench.station.process_joint import at_words
+from jointbench.station.preloads import at_words
 from jointbench.station.report_hits import hits_section
 from jointbench.station.report_joint import joint_section
 from jointbench.station.report_modal import modal_sections
