@@ -26,9 +26,9 @@ from jointbench.signal.modes import ModalResult, ModalSettings, identify_modes
 from jointbench.signal.one_thread import one_thread
 from jointbench.signal.oscillator_bank import repair_dropouts
 from jointbench.signal.windows import WindowRequest, requested_window
-from jointbench.station.judge_again import FoundHits, StoredHits, judge_again
+from jointbench.station.judge_again import FoundHits, StoredHits, judge_again, with_hits
 from jointbench.station.preloads import at_words
-from jointbench.station.stage_store import NoStore, StageRun, StageStore
+from jointbench.station.stage_store import StageRun
 
 # A gap spoils the modes that fill it; what a second round leaves is below the noise.
 _REPAIRS = 2
@@ -73,17 +73,14 @@ class ModalChain:
 def run_chain(
     recordings: Sequence[Recording],
     settings: ChainSettings | None = None,
-    *,
-    progress: Progress | None = None,
-    stages: StageStore | None = None,
+    run: StageRun | None = None,
 ) -> ModalChain:
     """Take recordings to modes.
 
     Args:
         recordings: force and responses; hits that are already judged are kept.
         settings: None for the defaults.
-        progress: told what is done, and the share of it; None for no report.
-        stages: keeps the stages; None to keep none.
+        run: store and source of the stages; None to keep none.
 
     Returns:
         The whole chain, so that every stage can be shown.
@@ -91,8 +88,7 @@ def run_chain(
     Raises:
         BadData: no usable hit, channels missing, or no mode above the noise.
     """
-    settings = settings or ChainSettings()
-    run = StageRun(stages or NoStore(), progress=progress)
+    settings, run = settings or ChainSettings(), run or StageRun()
     with one_thread():
         return judged_modes(judge_hits(recordings, settings, run), settings, run)
 
@@ -112,7 +108,7 @@ def judge_hits(
     """
     found = hits_stage(recordings, settings.hits, StoredHits(), run or StageRun())
     return tuple(
-        replace(recording, hits=one.hits, provenance=recording.provenance + one.steps)
+        with_hits(recording, one)
         for recording, one in zip(recordings, found, strict=True)
         if one.hits
     )

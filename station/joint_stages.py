@@ -39,7 +39,7 @@ Page = dict[str, Any]
 Found = TypeVar("Found")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Remarks:
     """What could not be done, and why, a line each.
 

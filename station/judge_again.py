@@ -36,10 +36,15 @@ class FoundHits:
     Attributes:
         hits: none for a quiet stretch.
         steps: that found them; none where they were kept as stored.
+        quiet: why there is none; empty where there are some.
+        lowered: hits whose verdict changed when their level was compared with the
+            campaign's, or the plan's.
     """
 
     hits: Hits
     steps: Provenance = ()
+    quiet: str = ""
+    lowered: Hits = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +96,16 @@ def judge_again(
             if stored.all_struck and not some:
                 raise
             first = first or error
-            found.append(FoundHits(()))
+            found.append(FoundHits((), quiet=str(error)))
     if first is not None and not any(one.hits for one in found):
         raise first
     return _level_compared(recordings, found, criteria, stored)
+
+
+def with_hits(recording: Recording, found: FoundHits) -> Recording:
+    """Return a recording with its hits as judged now, and how they were found."""
+    steps = (*recording.provenance, *found.steps)
+    return replace(recording, hits=found.hits, provenance=steps)
 
 
 def _found(
@@ -119,9 +130,14 @@ def _level_compared(
     fresh = [stored.again or not recording.hits for recording in recordings]
     compared = compare_levels(judged, criteria.limits, fresh)
     return tuple(
-        replace(one, hits=recording.hits)
+        replace(one, hits=recording.hits, lowered=_lowered(one.hits, recording.hits))
         for one, recording in zip(found, compared, strict=True)
     )
+
+
+def _lowered(before: Hits, after: Hits) -> Hits:
+    pairs = zip(before, after, strict=True)
+    return tuple(new for old, new in pairs if new.verdict is not old.verdict)
 
 
 def _with_memory(

@@ -27,7 +27,7 @@ from jointbench.station.output import console, progress_bar, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.preloads import by_preload, join_pages, of_preload
 from jointbench.station.results_file import results_path, write_results
-from jointbench.station.stage_store import NoStore, StageRun, StageStore
+from jointbench.station.stage_store import StageRun
 from jointbench.station.universal_file import write_universal
 
 STAGE_COLUMNS = ("|W| [-]", "phase of W [deg]")
@@ -74,7 +74,7 @@ def run_modal(
     out: Path | None = None,
     universal: Path | None = None,
     json_target: str | None = None,
-    stages: StageStore | None = None,
+    run: StageRun | None = None,
 ) -> ModalChain:
     """Identify the modes in `files`, show them and keep them beside the session.
 
@@ -89,7 +89,7 @@ def run_modal(
         out: results file; None for beside the session.
         universal: universal file to write, or None.
         json_target: where the JSON goes.
-        stages: keeps the stages; None to keep none.
+        run: store and source of the stages; None to keep none.
 
     Returns:
         What was found at the first preload.
@@ -99,7 +99,7 @@ def run_modal(
     settings = settings or ChainSettings()
     stored = read_recordings(files, columns=columns, point=point)
     # A hit's level is that of the campaign, whatever the preload.
-    run = StageRun(stages or NoStore())
+    run = run or StageRun()
     groups = by_preload(judge_hits(stored, settings, run))
     chains, pages = [], []
     for preload, group in groups:

@@ -110,8 +110,8 @@ def process_session(
     )
     modal = _modal(judged, recipe, run, remarks.lines)
     surfaces = _surfaces(session, recipe, run)
-    for one in surfaces:
-        remarks.lines += [f"Surface {said}" for said in chain_cautions(one)]
+    cautions = [said for one in surfaces for said in chain_cautions(one)]
+    remarks.lines.extend(f"Surface {said}" for said in cautions)
     return ProcessedSession(
         session=session,
         hits=hits,
