@@ -16,6 +16,7 @@ import h5py
 from h5py import h5a, h5d, h5g, h5o, h5t, h5z
 
 from jointbench.acquisition.errors import BadData, FormatError, HostileFile
+from jointbench.acquisition.room import VARIABLE, room
 from jointbench.acquisition.text_files import file_size, named, shown
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
@@ -24,6 +25,7 @@ _FILTERS = {
     h5z.FILTER_SHUFFLE: "shuffle",
     h5z.FILTER_FLETCHER32: "fletcher32",
 }
+_DOUBLE, _TEXT = 8, 100  # what a number, and a text beside its characters, takes
 _NUMBERS = {h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING}
 # Attributes by which dimension scales point at each other; they are never read here.
 _SCALE_ATTRIBUTES = {b"DIMENSION_LIST", b"REFERENCE_LIST"}
@@ -37,10 +39,14 @@ class Limits:
         objects: groups and datasets in a file.
         depth: groups inside each other.
         attributes: of one object.
+        all_attributes: of all objects; each takes 25 us to look at.
         attribute_bytes: of one attribute [bytes].
         dimensions: axes of a dataset.
-        chunks: pieces that a file is stored in.
+        chunks: pieces that a file is stored in; HDF5 takes 4 kB of memory for each.
+        chunk_bytes: that a chunk takes in the file at the least [bytes]; where it is
+            above zero, a file that is large enough may have more than `chunks`.
         unpacked_bytes: of all values [bytes].
+            counted as the doubles that they become, and 100 bytes a text.
         always_bytes: unpacked size that any file may have [bytes].
         unpacked_ratio: unpacked size of all values over the size of the file, above
             `always_bytes` [-]. Measured samples shrink by 2 to 10.
@@ -51,9 +57,11 @@ class Limits:
     objects: int = 20_000
     depth: int = 16
     attributes: int = 256
+    all_attributes: int = 200_000
     attribute_bytes: int = 65_536
     dimensions: int = 8
-    chunks: int = 500_000
+    chunks: int = 60_000
+    chunk_bytes: int = 0
     unpacked_bytes: int = 8 * 2**30
     always_bytes: int = 64 * 2**20
     unpacked_ratio: float = 64.0
@@ -69,6 +77,7 @@ class _Tally:
     file_bytes: int
     objects: int = 0
     chunks: int = 0
+    attributes: int = 0
     unpacked: int = 0
     groups: set[int] = field(default_factory=set)
 
@@ -212,7 +221,7 @@ def _check_dataset(dataset: h5d.DatasetID, name: str, tally: _Tally) -> None:
         )
     if dataset.get_space().get_simple_extent_type() == h5py.h5s.NULL:
         raise tally.refuse(name, "has no extent")
-    _check_size(dataset, properties, kind.get_size(), name, tally)
+    _check_size(dataset, properties, name, tally)
 
 
 def _check_filters(properties: h5py.h5p.PropDCID, name: str, tally: _Tally) -> None:
@@ -231,7 +240,6 @@ def _check_filters(properties: h5py.h5p.PropDCID, name: str, tally: _Tally) -> N
 def _check_size(
     dataset: h5d.DatasetID,
     properties: h5py.h5p.PropDCID,
-    item_bytes: int,
     name: str,
     tally: _Tally,
 ) -> None:
@@ -239,21 +247,27 @@ def _check_size(
     shape, limits = dataset.shape, tally.limits
     if len(shape) > limits.dimensions:
         raise tally.refuse(name, f"has {len(shape)} dimensions")
-    values = math.prod(shape)
+    values, kind = math.prod(shape), dataset.get_type()
     if properties.get_layout() == h5d.CHUNKED:
         chunk = properties.get_chunk()
         pieces = math.prod(-(-n // c) for n, c in zip(shape, chunk, strict=True))
         tally.chunks += pieces
         values = max(values, pieces * math.prod(chunk) if pieces else 0)
-    tally.unpacked += values * item_bytes
-    if tally.chunks > limits.chunks:
+    if isinstance(kind, h5t.TypeStringID):
+        tally.unpacked += values * kind.get_size() + _TEXT * math.prod(shape[:-1])
+    else:
+        tally.unpacked += values * max(_DOUBLE, kind.get_size())
+    stored = tally.file_bytes // limits.chunk_bytes if limits.chunk_bytes else 0
+    if tally.chunks > max(limits.chunks, stored):
         raise tally.refuse(name, f"brings the file to {tally.chunks} chunks")
     allowed = max(limits.always_bytes, limits.unpacked_ratio * tally.file_bytes)
-    if tally.unpacked > min(allowed, limits.unpacked_bytes):
+    # What is read is looked over once more, and single precision made double.
+    allowed = min(allowed, 0.7 * room(tally.file_bytes), limits.unpacked_bytes)
+    if tally.unpacked > allowed:
         raise tally.refuse(
             name,
             f"of shape {shape} brings {tally.file_bytes} bytes of file to "
-            f"{tally.unpacked} bytes of values",
+            f"{tally.unpacked} bytes of values ({VARIABLE} allows more)",
         )
 
 
@@ -261,8 +275,11 @@ def _check_attributes(
     target: h5g.GroupID | h5d.DatasetID, name: str, tally: _Tally
 ) -> None:
     count = h5a.get_num_attrs(target)
+    tally.attributes += count
     if count > tally.limits.attributes:
         raise tally.refuse(name, f"has {count} attributes")
+    if tally.attributes > tally.limits.all_attributes:
+        raise tally.refuse(name, f"brings the file to {tally.attributes} attributes")
     for i in range(count):
         attribute = h5a.open(target, index=i)
         if attribute.name in _SCALE_ATTRIBUTES:

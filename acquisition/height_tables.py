@@ -20,11 +20,12 @@ from jointbench.acquisition.errors import (
     UsageError,
 )
 from jointbench.acquisition.even_steps import fit_even_steps
+from jointbench.acquisition.header_units import units_words
 from jointbench.acquisition.height_grid import grid_axis, require_single
 from jointbench.acquisition.records import Provenance, Step, step
 from jointbench.acquisition.surfaces import Areal, Profile, Surface
 from jointbench.acquisition.tables import Table, split_row
-from jointbench.acquisition.text_files import named, shown
+from jointbench.acquisition.text_files import named
 from jointbench.acquisition.units import is_unit
 
 _LEAST_FILLED = 0.5
@@ -153,12 +154,10 @@ def _given_spacing(columns: Sequence[Column]) -> float:
 
 def _what_to_type(table: Table) -> str:
     count = table.values.shape[0]
-    header = next((line for line in reversed(table.header) if line.strip()), "")
-    seen = f"; its header reads {shown(header.strip())}" if header else ""
     example = SURFACE_EXAMPLES[1 if count == _AREAL_COLUMNS else 0]
     rest = ", with '-' for each of the others" if count > _AREAL_COLUMNS else ""
     return (
-        f"{named(table.path)} has {count} columns and does not say their units{seen}; "
+        f"{named(table.path)} has {count} columns and {units_words(table)}; "
         f"say what they are, for example --columns '{example}'{rest}"
     )
 

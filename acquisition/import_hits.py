@@ -22,9 +22,10 @@ from jointbench.acquisition.errors import (
     UsageError,
 )
 from jointbench.acquisition.even_steps import EvenSteps, fit_even_steps, roundest
+from jointbench.acquisition.header_units import hit_columns_stated, units_words
 from jointbench.acquisition.records import Channel, Quantity, Recording, Step, step
 from jointbench.acquisition.tables import Table, load_table
-from jointbench.acquisition.text_files import file_digest, named, shown
+from jointbench.acquisition.text_files import file_digest, named
 from jointbench.acquisition.units import to_si
 
 _QUANTITIES = tuple(quantity.value for quantity in Quantity)
@@ -41,7 +42,8 @@ def read_recording(
 
     Args:
         path: delimited text or a .npy file.
-        columns: what each column holds and in which unit; see `parse_columns`.
+        columns: what each column holds and in which unit; see `parse_columns`. None
+            where the header of the table says it.
         name: of the recording; the name of the file without its ending if None.
         point: where the hammer struck.
 
@@ -50,7 +52,8 @@ def read_recording(
         printed time stamps allow, so that rounded stamps give 4000 Hz, not 4000.3.
 
     Raises:
-        UnitError: `columns` is None, or a unit is missing or wrong.
+        UnitError: `columns` is None and the header does not say the units either, or
+            a unit is missing or wrong.
         UsageError: `columns` names no time, no channel, or something unknown.
         FormatError: the file is no such table, or has another number of columns.
         SamplingError: time stamps or samples are missing, or not in an even row.
@@ -58,6 +61,8 @@ def read_recording(
     path = Path(path)
     wanted = None if columns is None else _hit_columns(columns)
     table = load_table(path, columns=None if wanted is None else len(wanted))
+    if wanted is None:
+        wanted = hit_columns_stated(table)
     if wanted is None:
         raise UnitError(_what_to_type(table))
     if len(wanted) != table.values.shape[0]:
@@ -78,7 +83,7 @@ def read_recording(
         sample_rate=rate,
         channels=channels,
         start_time=float(table.values[time, 0]) * second,
-        provenance=(_origin(table, str(columns), steps, second),),
+        provenance=(_origin(table, columns or _as_stated(wanted), steps, second),),
     )
 
 
@@ -93,6 +98,11 @@ def _origin(table: Table, columns: str, steps: EvenSteps, second: float) -> Step
         rate_from_time_span=1 / (steps.step * second),
         time_resolution=steps.resolution * second,
     )
+
+
+def _as_stated(columns: Sequence[Column]) -> str:
+    words = ",".join(f"{column.role}:{column.unit}" for column in columns)
+    return f"as the file states: {words}"
 
 
 def _hit_columns(spec: str) -> tuple[Column, ...]:
@@ -111,10 +121,8 @@ def _what_to_type(table: Table) -> str:
     count = table.values.shape[0]
     first = HITS_EXAMPLE.split(",")
     items = first[: max(2, count)] + [first[-1]] * (count - len(first))
-    header = next((line for line in reversed(table.header) if line.strip()), "")
-    seen = f"; its header reads {shown(header.strip())}" if header else ""
     return (
-        f"{named(table.path)} has {count} columns and does not say their units{seen}; "
+        f"{named(table.path)} has {count} columns and {units_words(table)}; "
         f"say what they are, for example --columns '{','.join(items)}'"
     )
 

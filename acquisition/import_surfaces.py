@@ -19,6 +19,7 @@ from jointbench.acquisition.interferometer_texts import (
 from jointbench.acquisition.keyence import parse_keyence
 from jointbench.acquisition.keyence_words import is_keyence
 from jointbench.acquisition.records import Step, step
+from jointbench.acquisition.room import count_cells, require_room
 from jointbench.acquisition.stylus_lists import is_stylus_list, parse_stylus_list
 from jointbench.acquisition.surfaces import Surface
 from jointbench.acquisition.surfcom import is_surfcom, parse_surfcom
@@ -39,6 +40,8 @@ from jointbench.acquisition.vendor_files import is_vendor_name, read_vendor
 _Parser = Callable[[Sequence[str], Path, Step, str], Surface]
 
 _PLAIN_BYTES = 512
+# What lines and words of a text take for each of its bytes, and heights for each cell.
+_TEXT_NEEDED, _CELL_NEEDED = 3.0, 36.0
 _TEXTS: tuple[tuple[Callable[[Sequence[str]], bool], _Parser], ...] = (
     (is_dektak, parse_dektak),
     (is_interferometer, parse_interferometer),
@@ -88,10 +91,13 @@ def _read(path: Path, columns: str | None, name: str | None) -> tuple[Surface, b
     if wanted is None and is_vendor_name(path) and not _is_plain(path):
         return read_vendor(path, origin, label), False
     data = read_bytes(path)
+    require_room(path, _TEXT_NEEDED * len(data) + _CELL_NEEDED * count_cells(data))
     if wanted is None and is_keyence(data):
         return parse_keyence(data, path, origin, label), False
     text, encoding = decode(data, path)
+    del data  # as large as the file, as is the text
     lines = text_lines(text, path)
+    del text
     if wanted is None:
         for recognise, parse in _TEXTS:
             if recognise(lines):

@@ -6,6 +6,7 @@ that it holds gigabytes. So the list of variables is read first, without their v
 only the ones asked for are read, and only if they are plain numbers of a sane size.
 """
 
+import math
 import struct
 import zlib
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ import numpy as np
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData, FormatError, HostileFile
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.text_files import file_size, named, shown
 
 _NUMERIC = frozenset(
@@ -23,6 +25,8 @@ _NUMERIC = frozenset(
 _MOST_SAMPLES = 20_000_000
 _MOST_BYTES = 512 * 2**20
 _MOST_VARIABLES = 1000
+_NEEDED = 24
+"""Of each number: as it is stored, as a double, and in its unit [bytes]."""
 _HEADER = 128
 _COMPRESSED = 15
 _PIECE = 2**20
@@ -50,6 +54,7 @@ def read_mat_rows(path: Path | str, names: Sequence[str]) -> tuple[FloatArray, .
     found = _contents(path)
     for name in names:
         _check(path, name, found)
+    require_room(path, _NEEDED * sum(math.prod(found[name][0]) for name in names))
     values = _load(path, names)
     return tuple(
         _row(path, name, value) for name, value in zip(names, values, strict=True)
@@ -89,9 +94,15 @@ def _require_sane_unpacked(path: Path) -> None:
     """Walk over the variables: none may be cut short, or unfold into gigabytes."""
     with path.open("rb") as file:
         order = {b"IM": "<", b"MI": ">"}.get(file.read(_HEADER)[126:128])
-        total = 0
+        total = count = 0
         while order is not None and len(tag := file.read(8)) == 8:
             kind, size = struct.unpack(f"{order}II", tag)
+            count += 1
+            if count > _MOST_VARIABLES:
+                raise HostileFile(
+                    f"{named(path)} holds more than {_MOST_VARIABLES} variables; save "
+                    "those that are wanted"
+                )
             packed = file.read(min(size, _MOST_BYTES))
             if len(packed) < min(size, _MOST_BYTES):
                 raise FormatError(
@@ -105,6 +116,7 @@ def _require_sane_unpacked(path: Path) -> None:
                     f"{named(path)} unpacks to more than {_MOST_BYTES} bytes; it was "
                     "refused unread: cut it"
                 )
+            require_room(path, total)
 
 
 def _unpacked_size(packed: bytes, most: int) -> int:

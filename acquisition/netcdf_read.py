@@ -5,8 +5,9 @@ import h5py
 import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray, IntArray
-from jointbench.acquisition.errors import FormatError
+from jointbench.acquisition.errors import FormatError, HostileFile
 from jointbench.acquisition.netcdf import NO_VARIABLE, Attribute
+from jointbench.acquisition.room import MAX_ROWS
 
 _CHARACTER_AXES = 2
 
@@ -47,6 +48,18 @@ def read_texts(dataset: h5py.Dataset) -> tuple[str, ...]:
         raise FormatError(f"{dataset.name!r} is no table of characters")
     rows = table.view(f"S{table.shape[1]}").ravel()
     return tuple(row.decode("utf-8") for row in rows.tolist())
+
+
+def require_rows(dataset: h5py.Dataset) -> None:
+    """Raise `HostileFile` where a table has more rows than any measurement.
+
+    For tables of which every row becomes a record: that takes far more memory than
+    the numbers.
+    """
+    if dataset.size > MAX_ROWS:
+        raise HostileFile(
+            f"{dataset.name!r} has {dataset.size} rows, at most {MAX_ROWS} are read"
+        )
 
 
 def read_complex(group: h5py.Group, name: str) -> ComplexArray:

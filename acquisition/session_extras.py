@@ -29,8 +29,10 @@ from jointbench.acquisition.netcdf_read import (
     read_attribute,
     read_flags,
     read_texts,
+    require_rows,
 )
 from jointbench.acquisition.records import Provenance, Step
+from jointbench.acquisition.room import require_short_json
 from jointbench.acquisition.session import JointSetup, Session
 from jointbench.acquisition.session_streams import free_name, narrowest, number
 from jointbench.acquisition.surfaces import Areal, Profile, Surface, SurfaceInstrument
@@ -202,11 +204,14 @@ def read_provenance(file: h5py.File) -> dict[Owner, Provenance]:
     if group is None:
         return {}
     steps: dict[Owner, list[Step]] = {}
+    require_rows(group["owner_kind"])
+    details = read_texts(group["detail"])
+    require_short_json(*details)
     for kind, owner, name, detail in zip(
         read_flags(group["owner_kind"]),
         read_texts(group["owner"]),
         read_texts(group["step_name"]),
-        read_texts(group["detail"]),
+        details,
         strict=True,
     ):
         steps.setdefault((kind, owner), []).append(Step(name, _parse_detail(detail)))

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import IntArray
-from jointbench.acquisition.errors import FormatError
+from jointbench.acquisition.errors import FormatError, HostileFile
 from jointbench.acquisition.netcdf import CHUNK_VALUES
 from jointbench.acquisition.netcdf_read import read_attribute
+from jointbench.acquisition.room import MAX_JSON, MAX_ROWS
 
 Samples = NDArray[np.float32]
 
@@ -137,6 +138,8 @@ def _follows(one: LiveSpan, other: LiveSpan) -> bool:
 
 def _entries(text: bytes) -> Iterator[dict[str, Any]]:
     """Yield the lines that are whole; the last one of a killed session may not be."""
+    if text.count(b"\n") > MAX_ROWS or text.count(b"[") > MAX_JSON:
+        raise HostileFile("its log has more entries than any recording")
     for line in text.split(b"\n"):
         crc, _, body = line.partition(b" ")
         if body and f"{zlib.crc32(body):08x}".encode() == crc:

@@ -40,6 +40,7 @@ from jointbench.acquisition.netcdf_read import (
     read_flags,
     read_integers,
     read_texts,
+    require_rows,
 )
 from jointbench.acquisition.records import (
     Channel,
@@ -242,6 +243,7 @@ def read_hits(file: h5py.File, group: h5py.Group) -> tuple[Hit, ...]:
     stored = None if hits is None else find_group(hits, name)
     if stored is None:
         return ()
+    require_rows(stored["start"])
     rows = zip(
         read_integers(stored["start"]).tolist(),
         read_integers(stored["trigger"]).tolist(),

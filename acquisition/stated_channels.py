@@ -5,7 +5,7 @@ A unit is taken from the file where the file states it, else from ``--columns``,
 labels then are the file's names of the channels. What neither says is refused.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -56,22 +56,24 @@ class StatedChannel:
 
 def recording_of(
     path: Path,
-    stated: Sequence[StatedChannel],
+    stated: Iterable[StatedChannel],
     *,
     sample_rate: float,
     columns: str | None,
     point: str,
     layout: str,
+    name: str | None = None,
 ) -> Recording:
     """Make a recording of the channels of a foreign file.
 
     Args:
-        path: of the file; the recording has its name.
+        path: of the file.
         stated: its channels, none of them read so far.
         sample_rate: [Hz].
         columns: what they hold, or None where the file says it.
         point: where the hammer struck, unless the file or `columns` says.
         layout: name of the format, for the provenance.
+        name: of the recording; that of the file if None.
 
     Raises:
         UnitError: a unit is missing, unknown, or not the one that the file states.
@@ -81,10 +83,14 @@ def recording_of(
         HostileFile: there are more samples than any measurement has.
         BadData: a sample is not finite.
     """
+    stated = tuple(stated)
     _require_sane(path, stated, sample_rate)
     wanted = _as_stated(path, stated) if columns is None else _named(stated, columns)
     _require_even(path, [channel for channel, _ in wanted])
-    rows = [_samples(path, channel, column) for channel, column in wanted]
+    samples = np.empty((len(wanted), wanted[0][0].size))
+    for row, (channel, column) in zip(samples, wanted, strict=True):
+        row[:] = _samples(path, channel)
+        row *= column.factor
     origin = step(
         "import",
         file=path.name,
@@ -93,8 +99,8 @@ def recording_of(
         columns=columns or "as the file states",
     )
     return Recording(
-        name=path.stem,
-        samples=np.stack(rows),
+        name=path.stem if name is None else name,
+        samples=samples,
         sample_rate=sample_rate,
         channels=tuple(_channel(ch, column, point) for ch, column in wanted),
         provenance=(origin,),
@@ -224,20 +230,20 @@ def _contradiction(channel: StatedChannel, column: Column, way: str) -> UnitErro
     )
 
 
-def _samples(path: Path, channel: StatedChannel, column: Column) -> FloatArray:
+def _samples(path: Path, channel: StatedChannel) -> FloatArray:
     values = np.asarray(channel.read(), dtype=np.float64).ravel()
     if values.size != channel.size:
         raise FormatError(
             f"{named(path)}: channel {shown(channel.name)} holds {values.size} of "
             f"{channel.size} samples; it is cut short: use another copy"
         )
-    bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
+    if not np.isfinite(values).all():
+        bad = np.flatnonzero(~np.isfinite(values))
         raise BadData(
             f"{named(path)}: channel {shown(channel.name)} holds {bad.size} values "
             f"that are not finite, the first at sample {bad[0]}; cut the record there"
         )
-    return np.asarray(values * column.factor)
+    return values
 
 
 def _channel(channel: StatedChannel, column: Column, point: str) -> Channel:

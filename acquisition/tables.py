@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.errors import FormatError, HostileFile
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.text_files import (
     decode,
     file_size,
@@ -34,9 +35,26 @@ _HEADER_ERRORS = (EOFError, SyntaxError, tokenize.TokenError, RecursionError)
 _DELIMITERS = ("\t", ";", ",", "|", None)
 _NAMES = {"\t": "tab", None: "blanks"}
 _COMMENT = ("#", "%", "//")
+_FIRST_OF_NUMBER = frozenset("0123456789+-.")
+_BLOCK, _FEW = 65_536, 1024
+"""Rows that are parsed at once, and again in fewer where one has no number."""
+_TEXT_NEEDED, _CELL_NEEDED = 3, 20
+"""Of each character of a text, and of each number in it [bytes]."""
+_NEEDED = 24
+"""Of each number of an array: as it is read, laid in rows, and in its unit [bytes]."""
+MAX_SLOW_CELLS = 3_000_000
+"""Cells in rows that must be read one by one, at about a microsecond each."""
 MISSING_WORDS = frozenset({"", "nan", "bad", "n/a", "na", "null", "-", "--", "---"})
+_MISSING_WORD = re.compile(
+    r"(?<!\S)(?:" + "|".join(sorted(MISSING_WORDS - {""}, reverse=True)) + r")(?!\S)",
+    re.I,
+)
 NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.I)
-DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+(?:[eE][+-]?\d+)?")
+DECIMAL_COMMA = re.compile(r"[+-]?(?:\d+,\d*|,\d+)(?:[eE][+-]?\d+)?")
+_THOUSANDS = re.compile(r"(?<![\d,])[1-9]\d{0,2}(?:,\d{3})+(?![\d,])")
+_GROUPED = re.compile(r"\d(?:\.\d{3})+,\d|\d(?:,\d{3})+\.\d")
+# ``"0,5","1,5"``: the quotes say that these commas part no columns.
+_QUOTED = re.compile(r'"\s*([+-]?\d*),(\d*(?:[eE][+-]?\d+)?)\s*"')
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,8 +113,9 @@ class Table:
         """
         if not self.rows:
             return np.zeros(self.values.shape[1])
-        cells = (split_row(row, self.delimiter)[column] for row in self.rows)
-        return np.array([_last_digit(cell) for cell in cells])
+        parts = self.delimiter, column + 1
+        digits = (_last_digit(row.split(*parts)[column]) for row in self.rows)
+        return np.fromiter(digits, np.float64, len(self.rows))
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +152,9 @@ def load_table(path: Path | str, *, columns: int | None = None) -> Table:
     if is_array_file(path):
         return _load_array(path, columns)
     text, encoding = decode(read_bytes(path), path)
-    return parse_table(text_lines(text, path), path, encoding)
+    lines = text_lines(text, path)
+    del text  # as large as the file
+    return parse_table(lines, path, encoding)
 
 
 def is_array_file(path: Path) -> bool:
@@ -153,27 +174,63 @@ def read_head(path: Path, count: int) -> bytes:
 
 def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
     """Find the numbers in the lines of a text and read them; see `read_table`."""
+    if any('"' in line for line in lines[: MAX_HEADER_LINES + 1]):
+        lines = [_QUOTED.sub(r"\1.\2", line) for line in lines]
     start = _find_start(lines, path)
-    numbers = [i for i in range(start.line, len(lines)) if _is_row(lines[i])]
+    below = range(start.line, len(lines))
+    numbers = np.fromiter((i for i in below if _is_row(lines[i])), np.int64)
     if len(numbers) > MAX_ROWS or len(numbers) * start.columns > MAX_CELLS:
         raise HostileFile(
             f"{named(path)} has {len(numbers)} rows of {start.columns} columns; "
             f"at most {MAX_ROWS} rows and {MAX_CELLS} cells are read: cut it"
         )
-    rows = [lines[i] for i in numbers]
-    values = _parse_fast(rows, start)
-    if values is None:
-        values = _parse_carefully(rows, numbers, start, path)
+    text = sum(map(len, lines))
+    require_room(
+        path, _TEXT_NEEDED * text + _CELL_NEEDED * numbers.size * start.columns
+    )
+    rows = _with_points([lines[i] for i in numbers], numbers, start, path)
+    values = _parse(rows, numbers, start, path)
     delimiter = _NAMES.get(start.delimiter, start.delimiter)
     return Table(
         path=path,
         values=_without_empty_tail(values),
-        lines=np.asarray(numbers, dtype=np.int64) + 1,
+        lines=numbers + 1,
         header=tuple(lines[: start.line]),
         layout=f"text, {encoding}, columns separated by {delimiter}",
         rows=rows,
         delimiter=start.delimiter,
     )
+
+
+def _with_points(
+    rows: list[str], numbers: IntArray, start: _Start, path: Path
+) -> list[str]:
+    """Return rows whose decimal commas, where they have such, are points.
+
+    A comma that parts no columns is a decimal comma, as most of Europe writes it.
+
+    Raises:
+        FormatError: points and commas stand in the same table, or every comma may
+            as well part thousands.
+    """
+    if start.delimiter == "," or not any("," in row for row in rows):
+        return rows
+    point = next((i for i, row in enumerate(rows) if "." in row), None)
+    if point is not None:
+        comma = next(row for row in rows if "," in row)
+        raise FormatError(
+            f"{named(path)}: line {numbers[point] + 1}: {shown(rows[point].strip())} "
+            f"has points, another row, {shown(comma.strip())}, has commas; write all "
+            "numbers with one decimal sign and without signs between thousands"
+        )
+    if all("," not in _THOUSANDS.sub("", row) for row in rows):
+        first = next(i for i, row in enumerate(rows) if "," in row)
+        raise FormatError(
+            f"{named(path)}: line {numbers[first] + 1}: {shown(rows[first].strip())}: "
+            "the commas of this table may be decimal signs or part thousands; write "
+            "points, or numbers without signs between thousands"
+        )
+    return [row.replace(",", ".") for row in rows]
 
 
 def split_row(line: str, delimiter: str | None) -> list[str]:
@@ -182,8 +239,9 @@ def split_row(line: str, delimiter: str | None) -> list[str]:
 
 
 def _last_digit(cell: str) -> float:
-    mantissa, _, exponent = cell.lower().partition("e")
-    decimals = len(mantissa.partition(".")[2])
+    mantissa, _, exponent = cell.strip(' "\t').lower().partition("e")
+    point = mantissa.find(".")
+    decimals = len(mantissa) - point - 1 if point >= 0 else 0
     return float(10.0 ** (int(exponent or 0) - decimals))
 
 
@@ -201,14 +259,10 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
     if seen is not None:  # a table of one row
         return seen
     for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
-        if any(
-            DECIMAL_COMMA.fullmatch(cell)
-            for delimiter in ("\t", ";", None)
-            for cell in split_row(line, delimiter)
-        ):
+        if _GROUPED.search(line):
             raise FormatError(
-                f"{named(path)}: line {i + 1}: {shown(line.strip())} has decimal "
-                "commas; replace them by points and separate the columns by ';' or tab"
+                f"{named(path)}: line {i + 1}: {shown(line.strip())} has signs between "
+                "thousands; write numbers without them"
             )
     raise FormatError(
         f"{named(path)} holds no table of numbers: no line of its first "
@@ -230,6 +284,8 @@ def _refuse_rows_above(lines: Sequence[str], start: _Start, path: Path) -> None:
 
 def _is_row(line: str) -> bool:
     """Tell whether a line is neither empty nor a comment."""
+    if line[:1] in _FIRST_OF_NUMBER and line:
+        return True
     return bool(line.strip(" \t\x1a\f")) and not line.lstrip().startswith(_COMMENT)
 
 
@@ -239,15 +295,62 @@ def _numeric_layout(index: int, line: str) -> _Start | None:
         if delimiter is not None and delimiter not in line:
             continue
         cells = split_row(line, delimiter)
-        numeric = sum(NUMBER.fullmatch(cell) is not None for cell in cells)
+        numeric = sum(_is_number(cell, delimiter) for cell in cells)
         missing = sum(cell.lower() in MISSING_WORDS for cell in cells)
         if numeric and numeric + missing >= len(cells) and len(cells) <= MAX_COLUMNS:
             return _Start(index, delimiter, len(cells))
     return None
 
 
+def _is_number(cell: str, delimiter: str | None) -> bool:
+    if NUMBER.fullmatch(cell):
+        return True
+    return delimiter != "," and DECIMAL_COMMA.fullmatch(cell) is not None
+
+
 def _same_layout(one: _Start, other: _Start) -> bool:
     return one.delimiter == other.delimiter and one.columns == other.columns
+
+
+def _parse(rows: list[str], numbers: IntArray, start: _Start, path: Path) -> FloatArray:
+    """Read the rows, shape (n_columns, n_rows); empty cells become NaN."""
+    values = np.empty((start.columns, len(rows)))
+    slow = 0
+    for first in range(0, len(rows), _BLOCK):
+        block = rows[first : first + _BLOCK]
+        found = _parse_fast(block, start)
+        if found is not None:
+            values[:, first : first + len(block)] = found
+            continue
+        for few in range(first, first + len(block), _FEW):
+            some = slice(few, min(few + _FEW, first + len(block)))
+            found = _parse_fast(_with_nan(rows[some], start), start)
+            if found is None:
+                slow += (some.stop - some.start) * start.columns
+                _require_few(slow, path)
+                found = _parse_carefully(rows[some], numbers[some], start, path)
+            values[:, some] = found
+    return values
+
+
+def _require_few(cells: int, path: Path) -> None:
+    if cells > MAX_SLOW_CELLS:
+        raise HostileFile(
+            f"{named(path)} holds more than {MAX_SLOW_CELLS} cells in rows that are no "
+            "plain numbers; export it with numbers only"
+        )
+
+
+def _with_nan(rows: list[str], start: _Start) -> list[str]:
+    """Return rows with ``nan`` in each cell that is empty or says "no value"."""
+    if start.delimiter is None:
+        return [_MISSING_WORD.sub("nan", row) for row in rows]
+    parted = re.escape(start.delimiter)
+    words = "|".join(map(re.escape, sorted(MISSING_WORDS, key=len, reverse=True)))
+    cell = re.compile(
+        rf'(^|{parted})[ ]*+"?[ ]*+(?:{words})[ ]*+"?[ ]*+(?={parted}|$)', re.I
+    )
+    return [cell.sub(r"\1nan", row.rstrip()) for row in rows]
 
 
 def _parse_fast(rows: list[str], start: _Start) -> FloatArray | None:
@@ -258,14 +361,14 @@ def _parse_fast(rows: list[str], start: _Start) -> FloatArray | None:
         )
     except ValueError:
         return None
-    return np.ascontiguousarray(table.T)
+    return table.T if table.shape == (len(rows), start.columns) else None
 
 
 def _parse_carefully(
-    rows: list[str], numbers: list[int], start: _Start, path: Path
+    rows: list[str], numbers: IntArray, start: _Start, path: Path
 ) -> FloatArray:
     """Read row by row: empty cells become NaN, anything else names its line."""
-    values = np.empty((start.columns, len(rows)))
+    values = np.empty((len(rows), start.columns))
     for j, row in enumerate(rows):
         cells = split_row(row, start.delimiter)
         if len(cells) != start.columns:
@@ -274,8 +377,8 @@ def _parse_carefully(
                 f"table began with {start.columns}: {shown(row.strip())}; the file is "
                 "cut short or mixed, export it again"
             )
-        values[:, j] = [parse_cell(cell, numbers[j] + 1, path) for cell in cells]
-    return values
+        values[j] = [parse_cell(cell, int(numbers[j]) + 1, path) for cell in cells]
+    return values.T
 
 
 def parse_cell(cell: str, line: int, path: Path) -> float:
@@ -290,8 +393,8 @@ def parse_cell(cell: str, line: int, path: Path) -> float:
         return float("nan")
     if DECIMAL_COMMA.fullmatch(cell):
         raise FormatError(
-            f"{named(path)}: line {line}: {shown(cell)} has a decimal comma; replace "
-            "commas by points and separate the columns by ';' or tab"
+            f"{named(path)}: line {line}: {shown(cell)} has a decimal comma, this "
+            "format has points; export it with points"
         )
     raise FormatError(
         f"{named(path)}: line {line}: {shown(cell)} is not a number; every line below "
@@ -316,9 +419,14 @@ def _load_array(path: Path, columns: int | None) -> Table:
     try:
         array = np.lib.format.open_memmap(path, mode="r")
     except (ValueError, OSError, OverflowError, TypeError, *_HEADER_ERRORS) as error:
+        if "Python objects" in str(error):  # np.save wrote them, by pickle
+            raise FormatError(
+                f"{named(path)} holds Python objects, which are never read because "
+                "that runs code; save numbers, as numpy.save(name, array.astype(float))"
+            ) from error
         raise FormatError(
             f"{named(path)} is not a whole .npy array of numbers "
-            f"({shown(error)}); save it again with numpy.save"
+            f"({shown(error)}); use another copy"
         ) from error
     if array.dtype.kind not in "fiu":
         raise FormatError(
@@ -335,6 +443,7 @@ def _load_array(path: Path, columns: int | None) -> Table:
             f"{named(path)} holds {array.size} numbers, at most {MAX_CELLS} are read; "
             "cut it"
         )
+    require_room(path, _NEEDED * array.size)
     values = np.atleast_2d(np.array(array, dtype=np.float64))
     lying = values.shape[0] <= values.shape[1]
     if columns in values.shape:

@@ -2,6 +2,7 @@
 """Samples from TDMS files by npTDMS, an extra; sizes checked before they are read."""
 
 import logging
+import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
@@ -19,11 +20,15 @@ from jointbench.acquisition.errors import (
     UsageError,
 )
 from jointbench.acquisition.records import Recording
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.text_files import file_size, named, shown
 
 INSTALL = "pip install 'jointbench[tdms]'"
 _MOST_BYTES = 8 * 2**30
+_LEAD = 28
+_MOST_SEGMENTS = 20_000
+_MOST_SAID = 4_000_000
 
 
 def read_tdms(path: Path, *, columns: str | None, point: str) -> Recording:
@@ -51,6 +56,7 @@ def read_tdms(path: Path, *, columns: str | None, point: str) -> Recording:
             raise FormatError(f"{named(path)} is no TDMS file")
     if size > _MOST_BYTES:
         raise HostileFile(f"{named(path)} has {size} bytes; cut it")
+    _require_few_segments(path, size)
     try:
         # Opened here, because npTDMS leaves files open that it cannot read.
         with (
@@ -72,6 +78,31 @@ def read_tdms(path: Path, *, columns: str | None, point: str) -> Recording:
             "another copy"
         )
     return recording
+
+
+def _require_few_segments(path: Path, size: int) -> None:
+    """Walk over the segments: npTDMS takes a tenth of a millisecond for each.
+
+    Raises:
+        HostileFile: there are more of them, or more is said about channels, than any
+            measurement has.
+    """
+    at = segments = said = 0
+    with path.open("rb") as file:
+        while at + _LEAD <= size:
+            file.seek(at)
+            lead = file.read(_LEAD)
+            if lead[:4] != b"TDSm":
+                return  # the reader will say what is damaged
+            following, about = struct.unpack("<QQ", lead[12:])
+            segments, said = segments + 1, said + min(about, size)
+            if segments > _MOST_SEGMENTS or said > _MOST_SAID:
+                raise HostileFile(
+                    f"{named(path)} has more than {_MOST_SEGMENTS} segments, or "
+                    f"{_MOST_SAID} bytes about its channels; defragment it in LabVIEW, "
+                    "or split it"
+                )
+            at += _LEAD + following
 
 
 @contextmanager
@@ -107,6 +138,8 @@ def _recording(
     claimed = sum(len(channel) * channel.dtype.itemsize for channel in numeric)
     if claimed > 16 * size:  # raw data of a converter may be scaled up to doubles
         raise HostileFile(f"{named(path)} claims {claimed} bytes, it has {size}")
+    sizes = [len(channel) for channel in numeric]
+    require_room(path, 8 * sum(sizes) + 24 * max(sizes, default=0))
     steps = {float(c.properties.get("wf_increment", 0.0)) for c in numeric}
     if len(steps) != 1 or not min(steps) > 0:
         raise SamplingError(

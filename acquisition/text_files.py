@@ -9,7 +9,11 @@ from pathlib import Path
 
 from jointbench.acquisition.errors import BadData, FormatError, HostileFile
 
-MAX_TEXT_BYTES = 256 * 2**20
+# A text takes up to six times its size in memory, a line 60 bytes beside its own.
+MAX_TEXT_BYTES = 100_000_000
+MAX_LINES = 3_000_000
+BYTES_A_LINE = 100
+"""A larger text may have one more line for so many of its characters."""
 MAX_LINE_CHARACTERS = 2**20
 _SHOWN = 60
 _SHOWN_PATH = 160
@@ -19,6 +23,11 @@ _BOMS = (
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
 _HDF5 = b"\x89HDF\r\n\x1a\n"
+# Letters and marks that Unicode counts as printable although they leave no mark:
+# joiner, fillers of Hangul, inherent vowels of Khmer, selectors of a variant.
+_NO_WIDTH = re.compile(
+    "[\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0\ufe00-\ufe0f\U000e0100-\U000e01ef]"
+)
 # What a text never holds: control characters other than tab, line and page ends and
 # the Ctrl-Z that old programs put at the end.
 _BINARY = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f\x7f]")
@@ -27,22 +36,39 @@ _BINARY = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f\x7f]")
 def shown(text: object) -> str:
     """Return `text` in quotes on one line, cut short, for a message."""
     plain = str(text)
-    return repr(plain if len(plain) <= _SHOWN else plain[:_SHOWN] + "...")
+    return visible(repr(plain if len(plain) <= _SHOWN else plain[:_SHOWN] + "..."))
 
 
 def named(path: Path | str) -> str:
     """Return a path in quotes on one line for a message; a long one keeps its end."""
     plain = str(path)
-    return repr(plain if len(plain) <= _SHOWN_PATH else "..." + plain[-_SHOWN_PATH:])
+    cut = plain if len(plain) <= _SHOWN_PATH else "..." + plain[-_SHOWN_PATH:]
+    return visible(repr(cut))
 
 
 def visible(text: str) -> str:
-    """Return `text` as it stands where all of it shows, else with escapes.
+    r"""Return `text` with every character that does not show written as its escape.
 
-    File names may hold line ends, what moves a terminal's cursor, or bytes that are no
-    text at all.
+    Names in files may hold line ends, sequences that command a terminal, marks that
+    turn the direction of writing, letters of no width, or bytes that are no text at
+    all. Whatever shows a text from a file (terminal, message, CSV, HTML, universal
+    file) takes it through here; JSON escapes by itself, binary formats keep it.
+
+    >>> visible("a1\x1b[2J")
+    'a1\\x1b[2J'
     """
-    return text if text.isprintable() else repr(text)[1:-1]
+    if text.isprintable() and not _NO_WIDTH.search(text):
+        return text
+    return "".join(
+        one if one.isprintable() and not _NO_WIDTH.match(one) else _escape(one)
+        for one in text
+    )
+
+
+def _escape(character: str) -> str:
+    """Return the escape by which Python writes a character, whether it shows or not."""
+    written = repr(character)[1:-1]
+    return written if written != character else f"\\u{ord(character):04x}"
 
 
 def file_size(path: Path | str) -> int:
@@ -114,14 +140,18 @@ def decode(data: bytes, path: Path | str) -> tuple[str, str]:
             f"{named(path)} is an HDF5 file, not a table: a session needs no import, "
             "give it to 'jointbench modal' or 'jointbench report' directly"
         )
-    for encoding in _candidates(data):
+    candidates = _candidates(data)
+    if b"\r" in data and not candidates[0].startswith("utf-16"):
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    for encoding in candidates:
         try:
             text = data.decode(encoding)
         except UnicodeDecodeError:
             continue
-        junk = _BINARY.search(text)
-        if junk is None:
-            return text.replace("\r\n", "\n").replace("\r", "\n"), encoding
+        if _BINARY.search(text) is None:
+            if "\r" in text:
+                text = text.replace("\r\n", "\n").replace("\r", "\n")
+            return text, encoding
     raise FormatError(
         f"{named(path)} is not text in UTF-8, UTF-16 or Windows-1252; it looks like a "
         "binary file: export it as text, or convert it to .npy"
@@ -132,14 +162,21 @@ def text_lines(text: str, path: Path | str) -> list[str]:
     """Split a text into lines, none of them endless.
 
     Raises:
-        HostileFile: a line has more than a million characters.
+        HostileFile: a line has more than a million characters, or there are more
+            lines than any table of measured values has.
     """
-    lines = text.split("\n")
-    longest = max(range(len(lines)), key=lambda i: len(lines[i]))
-    if len(lines[longest]) > MAX_LINE_CHARACTERS:
+    count, most = text.count("\n"), MAX_LINES + len(text) // BYTES_A_LINE
+    if count > most:
         raise HostileFile(
-            f"{named(path)}: line {longest + 1} has {len(lines[longest])} characters; "
-            f"at most {MAX_LINE_CHARACTERS} are read: write one row a line"
+            f"{named(path)} has {count} lines, at most {most} are read of a text of "
+            "its size; split it, or save the numbers as .npy"
+        )
+    lines = text.split("\n")
+    lengths = list(map(len, lines))
+    if max(lengths) > MAX_LINE_CHARACTERS:
+        raise HostileFile(
+            f"{named(path)}: line {lengths.index(max(lengths)) + 1} has {max(lengths)} "
+            f"characters; at most {MAX_LINE_CHARACTERS} are read: write one row a line"
         )
     return lines
 

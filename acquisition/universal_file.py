@@ -22,6 +22,7 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import FormatError, HostileFile, SamplingError
 from jointbench.acquisition.even_steps import roundest
 from jointbench.acquisition.records import Quantity, Recording
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.text_files import named, read_bytes, shown
 
@@ -31,6 +32,10 @@ _EDGE = re.compile(rb"    -1(?=[\r\n]|$| {74})")
 _HEADER = 9
 """Lines of a data set up to the one that says how many values there are."""
 _MOST_SETS = 10_000
+_MOST_BYTES = 2**28
+_BINARY_SET = re.compile(rb"\n {4}58b")
+# What pyuff takes for a byte of the file: values of text pass through words.
+_BINARY_NEEDED, _TEXT_NEEDED = 5.0, 7.5
 _DIGITS = 5e-6
 """Half a unit of the last printed digit of a step, relative, at the most."""
 _TIME_RESPONSE = 1
@@ -120,7 +125,9 @@ def _names(sets: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def _require_sane_headers(path: Path) -> None:
-    data = read_bytes(path)
+    data = read_bytes(path, limit=_MOST_BYTES)
+    binary = _BINARY_SET.search(data) is not None
+    require_room(path, (_BINARY_NEEDED if binary else _TEXT_NEEDED) * len(data))
     edges = [found.start() for found in _EDGE.finditer(data)]
     if not edges:
         raise FormatError(f"{named(path)} is no universal file: it has no data set")

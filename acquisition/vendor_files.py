@@ -5,7 +5,9 @@ Its 40 readers are not repeated here; what comes out of them is checked, because
 scale of some of its formats is wrong by orders of magnitude.
 """
 
+import math
 import warnings
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +19,17 @@ from jointbench.acquisition.even_steps import fit_even_steps
 from jointbench.acquisition.grids import masked
 from jointbench.acquisition.height_facts import LONGEST
 from jointbench.acquisition.records import Step, step
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.surfaces import Areal, Profile, Surface
 from jointbench.acquisition.tables import MAX_CELLS
 from jointbench.acquisition.text_files import named, shown
 from jointbench.acquisition.units import to_si
 
 MOST_BYTES = 512 * 2**20
+_XML = (".xml", ".rels")
+_MOST_ENTRIES, _MOST_LINES = 1000, 1_000_000
+_NEEDED = 40
+"""Of each point: as it is stored, masked, scaled and turned [bytes]."""
 SUFFIXES = frozenset(
     ".vk3 .vk4 .vk6 .vk7 .zon .zag .plu .plux .sur .pro .opd .opdx .x3p .sdf .al3d"
     " .dat .datx .nms .nmm .mnt .os3d .lext .oir .poir .frt .gwy .xlsx".split()
@@ -53,6 +60,8 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
     """
     if path.stat().st_size > MOST_BYTES:
         raise HostileFile(f"{named(path)} is larger than {MOST_BYTES} bytes; cut it")
+    _require_few_lines(path)
+    _require_sane_container(path)
     topography, reader = _open(path)
     unit = topography.unit
     if unit is None:
@@ -76,6 +85,43 @@ def read_vendor(path: Path, origin: Step, name: str) -> Surface:
         missing_points=int((~valid).sum()),
     )
     return _surface(topography, plain, valid, sizes, scale, (origin, said), name, path)
+
+
+def _require_few_lines(path: Path) -> None:
+    """Refuse a text of more lines than its reader takes in a few seconds.
+
+    Raises:
+        HostileFile: it has more.
+    """
+    lines = 0
+    with path.open("rb") as file:
+        while piece := file.read(2**20):
+            if b"\x00" in piece:
+                return  # no text
+            lines += piece.count(b"\n")
+            if lines > _MOST_LINES:
+                raise HostileFile(
+                    f"{named(path)} has more than {_MOST_LINES} lines; export it as a "
+                    "table of x, y and z"
+                )
+
+
+def _require_sane_container(path: Path) -> None:
+    """Refuse a ZIP container (X3P, XLSX, ...) that unpacks to more than a map.
+
+    Raises:
+        HostileFile: it does, or its XML is longer than any description.
+    """
+    try:
+        with zipfile.ZipFile(path) as container:
+            entries = container.infolist()
+    except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError, OSError):
+        return  # no container, or one whose damage the reader will tell
+    # A parsed XML takes some thirty times its length.
+    xml = sum(e.file_size for e in entries if e.filename.lower().endswith(_XML))
+    require_room(path, 3 * sum(entry.file_size for entry in entries) + 30 * xml)
+    if len(entries) > _MOST_ENTRIES:
+        raise HostileFile(f"{named(path)} holds {len(entries)} files; export it again")
 
 
 def _open(path: Path) -> tuple[Any, str]:
@@ -106,8 +152,10 @@ def _open(path: Path) -> tuple[Any, str]:
 def _require_sane_grid(reader: Any, path: Path) -> None:
     """Refuse what declares more points than any map before it is read."""
     grid = reader.channels[0].nb_grid_pts if reader.channels else (0,)
-    if np.prod([float(n) for n in grid]) > MAX_CELLS:
+    points = math.prod(float(n) for n in grid)
+    if points > MAX_CELLS:
         raise HostileFile(f"{named(path)} declares {grid} points; cut it")
+    require_room(path, _NEEDED * points)
 
 
 def _surface(

@@ -18,10 +18,12 @@ from jointbench.acquisition.errors import (
     UsageError,
 )
 from jointbench.acquisition.records import Recording
+from jointbench.acquisition.room import require_room
 from jointbench.acquisition.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.text_files import file_size, named, shown
 
 _MOST_BYTES = 2**31
+_MOST_CHUNKS = 1000
 _HEADER = 12
 _HEADS = {b"RIFF": "<", b"RIFX": ">"}
 
@@ -53,12 +55,13 @@ def read_wave(
             "V@10mV/g' --full-scale 10"
         )
     scale = _scale(path, values, full_scale)
+    require_room(path, values.nbytes + 8 * values.size + 16 * len(values))
     stated = [
         StatedChannel(
             name=str(index + 1),
             unit="",
             size=values.shape[0],
-            read=partial(np.multiply, values[:, index].astype(np.float64), scale),
+            read=partial(np.multiply, values[:, index], scale, dtype=np.float64),
         )
         for index in range(values.shape[1])
     ]
@@ -104,8 +107,14 @@ def _require_whole(path: Path) -> None:
         order = _HEADS.get(head[:4])
         if order is None or head[8:12] != b"WAVE":
             raise FormatError(f"{named(path)} is no WAV file")
-        at = _HEADER
+        at, count = _HEADER, 0
         while at + 8 <= size:
+            count += 1
+            if count > _MOST_CHUNKS:
+                raise HostileFile(
+                    f"{named(path)} has more than {_MOST_CHUNKS} chunks; save its "
+                    "samples alone"
+                )
             file.seek(at)
             tag = file.read(8)
             length = struct.unpack(f"{order}I", tag[4:])[0]
@@ -129,8 +138,7 @@ def _read(path: Path) -> tuple[int, NDArray[Any]]:
             f"{named(path)} cannot be read as WAV ({shown(error)}); use another copy"
         ) from error
     if values.dtype.kind == "u":  # 8 bits are stored about 128
-        values = values.astype(np.int16) - 128
-        values = values.astype(np.int8)
+        values = (values ^ 0x80).view(np.int8)
     if values.size == 0:
         raise FormatError(f"{named(path)} holds no samples")
     return int(rate), values

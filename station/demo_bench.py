@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from jointbench.acquisition.import_surfaces import read_surface
@@ -23,6 +22,7 @@ from jointbench.simulators.rough_surface import rough_map
 from jointbench.simulators.surface_files import write_keyence_csv
 from jointbench.station.chassis_source import ChassisSource
 from jointbench.station.record import record
+from jointbench.station.screen import Screen
 
 HITS = 12
 TORQUE = 20.0
@@ -99,7 +99,7 @@ def visit_bench(folder: Path, *, seed: int) -> DemoVisit:
 
 
 def _record_hits(bench: TwoBodyBench) -> Recording:
-    screen = Console(stderr=True)
+    screen = Screen(stderr=True)
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=screen, disable=not screen.is_terminal) as bar:
         length = bench.samples / bench.sample_rate

@@ -2,9 +2,11 @@
 """Exit codes: which family of errors leaves with which, and its one line."""
 
 import sys
+import traceback
 import warnings
 from collections.abc import Callable
 from contextlib import suppress
+from types import TracebackType
 
 import typer
 from typer.exceptions import TyperException
@@ -64,6 +66,14 @@ def code_of(error: JointbenchError) -> int:
     if isinstance(error, UsageError):
         return EXIT_USAGE
     return EXIT_INSTRUMENT if isinstance(error, InstrumentError) else EXIT_BAD_DATA
+
+
+def show_traceback(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
+    """Write what ``--debug`` lets through; messages may quote names from files."""
+    text = "".join(traceback.format_exception(kind, error, trace))
+    sys.stderr.write("".join(f"{visible(line)}\n" for line in text.split("\n")))
 
 
 def _fail(message: str, code: int) -> int:

@@ -5,9 +5,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from rich.console import Console
-from rich.text import Text
-
 from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.records import Diagnosis, diagnosis_json
 from jointbench.analysis.gap.side_by_side import side_by_side
@@ -20,6 +17,7 @@ from jointbench.station.output import console, table, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.report_gap import gap_report
 from jointbench.station.report_page import write_report
+from jointbench.station.screen import Screen, seen
 from jointbench.station.sources import is_url
 
 MOST_REMARKS = 5
@@ -56,9 +54,9 @@ def run_gap(
     wanted = Wanted(model, _names(without), parse_preload(preload) if preload else None)
     own = [entry for path in effects for entry in read_effects(path)]
     wanted = replace(wanted, entries=with_own(CATALOGUE, own))
-    screen = Console(stderr=True, highlight=False)
-    with side_by_side(), screen.status(Text(f"reading {sources[0]}")) as status:
-        done = examine(sources, wanted, progress=lambda line: status.update(Text(line)))
+    screen = Screen(stderr=True)
+    with side_by_side(), screen.status(seen(f"reading {sources[0]}")) as status:
+        done = examine(sources, wanted, progress=lambda line: status.update(seen(line)))
     _show(done, json_target)
     if report is not None:
         page = gap_report(done.found, title=done.title)

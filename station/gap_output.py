@@ -22,6 +22,7 @@ from jointbench.station.gap_words import (
     why_lost,
 )
 from jointbench.station.output import console, with_sd
+from jointbench.station.screen import seen
 
 MOST_CANDIDATES = 6
 MOST_SLICES = 3
@@ -98,10 +99,10 @@ def _table(
     result = Table(box=None, pad_edge=False)
     for number, column in enumerate(columns):
         side: Literal["left", "right"] = "left" if number in words else "right"
-        result.add_column(Text(column), justify=side)
+        result.add_column(seen(column), justify=side)
     for row in rows:
-        result.add_row(*(Text(cell) for cell in row))
-    return Group(Text(), Text(title, style="bold"), result)
+        result.add_row(*(seen(cell) for cell in row))
+    return Group(Text(), seen(title, style="bold"), result)
 
 
 def _effects(found: Diagnosis) -> list[tuple[str, str, str, str]]:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """``jointbench identify``: the links of a lumped bench from its measured modes."""
 
-import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -27,6 +26,7 @@ from jointbench.station.modal import parse_band
 from jointbench.station.output import console, table, working, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.toml_file import read_toml
+from jointbench.station.toml_text import load_toml
 
 SENSITIVITY_SD = 0.02
 """Relative sd of a shape component [-]: accelerometers of one batch differ by 2 %."""
@@ -97,8 +97,8 @@ def identify_any(
 def describes_structure(model: Path) -> bool:
     """Tell whether a model file has meshed bodies; what cannot be read has none."""
     try:
-        content = tomllib.loads(model.read_text(encoding="utf-8-sig"))
-    except (OSError, ValueError):
+        content = load_toml(model)
+    except (BadData, OSError, ValueError, RecursionError):
         return False  # the reader of lumped benches says what is wrong
     return "joints" in content
 

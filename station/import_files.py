@@ -60,15 +60,16 @@ def run_import(
     surfaces: list[Surface] = []
     for path in files:
         with working(f"reading {path.name}"):
-            record = read_foreign(
+            records = read_foreign(
                 path, columns=columns, point=point, full_scale=full_scale
             )
-        if isinstance(record, Recording):
-            name = _free(record.name, [r.name for r in recordings])
-            recordings.append(replace(record, name=name))
-        else:
-            name = _free(record.name, [s.name for s in surfaces])
-            surfaces.append(replace(record, name=name))
+        for record in records:
+            if isinstance(record, Recording):
+                name = _free(record.name, [r.name for r in recordings])
+                recordings.append(replace(record, name=name))
+            else:
+                name = _free(record.name, [s.name for s in surfaces])
+                surfaces.append(replace(record, name=name))
     session = new_session(
         source="import",
         simulated=False,

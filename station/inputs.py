@@ -44,7 +44,7 @@ def is_session_name(path: Path) -> bool:
 
 def read_samples(
     path: Path, *, columns: str | None, point: str, full_scale: float | None = None
-) -> Recording | None:
+) -> tuple[Recording, ...]:
     """Read a file of a format that holds samples by its nature, told by its ending.
 
     Args:
@@ -54,28 +54,28 @@ def read_samples(
         full_scale: what the largest number of a WAV file stands for.
 
     Returns:
-        The recording; None where the ending is none of these.
+        The recordings of the file; none where the ending is none of these.
 
     Raises:
         BadData: the file is not what it should be, or its units are missing.
     """
     suffix = path.suffix.lower()
     if suffix in UNIVERSAL_SUFFIXES:
-        return read_universal(path, columns=columns, point=point)
+        return (read_universal(path, columns=columns, point=point),)
     if suffix == ".tdms":
-        return read_tdms(path, columns=columns, point=point)
+        return (read_tdms(path, columns=columns, point=point),)
     if suffix == ".mat":
-        return read_mat_recording(path, columns=columns, point=point)
+        return (read_mat_recording(path, columns=columns, point=point),)
     if suffix == ".wav":
-        return read_wave(path, columns=columns, point=point, full_scale=full_scale)
+        return (read_wave(path, columns=columns, point=point, full_scale=full_scale),)
     if suffix in RATTLESNAKE_SUFFIXES:
         return read_rattlesnake(path, columns=columns, point=point)
-    return None
+    return ()
 
 
 def read_foreign(
     path: Path, *, columns: str | None, point: str, full_scale: float | None = None
-) -> Recording | Surface:
+) -> tuple[Recording | Surface, ...]:
     """Read one foreign file as hits or as a surface.
 
     Args:
@@ -86,24 +86,25 @@ def read_foreign(
         full_scale: what the largest number of a WAV file stands for.
 
     Returns:
-        A recording or a surface, named after the file.
+        A recording or a surface, named after the file; one for each stream where it
+        holds several.
 
     Raises:
         BadData: the file is neither, or its units are missing; the message says what
             to type.
     """
     samples = read_samples(path, columns=columns, point=point, full_scale=full_scale)
-    if samples is not None:
+    if samples:
         return samples
     if columns is not None and "time" in {c.role for c in parse_columns(columns)}:
-        return read_recording(path, columns=columns, point=point)
+        return (read_recording(path, columns=columns, point=point),)
     try:
-        return read_surface(path, columns=columns)
+        return (read_surface(path, columns=columns),)
     except UnitError as surface_error:
         if columns is not None:
             raise
         try:
-            return read_recording(path, columns=None, point=point)
+            return (read_recording(path, columns=None, point=point),)
         except UnitError as error:
             heights = " or ".join(f"'{example}'" for example in SURFACE_EXAMPLES)
             raise UnitError(
@@ -126,7 +127,7 @@ def read_recordings(
             found += read_session(path).recordings
         else:
             samples = read_samples(path, columns=columns, point=point)
-            found.append(samples or read_recording(path, columns=columns, point=point))
+            found += samples or (read_recording(path, columns=columns, point=point),)
     if not found:
         names = ", ".join(path.name for path in files)
         raise BadData(f"no recording in {names}; 'jointbench inspect' shows what is")

@@ -4,8 +4,6 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from rich.markup import escape
-
 from jointbench.acquisition.describe import describe_file
 from jointbench.station.output import console, write_json
 
@@ -18,7 +16,7 @@ def run_inspect(file: Path, *, json_target: str | None) -> None:
     screen = console(json_target)
     shown = {key: value for key, value in content.items() if key != "attributes"}
     for line in _lines(shown, ""):
-        screen.print(escape(line), soft_wrap=True)
+        screen.print(line, soft_wrap=True)
     write_json(json_target, content)
 
 

@@ -31,11 +31,12 @@ from jointbench.station.process import outcome_json
 from jointbench.station.process_file import Outcome, State
 
 LEDGER_SCHEMA = "jointbench-ledger/1"
-MOST_BYTES = 2**30
-"""A million files' lines; a longer ledger is none [bytes]."""
+MOST_BYTES = 2**28
+MOST_LINES = 500_000
+"""Each becomes a record of about 500 bytes in memory; a longer ledger is none."""
 CHECK = "check"
 """Key of a line's digest: the first 16 characters of the SHA-256 of the rest."""
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+_FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 
 
 @dataclass(slots=True)
@@ -167,6 +168,12 @@ def _lines(path: Path) -> list[dict[str, Any]]:
         return []
     lines = []
     data = read_bytes(path, limit=MOST_BYTES) if file_size(path) else b""
+    brackets = data.count(b"[") + data.count(b"{")
+    if data.count(b"\n") > MOST_LINES or brackets > 10 * MOST_LINES:
+        raise UsageError(
+            f"{named(path)} has more than {MOST_LINES} lines, or more values in them "
+            "than a ledger; give --ledger another name"
+        )
     for text in data.decode("utf-8", errors="replace").split("\n"):
         try:
             line = json.loads(text)
@@ -215,12 +222,16 @@ def write_quarantine(path: Path, failed: Sequence[Outcome]) -> None:
     writer.writerow(("file", "reason", "comes again"))
     for outcome in sorted(failed, key=lambda o: o.path):
         again = "yes" if outcome.lasting else "perhaps not: run again"
-        writer.writerow(
-            [escaped(visible(str(outcome.path))), escaped(outcome.reason), again]
-        )
+        writer.writerow([escaped(str(outcome.path)), escaped(outcome.reason), again])
     write_text(path, buffer.getvalue())
 
 
 def escaped(cell: str) -> str:
-    """Return a cell that no spreadsheet takes for a formula."""
-    return f"'{cell}" if cell.startswith(_FORMULA) else cell
+    """Return a cell that shows all of itself and that no spreadsheet calculates.
+
+    Source:
+        OWASP, CSV Injection: a cell must not begin with ``= + - @``, tab or return;
+        spreadsheets of East Asian languages take the wide forms of these as well.
+    """
+    seen = visible(cell)
+    return f"'{seen}" if cell.lstrip().startswith(_FORMULA) else seen

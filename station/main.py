@@ -16,7 +16,7 @@ from jointbench.station.bench_commands import (
     simulate_command,
 )
 from jointbench.station.contact_command import contact_command
-from jointbench.station.exit_codes import EXIT_QUALITY, exit_code
+from jointbench.station.exit_codes import EXIT_QUALITY, exit_code, show_traceback
 from jointbench.station.identify_command import identify_command
 from jointbench.station.options import (
     GAP_HELP,
@@ -58,6 +58,7 @@ def run() -> None:
     """Run the command line and leave with its exit code."""
     if len(sys.argv) == 1:
         sys.argv.append("--help")
+    sys.excepthook = show_traceback
     sys.exit(exit_code(app, debug="--debug" in sys.argv[1:]))
 
 

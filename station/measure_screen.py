@@ -15,12 +15,14 @@ from rich.text import Text
 
 from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.records import Channel, Verdict
+from jointbench.acquisition.text_files import visible
 from jointbench.signal.frf import Frf
 from jointbench.signal.live_hits import CutHit
 from jointbench.station.keys import Poll, keyboard
 from jointbench.station.measure_lines import Lines, verdict_word
 from jointbench.station.measure_plan import Condition
 from jointbench.station.measure_watch import Command, HitNews, Watcher
+from jointbench.station.screen import seen
 
 KEYS = {
     "a": Command.ACCEPT,
@@ -93,13 +95,13 @@ class Screen:
 
     def _draw(self) -> None:
         parts: list[RenderableType] = [
-            Text(self._asked, style="bold reverse"),
+            seen(self._asked, style="bold reverse"),
             Text(self._progress),
             self._levels(),
         ]
         if self._news is not None:
             parts += hit_lines(self._news, self._rate)
-        parts += [Text(line, style="dim") for line in self._said]
+        parts += [seen(line, style="dim") for line in self._said]
         parts.append(Text(KEY_HELP, style="italic"))
         self.live.update(Group(*parts))
 
@@ -118,7 +120,7 @@ def level_row(channel: Channel, peak: float) -> tuple[Text, Text, Text]:
     style = "bold red" if full else "green"
     lamp = " OVERLOAD" if full else ""
     return (
-        Text(channel.name),
+        seen(channel.name),
         Text("█" * filled + "·" * (30 - filled), style=style),
         Text(f"{100 * share:5.1f} %{lamp}", style=style),
     )
@@ -130,8 +132,10 @@ def hit_lines(news: HitNews, rate: float) -> list[RenderableType]:
     good = news.hit.verdict is Verdict.OK
     words = f" hit {news.number} {verdict_word(news)} "
     style = "black on green" if good else "black on cyan" if trial else "white on red"
-    verdict = Text(words, style=style)
-    verdict.append(f" {news.good}/{news.wanted}  {news.hit.reason}", style="default")
+    verdict = seen(words, style=style)
+    verdict.append(
+        visible(f" {news.good}/{news.wanted}  {news.hit.reason}"), style="default"
+    )
     lines: list[RenderableType] = [verdict, Text(force_line(news.cut, rate))]
     if news.frf is not None:
         lines += [Text(line) for line in frf_lines(news.frf, news.coherence)]

@@ -13,25 +13,22 @@ from pathlib import Path
 from typing import IO, cast
 
 from rich.console import Console, Group, RenderableType
+from rich.markup import escape
 from rich.progress import Progress
 from rich.table import Table
 from rich.text import Text
 
 from jointbench.station.outputs import write_text
+from jointbench.station.screen import Screen, seen
 
 Jsonable = Mapping[str, object]
-WIDTH_WITHOUT_TERMINAL = 120
 PLAIN_FROM, PLAIN_TO = -3, 6
 """Powers of ten between which numbers are written without an exponent."""
 
 
 def console(json_target: str | None = None) -> Console:
     """Return the console for tables: standard error when JSON takes standard output."""
-    # Names out of files are shown as they are: brackets are no markup.
-    screen = Console(stderr=json_target == "-", highlight=False, markup=False)
-    if not screen.is_terminal:
-        screen.width = WIDTH_WITHOUT_TERMINAL
-    return screen
+    return Screen(stderr=json_target == "-")
 
 
 def lasting_console(json_target: str | None = None) -> Console:
@@ -69,24 +66,26 @@ class LastingText:
 @contextmanager
 def working(message: str) -> Iterator[None]:
     """Show on a terminal what is being done, for as long as it takes."""
-    progress = Console(stderr=True, highlight=False)
+    progress = Screen(stderr=True)
     if not progress.is_terminal:
         yield
         return
-    with progress.status(Text(f"{message} ...")):
+    with progress.status(seen(f"{message} ...")):
         yield
 
 
 @contextmanager
 def progress_bar(first: str) -> Iterator[Callable[[str, float], None]]:
     """Show a bar on a terminal; yield what moves it: words and the share done."""
-    target = Console(stderr=True, highlight=False)
+    target = Screen(stderr=True)
     if not target.is_terminal:
         yield lambda _what, _share: None
         return
     with Progress(console=target, transient=True) as bars:
         task = bars.add_task(first, total=1.0)
-        yield lambda what, share: bars.update(task, description=what, completed=share)
+        yield lambda what, share: bars.update(
+            task, description=escape(what), completed=share
+        )
 
 
 def table(
@@ -94,14 +93,14 @@ def table(
 ) -> RenderableType:
     """Return a titled table, its first column left-aligned, the others right-aligned.
 
-    Cells are texts as they stand: square brackets are units, not markup.
+    Cells are texts as they stand, in one line: brackets are units, not markup.
     """
     result = Table(box=None, pad_edge=False)
     for number, column in enumerate(columns):
-        result.add_column(Text(column), justify="left" if number == 0 else "right")
+        result.add_column(seen(column), justify="left" if number == 0 else "right")
     for row in rows:
-        result.add_row(*(Text(cell) for cell in row))
-    return Group(Text(), Text(title, style="bold"), result)
+        result.add_row(*(seen(cell) for cell in row))
+    return Group(Text(), seen(title, style="bold"), result)
 
 
 def write_json(target: str | None, content: Jsonable) -> None:

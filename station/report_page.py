@@ -4,17 +4,20 @@
 import json
 import re
 import secrets
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Literal
 
+from jointbench.acquisition.text_files import visible
 from jointbench.station.figures import Figure
 from jointbench.station.outputs import write_text
 
 PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
 """Columns of words, which read from the left."""
+# plotly.js reads tags in texts, links among them; ours have no attributes.
+_FOREIGN_TAG = re.compile(r"<(?!/?(?:br|b|i|sub|sup|extra)/?>)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +115,9 @@ def render(report: Report) -> str:
     from plotly.offline import get_plotlyjs
 
     room = files("jointbench.station")
-    environment = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    environment = Environment(
+        autoescape=True, trim_blocks=True, lstrip_blocks=True, finalize=_seen
+    )
     template = environment.from_string(
         room.joinpath("report.html.j2").read_text(encoding="utf-8")
     )
@@ -138,7 +143,25 @@ def _figures(report: Report) -> str:
         for item in section.items
         if isinstance(item, Plot)
     ]
-    return json.dumps({plot.identifier: plot.figure for plot in plots})
+    return json.dumps({plot.identifier: _seen_below(plot.figure) for plot in plots})
+
+
+def _seen(value: object) -> object:
+    """Return what the template prints: texts visible, our own markup as it is."""
+    if isinstance(value, str) and not hasattr(value, "__html__"):
+        return visible(value)
+    return value
+
+
+def _seen_below(value: object) -> object:
+    """Return a figure whose texts are visible and link to nowhere."""
+    if isinstance(value, str):
+        return _FOREIGN_TAG.sub("&lt;", visible(value))
+    if isinstance(value, Mapping):
+        return {visible(str(key)): _seen_below(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_seen_below(one) for one in value]
+    return value
 
 
 def _script_safe(text: str) -> str:

@@ -13,8 +13,8 @@ from rich.progress import (
     TextColumn,
 )
 
-from jointbench.station.output import WIDTH_WITHOUT_TERMINAL
 from jointbench.station.process_file import State
+from jointbench.station.screen import Screen
 
 LINE_EVERY = 10.0
 """Between two lines where there is no terminal [s]."""
@@ -29,9 +29,8 @@ def run_progress(total: int) -> Iterator[Tell]:
     Args:
         total: number of files.
     """
-    screen = Console(stderr=True, highlight=False, markup=False)
+    screen = Screen(stderr=True)
     if not screen.is_terminal:
-        screen.width = WIDTH_WITHOUT_TERMINAL
         yield _lines(screen, total)
         return
     columns = (

@@ -22,7 +22,9 @@ from jointbench.acquisition.netcdf_read import (
     read_attribute,
     read_flags,
     read_texts,
+    require_rows,
 )
+from jointbench.acquisition.room import require_short_json
 from jointbench.acquisition.session_file import damage_named
 from jointbench.acquisition.text_files import named, shown
 from jointbench.station.judge_again import VerdictChange
@@ -151,6 +153,8 @@ def _number(file: h5py.File, name: str) -> float | None:
 
 def _processed(file: h5py.File, path: Path) -> StoredResult:
     stages = file["stages"]
+    recipe = "".join(read_texts(file["recipe/text"]))
+    require_short_json(recipe)
     remarks = find_group(file, "remarks")
     return StoredResult(
         path=path,
@@ -160,7 +164,7 @@ def _processed(file: h5py.File, path: Path) -> StoredResult:
         preload=_number(file, "preload"),
         quantities=tuple(_rows(file["quantities"])),
         changes=tuple(_changes(find_group(file, "hits"))),
-        recipe=json.loads("".join(read_texts(file["recipe/text"]))),
+        recipe=json.loads(recipe),
         stages=dict(
             zip(
                 read_texts(stages["stage_name"]), read_texts(stages["key"]), strict=True
@@ -171,6 +175,7 @@ def _processed(file: h5py.File, path: Path) -> StoredResult:
 
 
 def _rows(group: h5py.Group) -> Iterator[Quantity]:
+    require_rows(group["value"])
     texts = [read_texts(group[n]) for n in ("part", "item", "name", "unit")]
     numbers = [read_array(group[n]).tolist() for n in ("value", "sd")]
     words, preloads = read_texts(group["word"]), read_array(group["preload"]).tolist()
@@ -181,6 +186,7 @@ def _rows(group: h5py.Group) -> Iterator[Quantity]:
 def _changes(group: h5py.Group | None) -> Iterator[VerdictChange]:
     if group is None:
         return
+    require_rows(group["time"])
     for row in zip(
         read_texts(group["recording"]),
         read_array(group["time"]).tolist(),

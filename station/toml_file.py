@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Read a TOML file into a pydantic model; what is wrong is one line with its key."""
 
-import tomllib
 import typing
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
@@ -11,11 +10,11 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 from jointbench.acquisition.errors import BadData, UnitError
-from jointbench.acquisition.text_files import file_size, named, visible
+from jointbench.acquisition.text_files import named, visible
 from jointbench.acquisition.units import parse_value
+from jointbench.station.toml_text import load_toml
 
 Model = TypeVar("Model", bound=BaseModel)
-MOST_BYTES = 1_000_000
 AUTO, NONE = "auto", "none"
 
 
@@ -59,11 +58,7 @@ def read_toml(path: Path, model: type[Model]) -> Model:
     """
     shown = visible(str(path))
     try:
-        # Python's own words for a path that cannot be; a device has no end to read.
-        if path.exists() and file_size(path) > MOST_BYTES:
-            raise BadData(f"{shown}: larger than {MOST_BYTES} bytes, not a model file")
-        content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        return model.model_validate(content)
+        return model.model_validate(load_toml(path))
     except FileNotFoundError as error:
         raise BadData(f"{shown}: no such file; check the path") from error
     except OSError as error:

@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from jointbench.acquisition.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.text_files import visible
 from jointbench.signal.frf import Frf, FrfKind
 from jointbench.station.outputs import write_text
 
@@ -150,5 +151,5 @@ def axis_line(code: int, name: str, unit: str) -> str:
 
 def printable(text: str) -> str:
     """Return one line of 80 plain characters at the most, whatever a file's texts."""
-    plain = text.encode("ascii", "replace").decode("ascii")
-    return " ".join(plain.split())[:_WIDTH] or "NONE"
+    line = visible(" ".join(text.split()))
+    return line.encode("ascii", "replace").decode("ascii")[:_WIDTH] or "NONE"

@@ -7,6 +7,7 @@ from jointbench.analysis.gap.bench import Bench
 from jointbench.analysis.gap.descent import BASE_STAGES, fit_stages, minimise
 from jointbench.analysis.gap.fit import Fit, make_problem
 from jointbench.analysis.gap.judging import far_off
+from jointbench.signal.one_thread import one_thread
 
 REFINEMENTS = 12
 SETTLED = 0.5
@@ -15,6 +16,7 @@ MOSTLY_SCATTER = 0.5
 """Share of a base's chi2 that settled hits must leave at most to be believed."""
 
 
+@one_thread()
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     """Fit the base coarse to fine, estimate the noise there, and settle.
 

@@ -36,6 +36,7 @@ from jointbench.analysis.gap.records import (
     Ranked,
 )
 from jointbench.analysis.gap.verdict import verdict_on
+from jointbench.signal.one_thread import one_thread
 
 FAR = 1e12
 UNFORETOLD_WORDS = (
@@ -45,6 +46,7 @@ UNFORETOLD_WORDS = (
 LOOK_CLOSER = "look at the views of the gap; widen levels, points and preloads"
 
 
+@one_thread()
 def diagnose(
     campaign: Campaign,
     *,

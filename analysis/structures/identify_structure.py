@@ -46,6 +46,7 @@ from jointbench.analysis.structures.profile import profile_likelihood
 from jointbench.analysis.structures.reduced import ReducedModel, frequency_bound
 from jointbench.analysis.structures.search import LARGEST_LOG_SD, find_optima
 from jointbench.analysis.structures.structure import Structure
+from jointbench.signal.one_thread import one_thread
 
 # The model does not fit if noise alone would do worse this seldom.
 _MISFIT = 1e-3
@@ -61,6 +62,7 @@ _NAMED = 3
 _ROUNDING = 1e-7
 
 
+@one_thread()
 def identify_structure(
     model: ReducedModel,
     evidence: Sequence[Evidence],

@@ -10,15 +10,18 @@ from scipy.io import hb_read, mmread
 
 from jointbench.acquisition.arrays import IntArray
 from jointbench.acquisition.errors import FormatError, UsageError
+from jointbench.acquisition.room import require_room
 from jointbench.analysis.structures.assembly import Sparse
 from jointbench.analysis.structures.elements import ElementKind
 from jointbench.analysis.structures.mesh import Mesh, merge_nodes
+from jointbench.analysis.structures.mesh_child import read_with_meshio
 from jointbench.analysis.structures.parts import (
     Body,
 )
 
 _KINDS = {"hexahedron20": ElementKind.HEX20, "tetra10": ElementKind.TET10}
 _MOST_BYTES = 500_000_000
+_HEAD_LINES = 100
 # Values that differ by this share of the largest are unequal: no symmetric matrix.
 _ASYMMETRY = 1e-8
 
@@ -40,24 +43,18 @@ def read_mesh(path: Path, *, unit: float = 1.0) -> Mesh:
     """
     if importlib.util.find_spec("meshio") is None:
         raise UsageError(f"{path} needs meshio: pip install 'jointbench[meshes]'")
-    import meshio
-
     _require_size(path)
-    try:
-        found = meshio.read(path)
-    except (Exception, SystemExit) as error:
-        raise FormatError(f"{path}: meshio cannot read it ({error})") from error
-    solids = [block for block in found.cells if block.type in _KINDS]
-    kinds = {block.type for block in solids}
+    nodes, blocks = read_with_meshio(path)
+    solids = [(kind, data) for kind, data in blocks if kind in _KINDS]
+    kinds = {kind for kind, _ in solids}
     if len(kinds) != 1:
-        types = sorted({block.type for block in found.cells})
+        types = sorted({kind for kind, _ in blocks})
         raise FormatError(
             f"{path}: elements are {types}; one kind of hexahedron20 or tetra10 is "
             "needed: mesh with quadratic solids"
         )
-    cells = np.concatenate([block.data for block in solids]).astype(np.int64)
-    nodes = np.asarray(found.points, float) * unit
-    return merge_nodes(Mesh(nodes, cells, _KINDS[kinds.pop()]))
+    cells = np.concatenate([data for _, data in solids])
+    return merge_nodes(Mesh(nodes * unit, cells, _KINDS[kinds.pop()]))
 
 
 def read_matrix(path: Path) -> Sparse:
@@ -73,6 +70,7 @@ def read_matrix(path: Path) -> Sparse:
         FormatError: the file cannot be read, or the matrix is not symmetric.
     """
     _require_size(path)
+    _require_sane_matrix(path)
     try:
         if path.suffix.lower() == ".mtx":
             whole = Sparse(sparse.csr_array(mmread(path)))
@@ -119,6 +117,27 @@ def matrix_body(
     if order is not None:
         stiffness, mass = stiffness[order][:, order], mass[order][:, order]
     return Body(name, mesh, Sparse(stiffness), Sparse(mass), loss_factor)
+
+
+def _require_sane_matrix(path: Path) -> None:
+    """Refuse a matrix whose header claims more than its file can hold.
+
+    Raises:
+        HostileFile: it claims so many rows or values.
+    """
+    market = path.suffix.lower() == ".mtx"
+    with path.open("rb") as file:
+        head = [file.readline(1000) for _ in range(_HEAD_LINES)]
+    lines = [line.split() for line in head if not line.startswith(b"%")]
+    try:
+        words = lines[0] if market else lines[2][1:]
+        claimed = [int(word) for word in words[:4]]
+    except (ValueError, IndexError):
+        return  # the reader will say what is damaged
+    full = market and b"array" in head[0].lower()
+    rows = max(claimed[:2], default=0)
+    values = rows * min(claimed[:2], default=0) if full else max(claimed, default=0)
+    require_room(path, 40 * rows + 60 * values)
 
 
 def _require_size(path: Path) -> None:

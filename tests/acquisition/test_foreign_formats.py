@@ -2,6 +2,7 @@
 
 import struct
 import wave
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -10,6 +11,7 @@ import pytest
 import scipy.io
 from scipy.io import wavfile
 
+from jointbench.acquisition import rattlesnake as rattlesnake_module
 from jointbench.acquisition.errors import (
     BadData,
     FormatError,
@@ -290,12 +292,62 @@ def rattlesnake(path: Path, units: tuple[str, str] = ("N", "m/s^2")) -> Path:
 
 def test_a_rattlesnake_stream_tells_nodes_and_units(tmp_path: Path) -> None:
     """Node 104 in -x measures acceleration."""
-    found = read_rattlesnake(rattlesnake(tmp_path / "r.nc4"), columns=None, point="9")
+    path = rattlesnake(tmp_path / "r.nc4")
+    (found,) = read_rattlesnake(path, columns=None, point="9")
     np.testing.assert_array_equal(found.samples, ROWS)
     assert found.sample_rate == RATE
     second = found.channels[1]
     assert (second.point, second.direction) == ("104", "-x")
     assert second.quantity is Quantity.ACCELERATION
+
+
+def test_every_stream_of_a_rattlesnake_file_is_a_recording(tmp_path: Path) -> None:
+    """Streams begun later are variables of their own; an empty one holds nothing."""
+    path = rattlesnake(tmp_path / "r.nc4")
+    with h5py.File(path, "a") as file:
+        file.create_dataset("time_data_10", data=3 * ROWS)
+        file.create_dataset("time_data_2", data=2 * ROWS[:, :20])
+        file.create_dataset(
+            "time_data_1", shape=(2, 0), maxshape=(2, None), dtype="<f8"
+        )
+    found = read_rattlesnake(path, columns=None, point="9")
+    assert [one.name for one in found] == ["r", "r-2", "r-10"]
+    np.testing.assert_array_equal(found[0].samples, ROWS)
+    np.testing.assert_array_equal(found[1].samples, 2 * ROWS[:, :20])
+    np.testing.assert_array_equal(found[2].samples, 3 * ROWS)
+    assert ("layout", "Rattlesnake netCDF, time_data_2") in found[1].provenance[
+        0
+    ].detail
+
+
+def test_a_long_rattlesnake_file_is_read_chunk_by_chunk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every moment is a chunk: there may be as many as the file has room for."""
+    few = replace(rattlesnake_module._LIMITS, chunks=5000)  # noqa: SLF001
+    monkeypatch.setattr(rattlesnake_module, "_LIMITS", few)
+    path, size = rattlesnake(tmp_path / "r.nc4"), 5001
+    rows = np.arange(2.0 * size).reshape(2, size)
+    with h5py.File(path, "a") as file:
+        del file["time_data"]
+        data = file.create_dataset(
+            "time_data", shape=(2, size), maxshape=(2, None), chunks=(2, 1), dtype="<f8"
+        )
+        data[...] = rows
+    (found,) = read_rattlesnake(path, columns=None, point="9")
+    np.testing.assert_array_equal(found.samples, rows)
+
+
+def test_a_rattlesnake_stream_that_lacks_samples_is_refused(tmp_path: Path) -> None:
+    """What was never written would read as a fill value."""
+    path = rattlesnake(tmp_path / "r.nc4")
+    with h5py.File(path, "a") as file:
+        data = file.create_dataset(
+            "time_data_1", shape=(2, 90), maxshape=(2, None), chunks=(2, 1), dtype="<f8"
+        )
+        data[:, :50] = ROWS
+    with pytest.raises(FormatError, match="50 of 90 samples"):
+        read_rattlesnake(path, columns=None, point="9")
 
 
 def test_a_rattlesnake_stream_in_volts_is_refused(tmp_path: Path) -> None:

@@ -49,6 +49,48 @@ def test_units_are_converted_and_channels_named(tmp_path):
     assert recording.name == "a"
 
 
+@pytest.mark.parametrize(
+    "header",
+    [
+        "Time [ms],Force [kN],a1 [g]\n",
+        "made by a recorder\n# Time (ms), Force (kN), a1 (g)\n",
+        "Time / ms,Force / kN,a1 / g\n",
+        "Time in ms,Force in kN,a1 in g\n",
+        "Time,Force,a1\n[ms],[kN],[g]\n",
+        "Time,Force,a1\nms,kN,g\n\n",
+    ],
+)
+def test_a_header_that_says_all_units_is_taken_at_its_word(tmp_path, header):
+    """Nothing is left to type; the channels have the names of the header."""
+    path = write(tmp_path / "a.csv", time=(np.arange(6) / 2).tolist(), header=header)
+    recording = read_recording(path, columns=None)
+    force, response = recording.channels
+    assert (force.name, force.quantity, force.unit) == ("Force", Quantity.FORCE, "kN")
+    assert (response.name, response.unit) == ("a1", "g")
+    assert_array_equal(recording.samples, [FORCE * 1e3, RESPONSE * 9.80665])
+    assert recording.sample_rate == RATE
+    said = dict(recording.provenance[0].detail)["columns"]
+    assert said == "as the file states: time:ms,force:kN,acceleration:g"
+
+
+@pytest.mark.parametrize(
+    ("header", "says"),
+    [
+        ("t [s],F [N],U [V]\n", "says 't' in 's'.*volts need the sensitivity"),
+        ("t [s],F [N],a1\n", r"of column 3 \('a1'\) states no unit"),
+        ("t [s],F [N],a1 [xy]\n", "the unit 'xy' is not known"),
+        ("t,F,a1\n", "does not say their units; its header reads 't,F,a1'"),
+        ("F [N],G [N],a1 [g]\n", "not one time"),
+        ("", "does not say their units; say"),
+    ],
+)
+def test_what_a_header_lacks_is_said(tmp_path, header, says):
+    """A header that says some units is not told that it says none."""
+    path = write(tmp_path / "a.csv", header=header)
+    with pytest.raises(UnitError, match=says):
+        read_recording(path, columns=None)
+
+
 def test_si_samples_are_kept_to_the_bit(tmp_path):
     """No factor, no rounding."""
     values = np.random.default_rng(3).normal(size=FORCE.size)

@@ -64,9 +64,9 @@ def test_empty_cells_and_words_for_no_value_become_nan(tmp_path):
     [
         ("0,1\n1,2\n2\n", "line 3", "1 columns"),
         ("0,1\n1,2\n2,x7\n", "line 3", "'x7' is not a number"),
-        ("0;1\n1;2\n2;3,5\n", "line 3", "decimal comma"),
-        ("0,5;1,5\n1,5;2,5\n", "line 1", "decimal commas"),
-        ("a;b\n0,5\t1,5\n1,5\t2,5\n", "line 2", "decimal commas"),
+        ("0;1\n1;2,5\n2;3.5\n", "line 3", "has points.*'1;2,5', has commas"),
+        ("a;b\n0;1.250,5\n1;1.251,5\n", "line 2", "between thousands"),
+        ("0;1\n1;2\n2;3,456\n", "line 3", "part thousands"),
     ],
 )
 def test_a_bad_row_is_refused_by_its_line(tmp_path, text, line, says):
@@ -76,6 +76,26 @@ def test_a_bad_row_is_refused_by_its_line(tmp_path, text, line, says):
     with pytest.raises(FormatError, match=f"{line}.*{says}") as caught:
         read_table(path)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "0,5;-1,5e1\n1,5;2\n",
+        "t;F\n0,5;-15\n1,5;2,0\n",
+        "a;b\n0,5\t-15,0\n1,5\t2,0\n",
+        "0,5 -15\n1,5 2,\n",
+        '"0,5","-15"\n"1,5","2,0"\n',
+    ],
+)
+def test_decimal_commas_are_read_where_something_else_parts_columns(tmp_path, text):
+    """Semicolon, tab, blanks or quotes, as European programs write tables."""
+    path = tmp_path / "table.csv"
+    path.write_text(text)
+    table = load_table(path)
+    assert_array_equal(table.values, [[0.5, 1.5], [-15.0, 2.0]])
+    if "t;F" in text:
+        assert_array_equal(table.printed_units(0), [0.1, 0.1])
 
 
 @pytest.mark.parametrize("shape", [(3, 50), (50, 3), (50,)])
@@ -123,6 +143,13 @@ def array_claiming_terabytes(path):
 def array_with_a_broken_header(path):
     np.save(path, np.zeros((3, 100)))
     path.write_bytes(path.read_bytes().replace(b"}", b"{", 1))
+
+
+def test_who_has_an_array_of_objects_is_told_to_save_numbers(tmp_path):
+    """numpy.save made it: to be told to save it with numpy.save helps nobody."""
+    array_of_objects(tmp_path / "table.npy")
+    with pytest.raises(FormatError, match=r"Python objects.*array\.astype\(float\)"):
+        load_table(tmp_path / "table.npy")
 
 
 @pytest.mark.parametrize(

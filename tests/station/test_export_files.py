@@ -57,7 +57,7 @@ def test_samples_come_back(
     path = make_session("s.h5")
     wanted = read_session(path).recordings[0]
     file = exported(path, kind)[name]
-    found = read_foreign(file, columns=columns, point="1")
+    (found,) = read_foreign(file, columns=columns, point="1")
     assert found.sample_rate == wanted.sample_rate
     assert np.allclose(found.samples, wanted.samples, rtol=allowed, atol=0.0)
     assert [c.quantity for c in found.channels] == [c.quantity for c in wanted.channels]

@@ -105,12 +105,15 @@ def test_a_real_laser_map_written_as_keyence_csv_gets_a_verdict(
         warnings.simplefilter("ignore")
         scan = topography.read_topography(str(path))
         heights = np.ma.asarray(scan.heights()).T
+    length = scan.physical_sizes[0] / heights.shape[1]
+    heights = heights[
+        :384, :512
+    ]  # a quarter takes the same way in a quarter of the time
     factor = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9, "pm": 1e-12}[
         scan.unit
     ]
     mask = ~np.ma.getmaskarray(heights)
-    columns = heights.shape[1]
-    spacing = scan.physical_sizes[0] / columns * factor
+    spacing = length * factor
     filled = np.where(mask, np.ma.filled(heights, 0.0), 0.0) * factor
     areal = Areal("vk6", filled, (spacing, spacing), mask & all_valid(filled))
     csv = tmp_path / "vk6.csv"

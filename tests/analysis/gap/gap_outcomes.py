@@ -14,10 +14,12 @@ from jointbench.analysis.gap.lumped import LumpedBench
 from jointbench.analysis.gap.lumped_make import make_bench
 from jointbench.analysis.gap.naming import gate
 from jointbench.analysis.gap.screening import screen
+from jointbench.signal.one_thread import one_thread
 
 Hidden = tuple[str, str, list[float]]
 
 
+@one_thread()
 def outcome_of(
     hidden: list[Hidden],
     *tried: tuple[str, str],
