@@ -20,7 +20,7 @@ PACKAGE = "jointbench"
 LIBRARIES = ("filterpy", "numba", "numpy", "scipy")
 CALLERS = (
     "station.chain",
-    "station.process_joint",
+    "station.joint_stages",
     "station.process_session",
     "station.record_codec",
     "station.stage_store",
@@ -31,7 +31,13 @@ STAGE_MODULES = {
     "kalman": ("signal.kalman", "signal.windows"),
     "frf": ("signal.frf", "signal.windows"),
     "modes": ("signal.modes",),
-    "fill": ("station.chain",),
+    "fill": (
+        "signal.frf",
+        "signal.kalman",
+        "signal.modes",
+        "signal.oscillator_bank",
+        "signal.windows",
+    ),
     "structure": ("signal.structure_function",),
     "surface": ("signal.fractal",),
     "contact": ("station.contact", "station.joint"),

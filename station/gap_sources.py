@@ -17,17 +17,19 @@ from jointbench.analysis.gap.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnose import diagnose
 from jointbench.analysis.gap.physics import LumpedEffect
 from jointbench.analysis.gap.records import Diagnosis
-from jointbench.analysis.gap.session_campaign import session_campaign
 from jointbench.analysis.gap.single_record import StretchScore, diagnose_record
-from jointbench.signal.campaign_level import compare_levels
 from jointbench.signal.hit_verdicts import HitLimits
-from jointbench.signal.hits import HitCriteria, find_hits
+from jointbench.signal.hits import HitCriteria
 from jointbench.station.bench_model import BenchModel
+from jointbench.station.chain import hits_stage
 from jointbench.station.gap_model import gap_sheet
 from jointbench.station.gap_record import read_record
 from jointbench.station.inputs import is_session_name, refuse_twice
+from jointbench.station.joint_stages import gap_of
+from jointbench.station.judge_again import StoredHits, with_hits
 from jointbench.station.record_command import write_visit
 from jointbench.station.sources import is_url
+from jointbench.station.stage_store import StageRun
 from jointbench.station.toml_file import read_toml
 
 ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
@@ -189,19 +191,21 @@ def _examine_sessions(
     sessions = [read_session(path) for path in paths]
     sessions.sort(key=lambda session: session.created)
     remarks: list[str] = []
-    judged = [
-        pair
-        for session in sessions
-        for pair in _with_hits(session, wanted.preload, remarks)
+    stored = [
+        pair for session in sessions for pair in _with_preloads(session, wanted.preload)
     ]
-    recordings = _level_compared(judged, remarks)
+    recordings = _judged(stored, remarks)
     if not recordings:
         names = ", ".join(path.name for path in paths)
         raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
     title = ", ".join(path.stem for path in paths)
-    campaign, left_out = session_campaign(title, recordings, sheet)
-    found = diagnose(
-        campaign, without=wanted.without, entries=wanted.entries, progress=progress
+    found, left_out = gap_of(
+        title,
+        recordings,
+        sheet,
+        without=wanted.without,
+        entries=wanted.entries,
+        progress=progress,
     )
     return Examined(title, found, remarks=(*remarks, *left_out))
 
@@ -215,10 +219,10 @@ def _model(path: Path, wanted: Wanted) -> BenchModel:
     return read_toml(wanted.model, BenchModel)
 
 
-def _with_hits(
-    session: Session, preload: float | None, remarks: list[str]
-) -> list[tuple[Recording, bool]]:
-    """Return recordings in order of time, with hits and preload; True: judged now."""
+def _with_preloads(
+    session: Session, preload: float | None
+) -> list[tuple[Recording, float | None]]:
+    """Return recordings in order of time, each with the preload it was made at [N]."""
     of_session = session.joint.preload if session.joint is not None else None
     found = []
     for recording in sorted(session.recordings, key=lambda r: r.start_time):
@@ -228,31 +232,34 @@ def _with_hits(
                 f"--preload is {preload:g} N, but recording {recording.name!r} was "
                 f"made at {own:g} N; leave --preload out"
             )
-        try:
-            judged = recording if recording.hits else find_hits(recording, ANY_LEVEL)
-        except NoHitFound as error:
-            remarks.append(str(error))
-            continue
-        # What was written of the session is not checked there: an impossible preload
-        # must reach the one check that names it, not the record's own.
-        placed = _at_preload(judged, own if own is not None else preload)
-        found.append((placed, not recording.hits))
+        found.append((recording, own if own is not None else preload))
     return found
 
 
-def _level_compared(
-    judged: Sequence[tuple[Recording, bool]], remarks: list[str]
+def _judged(
+    stored: Sequence[tuple[Recording, float | None]], remarks: list[str]
 ) -> list[Recording]:
-    """Compare the level of hits judged now with the plan's, or that of all sessions."""
-    before = [recording for recording, _ in judged]
-    after = compare_levels(before, ANY_LEVEL.limits, [fresh for _, fresh in judged])
+    """Return the recordings that hold hits; their level is that of all sessions."""
+    recordings = [recording for recording, _ in stored]
+    try:
+        found = hits_stage(
+            recordings, ANY_LEVEL, StoredHits(all_struck=False), StageRun()
+        )
+    except NoHitFound:
+        return []
+    remarks += [one.quiet for one in found if one.quiet]
     remarks += [
-        f"recording {new.name!r}: {hit.reason}"
-        for old, new in zip(before, after, strict=True)
-        for was, hit in zip(old.hits, new.hits, strict=True)
-        if was.verdict is not hit.verdict
+        f"recording {recording.name!r}: {hit.reason}"
+        for recording, one in zip(recordings, found, strict=True)
+        for hit in one.lowered
     ]
-    return list(after)
+    # What was written of the session is not checked there: an impossible preload
+    # must reach the one check that names it, not the record's own.
+    return [
+        _at_preload(with_hits(recording, one), preload)
+        for (recording, preload), one in zip(stored, found, strict=True)
+        if one.hits
+    ]
 
 
 def _at_preload(recording: Recording, preload: float | None) -> Recording:

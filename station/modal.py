@@ -2,6 +2,7 @@
 """``jointbench modal``: FRFs and modes of sessions and hit files."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 from pathlib import Path
 
@@ -13,7 +14,12 @@ from jointbench.signal.choices import Choices
 from jointbench.signal.frf_estimators import Estimator
 from jointbench.signal.mode_confidence import rate_modes
 from jointbench.signal.modes import ModalSettings
-from jointbench.station.chain import ChainSettings, ModalChain, judge_hits, run_chain
+from jointbench.station.chain import (
+    ChainSettings,
+    ModalChain,
+    judge_hits,
+    judged_modes,
+)
 from jointbench.station.inputs import is_session_name, read_recordings
 from jointbench.station.modal_notes import ModalNotes, modal_notes
 from jointbench.station.modal_show import show_modal
@@ -21,6 +27,7 @@ from jointbench.station.output import console, progress_bar, write_json
 from jointbench.station.outputs import check_outputs
 from jointbench.station.preloads import by_preload, join_pages, of_preload
 from jointbench.station.results_file import results_path, write_results
+from jointbench.station.stage_store import StageRun
 from jointbench.station.universal_file import write_universal
 
 STAGE_COLUMNS = ("|W| [-]", "phase of W [deg]")
@@ -67,11 +74,22 @@ def run_modal(
     out: Path | None = None,
     universal: Path | None = None,
     json_target: str | None = None,
+    run: StageRun | None = None,
 ) -> ModalChain:
     """Identify the modes in `files`, show them and keep them beside the session.
 
     Recordings under different preloads are never averaged: each preload has modes, a
     table and a results file of its own.
+
+    Args:
+        files: sessions, or files of hits.
+        settings: None for the defaults.
+        columns: of files of hits.
+        point: that was struck, in files that do not say.
+        out: results file; None for beside the session.
+        universal: universal file to write, or None.
+        json_target: where the JSON goes.
+        run: store and source of the stages; None to keep none.
 
     Returns:
         What was found at the first preload.
@@ -81,11 +99,13 @@ def run_modal(
     settings = settings or ChainSettings()
     stored = read_recordings(files, columns=columns, point=point)
     # A hit's level is that of the campaign, whatever the preload.
-    groups = by_preload(judge_hits(stored, settings))
+    run = run or StageRun()
+    groups = by_preload(judge_hits(stored, settings, run))
     chains, pages = [], []
     for preload, group in groups:
         with progress_bar("judging hits, estimating FRFs") as progress:
-            chain = run_chain(group, settings, progress=progress)
+            own_run = replace(run, progress=progress)
+            chain = judged_modes(group, settings, own_run, preload)
         own, shared = target, universal
         if len(groups) > 1:
             console(json_target).print(f"\nPreload {preload} N")

@@ -29,6 +29,11 @@ def by_preload(
     return tuple((preload, tuple(group)) for preload, group in groups.items())
 
 
+def at_words(preload: float | None) -> str:
+    """Say at which preload, with a blank before it; nothing where nobody knows."""
+    return "" if preload is None else f" at {preload:g} N"
+
+
 def of_preload(target: Path, preload: float | None) -> Path:
     """Return where the results at one of several preloads go."""
     word = "no-preload" if preload is None else f"{preload:g}N"

@@ -1,18 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A recorded session through the whole chain under a recipe, stage by stage.
 
-::
-
-    hits    <- samples, [hits]              surface <- heights, [surface]
-    kalman  <- samples, [kalman]            contact <- surfaces, [contact]
-    frf     <- hits, kalman, [windows], [frf]
-    modes   <- frf, [modes]                 fill    <- modes, samples (lost ones)
-    joint   <- modes or fill, the model     gap     <- hits, samples, the model
-
-Modes, and links from them, at each preload; the gap over all of them.
-
-Each stage is kept by content (`stage_store`): change the window, and hits, Kalman
-stage, surfaces and contact are taken as they are.
+Hits, modes at each preload and links from them, surfaces, the contact between them, and
+the gap over all recordings: the stages of `chain` and `joint_stages`, with the settings
+that the recipe names. Each is kept by content (`stage_store`): change the window, and
+hits, Kalman stage, surfaces and contact are taken as they are.
 """
 
 from collections.abc import Sequence
@@ -22,43 +14,46 @@ from typing import Any
 from jointbench.acquisition.errors import BadData, JointbenchError, UsageError
 from jointbench.acquisition.records import Recording, Verdict
 from jointbench.acquisition.session import Session
-from jointbench.signal.frf import Frf
-from jointbench.signal.modes import ModalResult, identify_modes
-from jointbench.station.chain import (
-    ChainSettings,
-    ModalChain,
-    chain_frf,
-    fill_and_repeat,
-    smoothed,
-)
-from jointbench.station.judge_again import (
-    Hits,
-    VerdictChange,
-    judge_again,
-    verdict_changes,
-)
-from jointbench.station.modal_notes import limit_words
-from jointbench.station.preloads import by_preload
-from jointbench.station.process_joint import (
-    PreloadModes,
-    at_words,
+from jointbench.analysis.identification import identification_json
+from jointbench.signal.structure_constant import DEFAULT_GAMMA
+from jointbench.station.bench_model import ContactTable
+from jointbench.station.chain import ModalChain, hits_stage, modal_chain
+from jointbench.station.contact import contact_json
+from jointbench.station.joint_stages import (
+    Remarks,
     contact_stage,
     gap_stage,
     joint_stage,
-    surface_stage,
+    surface_stages,
 )
+from jointbench.station.judge_again import Hits, VerdictChange, verdict_changes
+from jointbench.station.modal_notes import limit_words
+from jointbench.station.preloads import at_words, by_preload
 from jointbench.station.recipe import Recipe
-from jointbench.station.recipe_settings import chain_settings
-from jointbench.station.stage_store import StageStore, stage_key
+from jointbench.station.recipe_settings import (
+    chain_settings,
+    hit_criteria,
+    stored_hits,
+)
+from jointbench.station.stage_store import StageRun, StageStore
 from jointbench.station.surface import SurfaceChain, chain_cautions
+
+Page = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Refit:
-    """FRF and modes once lost samples were filled."""
+class PreloadModes:
+    """Modes at one preload of the joint.
 
-    frf: Frf
-    result: ModalResult
+    Attributes:
+        preload: [N], None where it is not known.
+        recordings: names of those behind them.
+        chain: hits, FRF and modes.
+    """
+
+    preload: float | None
+    recordings: tuple[str, ...]
+    chain: ModalChain
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,46 +101,40 @@ def process_session(
     """
     if not session.recordings and not session.surfaces:
         raise BadData("the session holds neither recordings nor surfaces")
-    remarks: list[str] = []
-    hits = _hits(session, digest, recipe, stages)
+    run, remarks = StageRun(stages, digest), Remarks((JointbenchError,))
+    hits = _hits(session, recipe, run)
     judged = tuple(
         replace(recording, hits=own)
         for recording, own in zip(session.recordings, hits, strict=True)
         if own
     )
-    modal = _modal(judged, digest, recipe, stages, remarks)
-    surfaces = surface_stage(session, digest, recipe, stages)
-    remarks += [f"Surface {said}" for one in surfaces for said in chain_cautions(one)]
+    modal = _modal(judged, recipe, run, remarks.lines)
+    surfaces = _surfaces(session, recipe, run)
+    cautions = [said for one in surfaces for said in chain_cautions(one)]
+    remarks.lines.extend(f"Surface {said}" for said in cautions)
     return ProcessedSession(
         session=session,
         hits=hits,
-        changes=verdict_changes(session.recordings, hits, recipe.hits),
+        changes=verdict_changes(session.recordings, hits, hit_criteria(recipe.hits)),
         modal=modal,
         surfaces=surfaces,
-        contact=contact_stage(session, surfaces, recipe, stages, remarks),
+        contact=_contact(session, surfaces, recipe, run, remarks),
         joints=tuple(
             (modes.preload, page)
             for modes in modal
-            if (page := joint_stage(modes, recipe, stages, remarks)) is not None
+            if (page := _joint(modes, recipe, run, remarks)) is not None
         ),
-        gap=gap_stage(session, judged, recipe, stages, remarks),
-        remarks=tuple(remarks),
+        gap=_gap(session, judged, recipe, run, remarks),
+        remarks=tuple(remarks.lines),
         stages=stages,
     )
 
 
-def _hits(
-    session: Session, digest: str, recipe: Recipe, stages: StageStore
-) -> tuple[Hits, ...]:
-    if not session.recordings:
-        return ()
-    hits = stages.run(
-        "hits",
-        stage_key("hits", recipe.hits.model_dump(), digest),
-        tuple[Hits, ...],
-        lambda: judge_again(session.recordings, recipe.hits),
-    )
-    if not any(hit.verdict is Verdict.OK for own in hits for hit in own):
+def _hits(session: Session, recipe: Recipe, run: StageRun) -> tuple[Hits, ...]:
+    criteria, stored = hit_criteria(recipe.hits), stored_hits(recipe.hits)
+    found = hits_stage(session.recordings, criteria, stored, run)
+    hits = tuple(one.hits for one in found)
+    if hits and not any(hit.verdict is Verdict.OK for own in hits for hit in own):
         raise BadData(_all_refused(hits))
     return hits
 
@@ -161,13 +150,9 @@ def _all_refused(hits: Sequence[Hits]) -> str:
 
 
 def _modal(
-    judged: Sequence[Recording],
-    digest: str,
-    recipe: Recipe,
-    stages: StageStore,
-    remarks: list[str],
+    judged: Sequence[Recording], recipe: Recipe, run: StageRun, remarks: list[str]
 ) -> tuple[PreloadModes, ...]:
-    """Return the modes at each preload; those that fail are told, unless all do.
+    """Return the modes at each preload; those that fail are reported, unless all do.
 
     Raises:
         BadData: there is no mode at any preload.
@@ -178,7 +163,7 @@ def _modal(
     problems: list[JointbenchError] = []
     for preload, group in by_preload(judged):
         try:
-            found.append(_modes_at(preload, group, digest, recipe, stages))
+            found.append(_modes_at(preload, group, recipe, run))
             words = limit_words(found[-1].chain)
             remarks += [f"Modes{at_words(preload)}: {w}" for w in words]
         except (BadData, UsageError) as error:
@@ -190,76 +175,81 @@ def _modal(
 
 
 def _modes_at(
-    preload: float | None,
-    group: Sequence[Recording],
-    digest: str,
-    recipe: Recipe,
-    stages: StageStore,
+    preload: float | None, group: Sequence[Recording], recipe: Recipe, run: StageRun
 ) -> PreloadModes:
-    settings = chain_settings(recipe)
-    at = at_words(preload)
-    keys = [_kalman_key(r, digest, settings) for r in group]
-    frf_key = stage_key(
-        "frf",
-        [settings.window, settings.estimator.value, [r.name for r in group]],
-        stages.keys["hits"],
-        *keys,
+    chain = modal_chain(group, chain_settings(recipe), run, preload)
+    # A result speaks of the samples as recorded, not of those filled since.
+    chain = replace(chain, recordings=tuple(group))
+    return PreloadModes(preload, tuple(r.name for r in group), chain)
+
+
+def _surfaces(
+    session: Session, recipe: Recipe, run: StageRun
+) -> tuple[SurfaceChain, ...]:
+    """Fit every surface of a session, or none where the recipe says so."""
+    if not recipe.surface.use:
+        return ()
+    gamma = recipe.surface.gamma or DEFAULT_GAMMA
+    return surface_stages(session.surfaces, run, gamma)
+
+
+def _contact(
+    session: Session,
+    surfaces: Sequence[SurfaceChain],
+    recipe: Recipe,
+    run: StageRun,
+    remarks: Remarks,
+) -> Page | None:
+    """Predict the joint from the session's faces, if the recipe has a contact."""
+    part = recipe.contact
+    if part is None:
+        return None
+    if not surfaces:
+        why = "no surface in the session is fitted"
+        remarks.lines.append(f"No contact prediction: {why}")
+        return None
+    stored = None if session.joint is None else session.joint.preload
+    preload = part.preload or stored
+    if preload is None:
+        why = "no preload in the recipe or the session"
+        remarks.lines.append(f"No contact prediction: {why}")
+        return None
+    given = part.model_dump() | {"preload": preload}
+    # Read as a table its numbers would need units again; they were checked there.
+    table = ContactTable.model_construct(link="joint", **given)
+    found = remarks.attempt(
+        "contact prediction", lambda: contact_stage(surfaces, table, run)
     )
-    frf = stages.run(
-        f"frf{at}",
-        frf_key,
-        Frf,
-        lambda: chain_frf(_smoothed(group, keys, settings, stages), settings),
+    return None if found is None else contact_json([found.at], found.surface)
+
+
+def _joint(
+    modes: PreloadModes, recipe: Recipe, run: StageRun, remarks: Remarks
+) -> Page | None:
+    """Identify the links of the recipe's model from the modes at a preload."""
+    if recipe.identification is None:
+        return None
+    bench = recipe.models[recipe.identification.model]
+    found = remarks.attempt(
+        f"joint identification{at_words(modes.preload)}",
+        lambda: joint_stage(modes.chain.result.model, bench, run, modes.preload),
     )
-    modes_key = stage_key("modes", settings.modal, frf_key)
-    result = stages.run(
-        f"modes{at}",
-        modes_key,
-        ModalResult,
-        lambda: identify_modes(frf, settings.modal),
-    )
-    fill_key = stage_key("fill", settings, modes_key, digest)
-    refits = stages.run(
-        f"fill{at}",
-        fill_key,
-        tuple[Refit, ...],
-        lambda: _refits(group, result, settings),
-    )
-    for refit in refits:
-        frf, result = refit.frf, refit.result
-    chain = ModalChain(tuple(group), frf, result, result.model.provenance)
-    return PreloadModes(preload, tuple(r.name for r in group), chain, fill_key)
+    return None if found is None else identification_json(found)
 
 
-def _kalman_key(recording: Recording, digest: str, settings: ChainSettings) -> str:
-    return stage_key("kalman", settings.kalman, digest, recording.name)
-
-
-def _smoothed(
-    group: Sequence[Recording],
-    keys: Sequence[str],
-    settings: ChainSettings,
-    stages: StageStore,
-) -> list[Recording]:
-    """Return recordings after the Kalman stage, with their hits; asked for late."""
-    if settings.kalman is None:
-        return list(group)
-    found = []
-    for recording, key in zip(group, keys, strict=True):
-        bare = replace(recording, hits=())
-        kept = stages.run(
-            f"kalman of {recording.name}",
-            key,
-            Recording,
-            lambda bare=bare: smoothed(bare, settings),  # type: ignore[misc]
-        )
-        found.append(replace(kept, hits=recording.hits))
-    return found
-
-
-def _refits(
-    group: Sequence[Recording], result: ModalResult, settings: ChainSettings
-) -> tuple[Refit, ...]:
-    """Return the fit with lost samples filled; none where nothing was lost."""
-    chain = fill_and_repeat(group, result, settings)
-    return () if chain is None else (Refit(chain.frf, chain.result),)
+def _gap(
+    session: Session,
+    judged: Sequence[Recording],
+    recipe: Recipe,
+    run: StageRun,
+    remarks: Remarks,
+) -> Page | None:
+    """Ask what the recipe's model lacks."""
+    if recipe.gap is None or not judged:
+        return None
+    bench, without = recipe.models[recipe.gap.model], recipe.gap.without
+    of_session = None if session.joint is None else session.joint.preload
+    recordings = [
+        r if r.preload is not None else replace(r, preload=of_session) for r in judged
+    ]
+    return remarks.attempt("gap", lambda: gap_stage(recordings, bench, without, run))

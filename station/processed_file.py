@@ -37,8 +37,7 @@ from jointbench.acquisition.session import software_version
 from jointbench.acquisition.session_streams import free_name
 from jointbench.acquisition.text_files import visible
 from jointbench.station.judge_again import NOT_THERE, VerdictChange
-from jointbench.station.process_joint import PreloadModes
-from jointbench.station.process_session import ProcessedSession
+from jointbench.station.process_session import PreloadModes, ProcessedSession
 from jointbench.station.quantities import Quantity, quantities_of
 from jointbench.station.recipe import Recipe, recipe_content
 from jointbench.station.results_file import write_modal

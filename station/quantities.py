@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.records import Verdict
-from jointbench.station.process_joint import PreloadModes
-from jointbench.station.process_session import ProcessedSession
+from jointbench.station.process_session import PreloadModes, ProcessedSession
 from jointbench.station.surface import SurfaceChain
 
 NAN = float("nan")

@@ -9,6 +9,7 @@ from jointbench.signal.kalman_model import KalmanModel, KalmanSettings
 from jointbench.signal.modes import ModalSettings
 from jointbench.signal.windows import WindowRequest
 from jointbench.station.chain import ChainSettings
+from jointbench.station.judge_again import StoredHits
 from jointbench.station.recipe import HitsPart, KalmanPart, Recipe
 
 _LIMITS = (
@@ -43,6 +44,14 @@ def hit_criteria(part: HitsPart) -> HitCriteria:
     given = part.model_dump(exclude_none=True, exclude={*_LIMITS, *_HOW})
     limits = part.model_dump(exclude_none=True, include=set(_LIMITS))
     return HitCriteria(**given, limits=HitLimits(**limits))
+
+
+def stored_hits(part: HitsPart) -> StoredHits:
+    """Return what becomes of the hits that a session carries already.
+
+    A recording may hold no hit at all where it is read again: others may.
+    """
+    return StoredHits(part.again, part.keep_operator, all_struck=False)
 
 
 def _kalman(part: KalmanPart) -> KalmanSettings | None:

@@ -12,7 +12,7 @@ from jointbench.station.geometry import Geometry
 from jointbench.station.joint_text import interval_text
 from jointbench.station.output import console, engineering, with_sd, write_json
 from jointbench.station.outputs import check_outputs
-from jointbench.station.process_joint import at_words
+from jointbench.station.preloads import at_words
 from jointbench.station.report_hits import hits_section
 from jointbench.station.report_joint import joint_section
 from jointbench.station.report_modal import modal_sections
@@ -28,6 +28,7 @@ from jointbench.station.report_page import (
 from jointbench.station.report_surface import surface_section
 from jointbench.station.results_beside import stored_results
 from jointbench.station.session_analysis import SessionAnalysis, analyse_session
+from jointbench.station.stage_store import StageRun
 from jointbench.station.toml_file import read_toml
 
 MODES_IN_TILE = 3
@@ -42,11 +43,12 @@ def run_report(
     geometry: Path | None = None,
     results: Path | None = None,
     json_target: str | None,
+    run: StageRun | None = None,
 ) -> Path:
     """Write the page of `session` beside it, or to `out`.
 
     Modes are those of the results that exist, see `stored_results`; where there are
-    none, they are looked for now.
+    none, they are looked for now, by stages that `run` keeps.
     """
     target = out or session.with_suffix(".html")
     given = (session, model, geometry, results)
@@ -56,7 +58,7 @@ def run_report(
     content = read_session(session)
     bench = None if model is None else read_toml(model, BenchModel)
     stored = stored_results(session, content.recordings, results)
-    analysis = analyse_session(content, bench, stored)
+    analysis = analyse_session(content, bench, stored, run)
     write_report(compose(analysis, bench, title=session.stem, geometry=points), target)
     console(json_target).print(f"report: {target}")
     runs = [

@@ -2,20 +2,31 @@
 """Everything a session can tell: modes, surfaces and, with a bench model, a joint."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 from jointbench.acquisition.errors import BadData
 from jointbench.acquisition.records import Recording
 from jointbench.acquisition.session import Session
 from jointbench.analysis.identification import Identification
 from jointbench.station.bench_model import BenchModel
-from jointbench.station.chain import ChainSettings, ModalChain, judge_hits, run_chain
-from jointbench.station.identify import identify_joint
-from jointbench.station.joint import ContactPrediction, predict_joint
+from jointbench.station.chain import (
+    ChainSettings,
+    ModalChain,
+    judge_hits,
+    judged_modes,
+)
+from jointbench.station.joint import ContactPrediction
+from jointbench.station.joint_stages import (
+    Remarks,
+    contact_stage,
+    joint_stage,
+    surface_stages,
+)
 from jointbench.station.output import working
-from jointbench.station.preloads import by_preload
-from jointbench.station.process_joint import at_words
+from jointbench.station.preloads import at_words, by_preload
 from jointbench.station.results_beside import StoredResults
-from jointbench.station.surface import SurfaceChain, analyse_surface
+from jointbench.station.stage_store import StageRun
+from jointbench.station.surface import SurfaceChain
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,9 +79,12 @@ class SessionAnalysis:
 
 
 def analyse_session(
-    session: Session, model: BenchModel | None, stored: StoredResults | None = None
+    session: Session,
+    model: BenchModel | None,
+    stored: StoredResults | None = None,
+    run: StageRun | None = None,
 ) -> SessionAnalysis:
-    """Run every chain that the session and the model allow.
+    """Run every stage that the session and the model allow.
 
     A stage that cannot be done becomes a remark; it does not take the others along.
 
@@ -78,74 +92,80 @@ def analyse_session(
         session: as recorded.
         model: of the bench, or None.
         stored: results that exist; modes are taken from them and not looked for again.
+        run: store and source of the stages; None to keep none.
     """
-    remarks: list[str] = [] if stored is None else list(stored.remarks)
+    run = run or StageRun()
+    remarks = Remarks((BadData,), [] if stored is None else list(stored.remarks))
     with working("judging hits, estimating FRFs, fitting modes"):
-        recordings = _judged(session, remarks)
-        preloads = _modes(recordings, stored, remarks)
+        settings = ChainSettings()
+        judged = remarks.attempt(
+            "hits", lambda: judge_hits(session.recordings, settings, run)
+        )
+        preloads = _modes(judged or (), settings, stored, run, remarks)
     with working("fitting surfaces"):
-        surfaces = tuple(analyse_surface(surface) for surface in session.surfaces)
+        surfaces = surface_stages(session.surfaces, run)
     with working("predicting and identifying the joint"):
-        contact = _contact(surfaces, model, remarks)
+        contact = _contact(surfaces, model, run, remarks)
         preloads = tuple(
-            replace(one, joint=_joint(one, model, remarks)) for one in preloads
+            replace(one, joint=_joint(one, model, run, remarks)) for one in preloads
         )
     return SessionAnalysis(
-        session, recordings, preloads, surfaces, contact, tuple(remarks)
+        session, judged or (), preloads, surfaces, contact, tuple(remarks.lines)
     )
-
-
-def _judged(session: Session, remarks: list[str]) -> tuple[Recording, ...]:
-    try:
-        return judge_hits(session.recordings, ChainSettings())
-    except BadData as error:
-        remarks.append(f"No hits: {error}")
-        return ()
 
 
 def _modes(
     recordings: tuple[Recording, ...],
+    settings: ChainSettings,
     stored: StoredResults | None,
-    remarks: list[str],
+    run: StageRun,
+    remarks: Remarks,
 ) -> tuple[PreloadAnalysis, ...]:
     """Return the modes at each preload: those that are stored, else found now."""
     if not recordings:
         return ()
     found = []
     for preload, group in by_preload(recordings):
-        known = None if stored is None else stored.at(preload)
-        try:
-            if known is None:
-                found.append(PreloadAnalysis(preload, run_chain(group)))
-            else:
-                modes, run = known
-                chain = modes.with_recordings(group)
-                found.append(PreloadAnalysis(preload, chain, run))
-        except BadData as error:
-            remarks.append(f"No modes{at_words(preload)}: {error}")
+        make = partial(_modes_at, preload, group, settings, stored, run)
+        modes = remarks.attempt(f"modes{at_words(preload)}", make)
+        found += [] if modes is None else [modes]
     return tuple(found)
 
 
+def _modes_at(
+    preload: float | None,
+    group: tuple[Recording, ...],
+    settings: ChainSettings,
+    stored: StoredResults | None,
+    run: StageRun,
+) -> PreloadAnalysis:
+    known = None if stored is None else stored.at(preload)
+    if known is None:
+        return PreloadAnalysis(preload, judged_modes(group, settings, run, preload))
+    modes, of_run = known
+    return PreloadAnalysis(preload, modes.with_recordings(group), of_run)
+
+
 def _contact(
-    surfaces: tuple[SurfaceChain, ...], model: BenchModel | None, remarks: list[str]
+    surfaces: tuple[SurfaceChain, ...],
+    model: BenchModel | None,
+    run: StageRun,
+    remarks: Remarks,
 ) -> ContactPrediction | None:
     if model is None or model.contact is None or not surfaces:
         return None
-    try:
-        return predict_joint([s.structure for s in surfaces], model.contact)
-    except BadData as error:
-        remarks.append(f"No contact prediction: {error}")
-        return None
+    table = model.contact
+    return remarks.attempt(
+        "contact prediction", lambda: contact_stage(surfaces, table, run)
+    )
 
 
 def _joint(
-    modes: PreloadAnalysis, model: BenchModel | None, remarks: list[str]
+    modes: PreloadAnalysis, model: BenchModel | None, run: StageRun, remarks: Remarks
 ) -> Identification | None:
     if model is None:
         return None
-    try:
-        return identify_joint(model, modes.modal.result.model)
-    except BadData as error:
-        at = at_words(modes.preload)
-        remarks.append(f"No joint identification{at}: {error}")
-        return None
+    return remarks.attempt(
+        f"joint identification{at_words(modes.preload)}",
+        lambda: joint_stage(modes.modal.result.model, model, run, modes.preload),
+    )

@@ -5,6 +5,9 @@ The key of a stage is the SHA-256 of its name, its settings, the version of its 
 (`code_version`) and the keys of the stages before it. A file begins with its key and
 the SHA-256 of the rest: one that is damaged, or lies under another's name, is run
 again.
+
+Three stores run the same stages: `StageStore` keeps them in a folder, `MemoryStore` as
+long as it lives, `NoStore` not at all, and needs no digest of anything.
 """
 
 import json
@@ -16,10 +19,11 @@ from dataclasses import asdict, dataclass, field, is_dataclass
 from enum import Enum
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from jointbench.acquisition.errors import FormatError
 from jointbench.acquisition.session import software_version
+from jointbench.signal.lscf import Progress
 from jointbench.station.code_version import stage_version
 from jointbench.station.record_codec import decode_record, encode_record
 
@@ -60,12 +64,13 @@ def _plain(value: object) -> Any:
 
 @dataclass(slots=True)
 class StageStore:
-    """Runs stages, and keeps what they give.
+    """Runs stages, and keeps what they give in a folder.
 
     Attributes:
-        folder: where stages are kept; None to keep none.
+        folder: where stages are kept; None to keep none, but to name what each of them
+            depends on.
         computed: names of the stages that were run, in order.
-        reused: names of the stages that were taken from the folder.
+        reused: names of the stages that were taken as kept.
         keys: key of every stage that was asked for, by its name.
     """
 
@@ -74,6 +79,18 @@ class StageStore:
     reused: list[str] = field(default_factory=list)
     keys: dict[str, str] = field(default_factory=dict)
 
+    def key(self, name: str, settings: object, *inputs: str) -> str:
+        """Return the key of a stage, see `stage_key`."""
+        return stage_key(name, settings, *inputs)
+
+    def digest(self, records: object) -> str:
+        """Return the SHA-256 of records, by which a stage knows its inputs.
+
+        Args:
+            records: what `encode_record` takes.
+        """
+        return sha256(encode_record(records)).hexdigest()
+
     def run(
         self, name: str, key: str, kind: type[Record], make: Callable[[], Record]
     ) -> Record:
@@ -81,7 +98,7 @@ class StageStore:
 
         Args:
             name: of the stage, for people.
-            key: from `stage_key`.
+            key: of this store's `key`.
             kind: type of the record.
             make: runs the stage; what it raises passes through and is not kept.
         """
@@ -92,8 +109,7 @@ class StageStore:
             return kept
         record = make()
         self.computed.append(name)
-        if self.folder is not None:
-            _write(self._path(key), _sealed(key, encode_record(record)))
+        self._keep(key, record)
         return record
 
     def _path(self, key: str) -> Path:
@@ -110,6 +126,66 @@ class StageStore:
         except (OSError, FormatError):
             return None
         return record
+
+    def _keep(self, key: str, record: object) -> None:
+        if self.folder is not None:
+            _write(self._path(key), _sealed(key, encode_record(record)))
+
+
+@dataclass(slots=True)
+class MemoryStore(StageStore):
+    """Keeps the records of stages as long as it lives; several uses may share it.
+
+    Attributes:
+        records: of the stages that were run, by their keys.
+    """
+
+    records: dict[str, object] = field(default_factory=dict)
+
+    def _kept(self, key: str, kind: type[Record]) -> Record | None:
+        return cast("Record | None", self.records.get(key))
+
+    def _keep(self, key: str, record: object) -> None:
+        self.records[key] = record
+
+
+@dataclass(slots=True)
+class NoStore(StageStore):
+    """Runs stages and keeps nothing; no key is made, no input is digested."""
+
+    def key(self, name: str, settings: object, *inputs: str) -> str:
+        """Return no key."""
+        return ""
+
+    def digest(self, records: object) -> str:
+        """Return no digest."""
+        return ""
+
+    def _kept(self, key: str, kind: type[Record]) -> Record | None:
+        return None
+
+    def _keep(self, key: str, record: object) -> None:
+        """Keep nothing."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StageRun:
+    """What the stages of one input share.
+
+    Attributes:
+        stages: keeps them.
+        digest: SHA-256 of the file of the input, in which names are unique; empty to
+            know records by their content.
+        progress: told what is done, and the share of it; None for no report.
+    """
+
+    stages: StageStore = field(default_factory=NoStore)
+    digest: str = ""
+    progress: Progress | None = None
+
+    def source(self, name: str, record: object) -> tuple[str, ...]:
+        """Return what a record of the input is known by: file and name, or content."""
+        return (self.digest, name) if self.digest else (self.stages.digest(record),)
 
 
 def _sealed(key: str, data: bytes) -> bytes:

@@ -21,7 +21,7 @@ from jointbench.station.chain import (
     ChainSettings,
     ModalChain,
     judge_hits,
-    run_chain,
+    judged_modes,
 )
 from jointbench.station.inputs import read_recordings
 from jointbench.station.modal import parse_band
@@ -72,7 +72,9 @@ def measured_states(
             if len(groups) > 1:
                 label += "@" + ("none" if preload is None else f"{preload:g}N")
             with working(f"fitting modes of {label}"):
-                found[label] = MeasuredState(preload, run_chain(recordings, settings))
+                found[label] = MeasuredState(
+                    preload, judged_modes(recordings, settings, preload=preload)
+                )
     return found
 
 

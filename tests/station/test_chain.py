@@ -18,10 +18,10 @@ from jointbench.acquisition.records import (
 )
 from jointbench.signal.frf import estimate_frf
 from jointbench.signal.frf_estimators import Estimator
+from jointbench.signal.hits import HitCriteria
 from jointbench.station.chain import ModalChain, run_chain
-from jointbench.station.judge_again import judge_again
+from jointbench.station.judge_again import StoredHits, judge_again
 from jointbench.station.modal import modal_settings
-from jointbench.station.recipe import HitsPart
 from jointbench.station.results_file import write_results
 
 RATE = 4096.0
@@ -134,7 +134,8 @@ def test_hits_judged_again_are_compared_with_the_whole_session() -> None:
     recordings = [one_hit(i, p) for i, p in enumerate((50.0, 46.0, 2.0, 20.0))]
     asked = (step("record", level=80.0),)
     recordings[3] = replace(recordings[3], provenance=asked)
-    hits = judge_again(recordings, HitsPart())
+    found = judge_again(recordings, HitCriteria(), StoredHits(again=True))
+    hits = [own.hits for own in found]
     verdicts = [own[0].verdict for own in hits]
     assert verdicts == [Verdict.OK, Verdict.OK, Verdict.WEAK, Verdict.WEAK]
     assert "the plan asks for, 80 N" in hits[3][0].reason
