@@ -2,6 +2,7 @@
 """Stiffness and damping of joints from what was measured of a structure."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
@@ -62,6 +63,21 @@ _NAMED = 3
 _ROUNDING = 1e-7
 
 
+@dataclass(frozen=True, slots=True)
+class StructureSearch:
+    """How the joints of a structure are sought.
+
+    Attributes:
+        starts: of the search over the box of the reduction.
+        seed: of the starts.
+        profiles: whether to follow the likelihood of every parameter.
+    """
+
+    starts: int = 48
+    seed: int = 0
+    profiles: bool = True
+
+
 @one_thread()
 def identify_structure(
     model: ReducedModel,
@@ -70,9 +86,7 @@ def identify_structure(
     known: JointValues | None = None,
     sought: Sequence[str] | None = None,
     shared: Sequence[str] = (),
-    starts: int = 48,
-    seed: int = 0,
-    profiles: bool = True,
+    search: StructureSearch | None = None,
     structure: Structure | None = None,
 ) -> StructureIdentification:
     """Find the stiffness and damping of joints.
@@ -83,9 +97,7 @@ def identify_structure(
         known: values of what is not sought.
         sought: names ``"<joint>.<direction>"``; default all.
         shared: names that all states have in common.
-        starts: of the search over the box of the reduction.
-        seed: of the starts.
-        profiles: whether to follow the likelihood of every parameter.
+        search: how it is sought; None for the defaults.
         structure: of which the optimum is checked by one full solve; None skips it.
 
     Returns:
@@ -100,15 +112,16 @@ def identify_structure(
         Appl. Sci. 2023, 13, 11680, eq. (6), whose genetic algorithm on absolute
         frequency errors is replaced by weighted least squares from many starts.
     """
+    search = search or StructureSearch()
     states(evidence)
     problem = pose_problem(model, evidence, known=known, sought=sought, shared=shared)
-    optima = find_optima(problem, starts=starts, seed=seed)
+    optima = find_optima(problem, starts=search.starts, seed=search.seed)
     best = optima[0]
     freedom = best.slopes.shape[0] - problem.size
     scale, limit = best.noise(), best.limit()
     standing = [best, *(one for one in optima[1:] if one.chi2 < limit)]
     covariance = scale * best.covariance()
-    curves = profile_likelihood(problem, best, covariance, scale, profiles)
+    curves = profile_likelihood(problem, best, covariance, scale, search.profiles)
     parameters = tuple(
         _parameter(problem, standing, at, curves) for at in range(problem.size)
     )

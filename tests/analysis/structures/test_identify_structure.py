@@ -9,7 +9,10 @@ from jointbench.acquisition.arrays import FloatArray
 from jointbench.acquisition.errors import BadData
 from jointbench.analysis.measured_modes import MeasuredModes
 from jointbench.analysis.structures.evidence import Evidence
-from jointbench.analysis.structures.identify_structure import identify_structure
+from jointbench.analysis.structures.identify_structure import (
+    StructureSearch,
+    identify_structure,
+)
 from jointbench.analysis.structures.joint_result import structure_json
 from jointbench.analysis.structures.predict import (
     JointValues,
@@ -86,7 +89,10 @@ def test_modes_with_shapes_and_damping_give_all_six_parameters(
     """Exact data: the truth to rounding, checked by one full solve."""
     evidence = modal_evidence(reduced, rows, truth)
     found = identify_structure(
-        reduced, [evidence], starts=6, profiles=False, structure=plates
+        reduced,
+        [evidence],
+        search=StructureSearch(starts=6, profiles=False),
+        structure=plates,
     )
     wanted = np.concatenate([truth.stiffness, truth.damping])
     np.testing.assert_allclose([p.value for p in found.parameters], wanted, rtol=1e-6)
@@ -99,7 +105,9 @@ def test_frfs_give_all_six_parameters_within_their_uncertainty(
 ) -> None:
     """One per cent of noise: each within four standard deviations."""
     evidence = frf_evidence(reduced, rows, truth)
-    found = identify_structure(reduced, [evidence], starts=4, profiles=False)
+    found = identify_structure(
+        reduced, [evidence], search=StructureSearch(starts=4, profiles=False)
+    )
     wanted = np.concatenate([truth.stiffness, truth.damping])
     for one, true in zip(found.parameters, wanted, strict=True):
         assert one.identifiable
@@ -116,7 +124,9 @@ def test_three_frequencies_leave_the_normal_stiffness_open(
     none = np.zeros((0, reduced.size))
     measured = MeasuredModes(frequency, 0.002 * frequency)
     evidence = Evidence("rig", measured, None, none, none)
-    found = identify_structure(reduced, [evidence], profiles=False)
+    found = identify_structure(
+        reduced, [evidence], search=StructureSearch(profiles=False)
+    )
     normal = found.parameter("joint.normal_stiffness")
     assert not normal.identifiable
     assert "mode" in normal.reason
@@ -144,7 +154,9 @@ def test_what_is_open_does_not_hang_on_where_chance_began(
         "rig", MeasuredModes(frequency, 0.002 * frequency), None, none, none
     )
     found = identify_structure(
-        reduced, [evidence], profiles=False, seed=seed, starts=24
+        reduced,
+        [evidence],
+        search=StructureSearch(profiles=False, seed=seed, starts=24),
     )
     intervals = [one.interval for one in found.parameters]
     wanted = [(2.2e8, None), (8.93e7, 3.9e8), (8.5e7, 2.01e8)]
@@ -164,7 +176,7 @@ def test_an_open_parameter_has_no_sd_and_the_range_of_all_admissible(
     evidence = Evidence(
         "rig", MeasuredModes(frequency, 0.002 * frequency), None, none, none
     )
-    found = identify_structure(reduced, [evidence], starts=16)
+    found = identify_structure(reduced, [evidence], search=StructureSearch(starts=16))
     told = structure_json(found, reduced.names)["parameters"]
     for one in found.parameters:
         assert not one.identifiable
@@ -181,7 +193,7 @@ def test_an_open_parameter_has_no_sd_and_the_range_of_all_admissible(
         [evidence],
         known=known,
         sought=["joint.tangential_1", "joint.tangential_2"],
-        starts=16,
+        search=StructureSearch(starts=16),
     )
     for one in sure.parameters:
         profile = sure.profiles[one.name]
@@ -205,7 +217,9 @@ def test_swapped_modes_are_paired_by_shape(
     )
     assert np.abs(at_truth).max() < 1e-6
     assert np.abs(away).max() > 10.0
-    found = identify_structure(reduced, [evidence], starts=6, profiles=False)
+    found = identify_structure(
+        reduced, [evidence], search=StructureSearch(starts=6, profiles=False)
+    )
     assert found.solutions[0].chi2 < 1e-9
 
 
@@ -221,7 +235,10 @@ def test_several_torques_share_what_they_have_in_common(
     problem = pose_problem(reduced, evidence, shared=["joint.tangential_2"])
     assert problem.size == 10
     found = identify_structure(
-        reduced, evidence, shared=["joint.tangential_2"], starts=4, profiles=False
+        reduced,
+        evidence,
+        shared=["joint.tangential_2"],
+        search=StructureSearch(starts=4, profiles=False),
     )
     value = found.parameter("50 N m:joint.normal_stiffness").value
     assert value == pytest.approx(9e8, rel=1e-5)
@@ -237,8 +254,12 @@ def test_states_that_share_nothing_are_found_as_if_alone(
         modal_evidence(reduced, rows, truth, "20 N m"),
         modal_evidence(reduced, rows, tighter, "50 N m"),
     ]
-    both = identify_structure(reduced, evidence, starts=4, profiles=False)
-    alone = identify_structure(reduced, evidence[1:], starts=4, profiles=False)
+    both = identify_structure(
+        reduced, evidence, search=StructureSearch(starts=4, profiles=False)
+    )
+    alone = identify_structure(
+        reduced, evidence[1:], search=StructureSearch(starts=4, profiles=False)
+    )
     for one in alone.parameters:
         found = both.parameter(f"50 N m:{one.name}")
         assert found.value == pytest.approx(one.value, rel=1e-6)
@@ -267,4 +288,4 @@ def test_more_modes_than_the_model_predicts_are_refused(
     none = np.zeros((0, reduced.size))
     evidence = Evidence("rig", MeasuredModes(frequency, frequency), None, none, none)
     with pytest.raises(BadData, match="reduce for more modes"):
-        identify_structure(reduced, [evidence], starts=1)
+        identify_structure(reduced, [evidence], search=StructureSearch(starts=1))
