@@ -258,9 +258,10 @@ def fill_stage(
     Returns:
         The chain with the losses filled, or none where nothing was lost.
     """
+    used = [settings.kalman, settings.modal, settings.window, settings.estimator.value]
     return run.stages.run(
         f"fill{at}",
-        run.stages.key("fill", settings, run.stages.keys[f"modes{at}"]),
+        run.stages.key("fill", used, run.stages.keys[f"modes{at}"]),
         tuple[ModalChain, ...],
         lambda: _filled(judged, result, settings, run.progress),
     )

@@ -34,7 +34,8 @@ def show_modal(chain: ModalChain, notes: ModalNotes, json_target: str | None) ->
     """Print verdicts, modes and notes."""
     screen = console(json_target)
     for recording in chain.recordings:
-        screen.print(_hits_line(recording))
+        for line in _hit_lines(recording):
+            screen.print(line)
     for words in notes.limits:
         screen.print(Text(f"warning: {words}"))
     model = chain.result.model
@@ -133,12 +134,12 @@ def _legend(chain: ModalChain) -> tuple[str, ...]:
     return (words, stage)
 
 
-def _hits_line(recording: Recording) -> str:
+def _hit_lines(recording: Recording) -> list[str]:
     good = sum(hit.verdict == "ok" for hit in recording.hits)
     bad = [
-        f"hit {number} {hit.verdict.value}: {hit.reason}"
+        f"  hit {number} {hit.verdict.value}: {hit.reason}"
         for number, hit in enumerate(recording.hits, 1)
         if hit.verdict != "ok"
     ]
     line = f"{recording.name}: {good} of {len(recording.hits)} hits accepted"
-    return "\n  ".join([line, *bad])
+    return [line, *bad]

@@ -126,3 +126,13 @@ def test_the_glancing_hit_of_five_files_is_refused_with_its_reason(
     found = modal(files(tmp_path, levels=levels), tmp_path)
     assert [hit["verdict"] for hit in found["hits"]] == ["ok", "ok", "weak", "ok", "ok"]
     assert found["averages"] == 4
+
+
+def test_each_rejected_hit_has_a_line_of_its_own(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A line end between them is printed, not written out as an escape."""
+    modal(files(tmp_path, levels=(100.0, 100.0, 100.0, 100.0, 4.0)), tmp_path)
+    shown = capsys.readouterr().out
+    assert "\n  hit 1 weak: " in shown
+    assert "\\n" not in shown

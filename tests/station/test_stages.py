@@ -15,6 +15,7 @@ from jointbench.station.modal import run_modal
 from jointbench.station.process_session import process_session
 from jointbench.station.recipe import (
     ContactPart,
+    HitsPart,
     IdentificationPart,
     KalmanPart,
     Recipe,
@@ -177,6 +178,18 @@ def test_recordings_are_known_by_content_where_no_file_is_named(session_file) ->
         run_chain(other.recordings, run=StageRun(shared)).frf.response == fresh
     ).all()
     assert not shared.reused
+
+
+def test_limits_that_change_no_verdict_leave_the_rest_as_kept(session_file) -> None:
+    """Hits are judged anew; the FRF depends on what came of it."""
+    session, digest = read_session(session_file), file_digest(session_file)
+    shared = MemoryStore()
+    process_session(session, digest, Recipe(), shared)
+    before = len(shared.computed)
+    other = Recipe(hits=HitsPart(double_ratio="6 %"))
+    found = process_session(session, digest, other, shared)
+    assert not found.changes
+    assert shared.computed[before:] == ["hits"]
 
 
 def louder(session: Session) -> Session:
