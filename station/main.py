@@ -10,15 +10,14 @@ from typing import Annotated
 
 import typer
 
-from jointbench.station.bench_commands import (
+from jointbench.station.commands.bench_commands import (
     calibrate_command,
     measure_command,
     simulate_command,
 )
-from jointbench.station.contact_command import contact_command
-from jointbench.station.exit_codes import EXIT_QUALITY, exit_code, show_traceback
-from jointbench.station.identify_command import identify_command
-from jointbench.station.options import (
+from jointbench.station.commands.contact_command import contact_command
+from jointbench.station.commands.identify_command import identify_command
+from jointbench.station.commands.options import (
     GAP_HELP,
     Band,
     Columns,
@@ -46,8 +45,9 @@ from jointbench.station.options import (
     Universal,
     WaveRatio,
 )
-from jointbench.station.process_commands import mount
-from jointbench.station.profile_command import profile_command
+from jointbench.station.commands.process_commands import mount
+from jointbench.station.commands.profile_command import profile_command
+from jointbench.station.screen.exit_codes import EXIT_QUALITY, exit_code, show_traceback
 
 __all__ = ["app", "exit_code", "run"]
 
@@ -81,7 +81,7 @@ def demo_command(
 
     Example: jointbench demo --out demo-out
     """
-    from jointbench.station.demo import run_demo
+    from jointbench.station.demo.demo import run_demo
 
     return run_demo(out, seed=seed, json_target=json)
 
@@ -98,7 +98,7 @@ def record_command(
 
     Example: jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out s.h5
     """
-    from jointbench.station.record_command import run_record
+    from jointbench.station.commands.record_command import run_record
 
     written = run_record(source, out, overwrite=force, json_target=json)
     return 0 if written.whole else EXIT_QUALITY
@@ -121,7 +121,7 @@ def import_command(
     Example: jointbench import hit1.npy hit2.npy --out session.h5 --columns
     'time:s,force:N,acceleration:m/s^2'
     """
-    from jointbench.station.import_files import run_import
+    from jointbench.station.commands.import_command import run_import
 
     run_import(
         files,
@@ -156,8 +156,8 @@ def modal_command(
     Example: jointbench modal session.h5 --json modes.json
     """
     if output_only:
-        from jointbench.station.modal import parse_band
-        from jointbench.station.output_only import run_output_only
+        from jointbench.station.commands.output_only_command import run_output_only
+        from jointbench.station.pipeline.modal_options import parse_band
 
         run_output_only(
             files,
@@ -167,7 +167,8 @@ def modal_command(
             json_target=json,
         )
         return
-    from jointbench.station.modal import modal_settings, run_modal
+    from jointbench.station.commands.modal_command import run_modal
+    from jointbench.station.pipeline.modal_options import modal_settings
 
     run_modal(
         files,
@@ -197,8 +198,8 @@ def surface_command(
 
     Example: jointbench surface face-a.csv face-b.csv --json surfaces.json
     """
-    from jointbench.station.surface import run_surface
-    from jointbench.station.surface_options import surface_options
+    from jointbench.station.commands.surface_command import run_surface
+    from jointbench.station.pipeline.surface_options import surface_options
 
     options = surface_options(
         (form, outliers, direction),
@@ -241,7 +242,7 @@ def gap_command(
     Example: jointbench gap session.h5 --model bench.toml --report gap.html, or
     jointbench gap 'sim:two-body-campaign?seed=3&hide=cubic_stiffness'
     """
-    from jointbench.station.gap import run_gap
+    from jointbench.station.commands.gap_command import run_gap
 
     run_gap(
         sources[0],
@@ -277,7 +278,7 @@ def report_command(
 
     Example: jointbench report session.h5 --out report.html
     """
-    from jointbench.station.report_command import run_report
+    from jointbench.station.report.session_report import run_report
 
     run_report(
         session,
@@ -299,7 +300,7 @@ def inspect_command(
 
     Example: jointbench inspect session.h5
     """
-    from jointbench.station.inspect_file import run_inspect
+    from jointbench.station.commands.inspect_command import run_inspect
 
     run_inspect(file, json_target=json)
 
@@ -316,7 +317,7 @@ def verify_command(
 
     Example: jointbench verify session.h5, or jointbench verify archive/
     """
-    from jointbench.station.verify_archive import verify_all
+    from jointbench.station.commands.verify_archive import verify_all
 
     return 0 if verify_all(files, json_target=json) else EXIT_QUALITY
 
@@ -335,6 +336,6 @@ def recover_command(
 
     Example: jointbench recover session.h5
     """
-    from jointbench.station.verify import run_recover
+    from jointbench.station.commands.verify_command import run_recover
 
     run_recover(file, out=out, overwrite=force, json_target=json)

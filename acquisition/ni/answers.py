@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-from jointbench.acquisition.errors import InstrumentError
+from jointbench.acquisition.basics.errors import InstrumentError
 
 
 class ConnectionLost(InstrumentError):

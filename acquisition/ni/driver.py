@@ -27,8 +27,8 @@ from nidaqmx.errors import DaqError, RpcError
 from nidaqmx.stream_readers import AnalogMultiChannelReader
 from nidaqmx.system import System
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.ni.answers import (
     ConnectionLost,
     Module,
@@ -46,7 +46,7 @@ from jointbench.acquisition.ni.sensors import (
     channel_name,
     excitation_current,
 )
-from jointbench.acquisition.records import Quantity
+from jointbench.acquisition.records.recordings import Quantity
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
 _OPTIONS = (

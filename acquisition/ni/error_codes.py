@@ -20,7 +20,7 @@ from nidaqmx.errors import (
     RpcError,
 )
 
-from jointbench.acquisition.errors import InstrumentError
+from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.ni.answers import (
     ConnectionLost,
     NotYet,

@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.ni.answers import Overrun, Stopped
 from jointbench.acquisition.ni.driver import AnalogTask
 

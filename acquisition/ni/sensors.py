@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date
 
-from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.records import Channel, Quantity
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.records.recordings import Channel, Quantity
 
 _SAME_CURRENT = 0.06  # an NI 443x says 2.1 mA where its data sheet says 2 mA
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import InstrumentError
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.ni.answers import (
     ConnectionLost,
     NotYet,
@@ -19,8 +19,8 @@ from jointbench.acquisition.ni.sensors import Sensor
 from jointbench.acquisition.ni.stream_records import (
     Block,
     Counters,
-    Gap,
     HardwareTrigger,
+    StreamGap,
     StreamSettings,
     Waiting,
 )
@@ -28,9 +28,9 @@ from jointbench.acquisition.ni.stream_records import (
 __all__ = [
     "Block",
     "Counters",
-    "Gap",
     "HardwareTrigger",
     "NiStream",
+    "StreamGap",
     "StreamSettings",
     "Waiting",
 ]
@@ -126,7 +126,7 @@ class NiStream:
                     ) from error
                 settings.sleep(_RETRY)
 
-    def items(self) -> Iterator[Block | Gap | Waiting]:
+    def items(self) -> Iterator[Block | StreamGap | Waiting]:
         """Yield blocks and gaps for as long as the stream is read.
 
         What waits in the buffer is read at once and handed over block by block, so
@@ -143,7 +143,9 @@ class NiStream:
             except Stopped as error:
                 yield from self._rearm(str(error))
             except ConnectionLost as error:
-                yield Gap("lost", self._segment, self._position, 0, 0.0, str(error))
+                yield StreamGap(
+                    "lost", self._segment, self._position, 0, 0.0, str(error)
+                )
                 yield self._reconnect(str(error))
 
     def open_loops(self) -> tuple[str, ...]:
@@ -176,7 +178,7 @@ class NiStream:
         with suppress(InstrumentError):
             self.count()
 
-    def _next(self) -> Iterator[Block | Gap | Waiting]:
+    def _next(self) -> Iterator[Block | StreamGap | Waiting]:
         try:
             yield from self._read()
         except Overrun as error:
@@ -258,12 +260,14 @@ class NiStream:
         self.counters.acquired = max(self.counters.acquired, made)
         return block
 
-    def _overrun(self, words: str) -> Iterator[Block | Gap]:
+    def _overrun(self, words: str) -> Iterator[Block | StreamGap]:
         """Go on at the oldest sample that is still there; say what lies before it."""
         assert self._task is not None
         resume, samples = read_oldest(self._task, self._position, self._read_from)
         lost, first = resume - self._position, self._position
-        gap = Gap("overrun", self._segment, first, lost, lost / self.sample_rate, words)
+        gap = StreamGap(
+            "overrun", self._segment, first, lost, lost / self.sample_rate, words
+        )
         self._position, self._behind = resume, True
         made = self._made_before + resume
         self.counters.acquired = max(self.counters.acquired, made)
@@ -294,7 +298,7 @@ class NiStream:
         self._moved = self._task.position() != self._position
         return Waiting(0)
 
-    def _rearm(self, words: str) -> Iterator[Block | Gap]:
+    def _rearm(self, words: str) -> Iterator[Block | StreamGap]:
         """Save what the stopped task still holds, and start another.
 
         Raises:
@@ -319,7 +323,7 @@ class NiStream:
             settings.sleep(_RETRY)
         self.resume()
         away = settings.now() - since + lost / self.sample_rate
-        yield Gap("rearmed", segment, first, lost, away, words)
+        yield StreamGap("rearmed", segment, first, lost, away, words)
 
     def _leftover(self) -> Iterator[Block]:
         """Yield what can still be read from a task that has stopped."""
@@ -338,7 +342,7 @@ class NiStream:
                     return self._task.read(waiting, timeout=0.0)
         return None
 
-    def _reconnect(self, words: str) -> Gap:
+    def _reconnect(self, words: str) -> StreamGap:
         since, first = self.settings.now(), self._position
         self.close()
         self._segment += 1
@@ -346,7 +350,7 @@ class NiStream:
         # just been switched on may still learn.
         self._come_back((InstrumentError,))
         away = self.settings.now() - since
-        return Gap("back", self._segment, first, 0, away, words)
+        return StreamGap("back", self._segment, first, 0, away, words)
 
 
 def _begin(

@@ -14,9 +14,10 @@ import struct
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import FormatError, UsageError
-from jointbench.acquisition.records import step
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import FormatError, UsageError
+from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 from jointbench.acquisition.serial_lines.line import (
     TRIES,
     Line,
@@ -28,7 +29,6 @@ from jointbench.acquisition.serial_lines.line import (
     ask_again,
     plain_text,
 )
-from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
 
 BAUD = 115_200
 TRAVERSES = (0.48e-3, 1.5e-3, 4.8e-3, 15e-3)

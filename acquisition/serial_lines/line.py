@@ -9,8 +9,12 @@ from typing import Protocol, TypeVar
 
 import serial
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import FormatError, InstrumentError, UsageError
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import (
+    FormatError,
+    InstrumentError,
+    UsageError,
+)
 
 if sys.platform == "win32":
     _BROKEN: tuple[type[Exception], ...] = (serial.SerialException, OSError, TypeError)

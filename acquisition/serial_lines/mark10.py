@@ -10,14 +10,14 @@ Source:
 import re
 from dataclasses import dataclass
 
-from jointbench.acquisition.errors import InstrumentError
+from jointbench.acquisition.basics.errors import InstrumentError
+from jointbench.acquisition.basics.units import is_unit, to_si
 from jointbench.acquisition.serial_lines.line import (
     Line,
     Unreadable,
     ask_again,
     plain_text,
 )
-from jointbench.acquisition.units import is_unit, to_si
 
 BAUD = 115_200
 _MOST = 64

@@ -16,8 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.errors import FormatError, InstrumentError
-from jointbench.acquisition.records import step
+from jointbench.acquisition.basics.errors import FormatError, InstrumentError
+from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 from jointbench.acquisition.serial_lines.line import (
     Line,
     LineBroken,
@@ -26,7 +27,6 @@ from jointbench.acquisition.serial_lines.line import (
     ask_again,
     plain_text,
 )
-from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
 
 BAUD = 9600
 _CR = b"\r"
@@ -39,7 +39,7 @@ _HEIGHT = re.compile(r"(?=.{9}$) *[+-]?[0-9]+(\.[0-9]*)? *")
 
 
 @dataclass(frozen=True, slots=True)
-class Conditions:
+class EvaluationConditions:
     """How the instrument is set, by the codes of its manual.
 
     Attributes:
@@ -88,7 +88,7 @@ def _asked(line: Line, field: str, data: str = "") -> str:
     )
 
 
-def read_conditions(line: Line) -> Conditions:
+def read_conditions(line: Line) -> EvaluationConditions:
     """Read how the instrument is set.
 
     Raises:
@@ -97,14 +97,14 @@ def read_conditions(line: Line) -> Conditions:
     return ask_again(line, lambda: _conditions(_asked(line, "CON")))
 
 
-def _conditions(text: str) -> Conditions:
+def _conditions(text: str) -> EvaluationConditions:
     count, length = text[3:5], text[5:10]
     right = len(text) > 11 and _NUMBER.fullmatch(count) and _LENGTH.fullmatch(length)
     if not right or not float(length) > 0:
         raise Unreadable(
             f"the Mitutoyo's conditions {text[:20]!r} do not read as its manual says"
         )
-    return Conditions(
+    return EvaluationConditions(
         standard=text[0],
         profile=text[1],
         cutoff=text[2],

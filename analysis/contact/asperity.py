@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.contact.material import (
     ContactMaterial,
     YieldCriterion,

@@ -11,8 +11,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.energy import joint_energy, two_regime_energy
 from jointbench.analysis.contact.material import ContactMaterial

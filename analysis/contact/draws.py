@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve
 

@@ -4,8 +4,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.asperity import (
     FractalSurface,
     asperity_load,

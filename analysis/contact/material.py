@@ -7,8 +7,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray, require_positive
-from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.acquisition.basics.arrays import FloatArray, require_positive
+from jointbench.acquisition.basics.errors import BadData, UsageError
 
 # From far below the softest gel to ten times the modulus of diamond [Pa]; what lies
 # outside is a number in the wrong unit.

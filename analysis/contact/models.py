@@ -16,8 +16,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.contact.material import YieldCriterion
 
 

@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass
 
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.errors import BadData
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact import printed_2023 as eq
 from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.curve import contact_curve

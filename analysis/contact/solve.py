@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.contact.asperity import (
     FractalSurface,
     excess,

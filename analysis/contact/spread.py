@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.basics.errors import UsageError
 
 
 @dataclass(frozen=True, slots=True)

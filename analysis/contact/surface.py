@@ -5,16 +5,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.spread import ContactSpread
-from jointbench.signal.structure_constant import log_roughness
-from jointbench.signal.surface_verdict import (
+from jointbench.signal.fractal.surface_verdict import (
     NORMAL_97_5,
     WIDEST_ROUGHNESS,
     FractalFit,
     Scaling,
 )
+from jointbench.signal.surface.structure_constant import log_roughness
 
 _STEP = 1e-5
 """Step of the numerical derivative by D [-]; the constant is smooth in D."""

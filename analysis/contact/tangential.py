@@ -6,8 +6,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import (
     REGIMES,

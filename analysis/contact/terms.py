@@ -23,7 +23,7 @@ from jointbench.analysis.contact.models import (
 )
 
 
-class Term(StrEnum):
+class ContactTerm(StrEnum):
     """A part of a contact model that can be there or not."""
 
     ELASTIC = "elastic"
@@ -35,21 +35,21 @@ class Term(StrEnum):
     THIRD_DIMENSION = "third_dimension"
 
 
-def model_terms(model: ContactModel) -> frozenset[Term]:
+def model_terms(model: ContactModel) -> frozenset[ContactTerm]:
     """Return the terms that act in `model`."""
     present = {
-        Term.ELASTIC: isinstance(model.elastic, PowerLaw),
-        Term.ELASTIC_PLASTIC_1: isinstance(model.first, PowerLaw),
-        Term.ELASTIC_PLASTIC_2: isinstance(model.second, PowerLaw),
-        Term.PLASTIC: not bears_nothing(model.plastic),
-        Term.INTERACTION: model.interaction is not Interaction.NONE,
-        Term.FRICTION: model.yielding is YieldCriterion.FRICTION,
-        Term.THIRD_DIMENSION: model.topography is SURFACE,
+        ContactTerm.ELASTIC: isinstance(model.elastic, PowerLaw),
+        ContactTerm.ELASTIC_PLASTIC_1: isinstance(model.first, PowerLaw),
+        ContactTerm.ELASTIC_PLASTIC_2: isinstance(model.second, PowerLaw),
+        ContactTerm.PLASTIC: not bears_nothing(model.plastic),
+        ContactTerm.INTERACTION: model.interaction is not Interaction.NONE,
+        ContactTerm.FRICTION: model.yielding is YieldCriterion.FRICTION,
+        ContactTerm.THIRD_DIMENSION: model.topography is SURFACE,
     }
     return frozenset(term for term, there in present.items() if there)
 
 
-def with_term(model: ContactModel, term: Term, *, present: bool) -> ContactModel:
+def with_term(model: ContactModel, term: ContactTerm, *, present: bool) -> ContactModel:
     """Return `model` with a term put in or taken out.
 
     Args:
@@ -68,22 +68,22 @@ def with_term(model: ContactModel, term: Term, *, present: bool) -> ContactModel
         return model
     flow = PLASTIC_SURFACE if model.topography is SURFACE else PLASTIC_PROFILE
     match term:
-        case Term.ELASTIC:
+        case ContactTerm.ELASTIC:
             return replace(model, elastic=HERTZ if present else ABSENT)
-        case Term.ELASTIC_PLASTIC_1:
+        case ContactTerm.ELASTIC_PLASTIC_1:
             return replace(model, first=KOGUT_ETSION_1 if present else flow)
-        case Term.ELASTIC_PLASTIC_2:
+        case ContactTerm.ELASTIC_PLASTIC_2:
             return replace(model, second=KOGUT_ETSION_2 if present else flow)
-        case Term.PLASTIC:
+        case ContactTerm.PLASTIC:
             return replace(model, plastic=flow if present else ABSENT)
-        case Term.INTERACTION:
+        case ContactTerm.INTERACTION:
             on = Interaction.SELF_CONSISTENT
             return replace(model, interaction=on if present else Interaction.NONE)
-        case Term.FRICTION:
+        case ContactTerm.FRICTION:
             off = YieldCriterion.MEAN_CONTACT_PRESSURE
             on_off = YieldCriterion.FRICTION if present else off
             return replace(model, yielding=on_off)
-        case Term.THIRD_DIMENSION:
+        case ContactTerm.THIRD_DIMENSION:
             return _with_third_dimension(model, present=present)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve

@@ -25,9 +25,9 @@ import h5py
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.sensors import Axis, Sensor, table_channels
 from jointbench.acquisition.ni.stream import Block, NiStream, StreamSettings
-from jointbench.acquisition.records import Quantity
-from jointbench.acquisition.session_live import LiveSession
-from jointbench.acquisition.session_live_read import read_live
+from jointbench.acquisition.records.recordings import Quantity
+from jointbench.acquisition.session_file.live_read import read_live
+from jointbench.acquisition.session_file.live_write import LiveSession
 
 RUNS = Path(__file__).with_name("continuity.json")
 PAGE = Path(__file__).parents[2] / "docs" / "bench-continuity.md"
@@ -89,10 +89,10 @@ class Run:
 def serve(parent: Connection, modules: int, rate: float) -> None:
     """Serve a chassis in real time."""
     from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
-    from jointbench.simulators.hand import Hand
-    from jointbench.simulators.plates_bench import PlatesBench
+    from jointbench.simulators.measuring.operator import SimulatedOperator
+    from jointbench.simulators.plates.plates_bench import PlatesBench
 
-    bench = PlatesBench(hand=Hand(interval=2.0))
+    bench = PlatesBench(hand=SimulatedOperator(interval=2.0))
     setup = ChassisSetup(bench=bench, modules=modules, top_rate=rate)
     with SimulatedChassis(setup) as server:
         parent.send(server.address)

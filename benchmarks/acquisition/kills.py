@@ -19,20 +19,20 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.errors import BadData
-from jointbench.acquisition.session import Session
-from jointbench.acquisition.session_file import read_session
-from jointbench.station.measure import measure
-from jointbench.station.measure_lines import Lines
-from jointbench.station.measure_plan import MeasurePlan, read_plan
-from jointbench.station.measure_source import open_chassis
-from jointbench.station.output import console
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.records.session import Session
+from jointbench.acquisition.session_file.store import read_session
+from jointbench.station.measure.bench_session import measure
+from jointbench.station.measure.chassis import open_chassis
+from jointbench.station.measure.plan import MeasurePlan, read_plan
+from jointbench.station.measure.text_screen import TextScreen
+from jointbench.station.screen.terminal import console
 
 PLAN = Path(__file__).parents[2] / "examples" / "plates.toml"
 SOURCE = "sim:plates?seed=5"
 
 
-class Telling(Lines):
+class Telling(TextScreen):
     """Tell the parent how many samples were handed to the store."""
 
     def __init__(self, parent: Connection) -> None:

@@ -18,23 +18,23 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.ni.driver import Chassis
-from jointbench.acquisition.records import Quantity, Verdict
-from jointbench.acquisition.session import Session
-from jointbench.acquisition.session_file import read_session
-from jointbench.signal.live_hits import HitCutter
+from jointbench.acquisition.records.recordings import Quantity, Verdict
+from jointbench.acquisition.records.session import Session
+from jointbench.acquisition.session_file.store import read_session
+from jointbench.signal.hits.live_hits import HitCutter
 from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
-from jointbench.simulators.hand import Fate, Hand
-from jointbench.simulators.plates import PlatesDesign, natural_frequencies
-from jointbench.simulators.plates_bench import PlatesBench
-from jointbench.station.chain import run_chain
-from jointbench.station.measure import Measured, measure
-from jointbench.station.measure_lines import Lines
-from jointbench.station.measure_plan import read_plan
-from jointbench.station.measure_source import OpenChassis, SimulatedHand, open_chassis
-from jointbench.station.output import console
-from jointbench.station.preloads import by_preload
+from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
+from jointbench.simulators.plates.plates import PlatesDesign, natural_frequencies
+from jointbench.simulators.plates.plates_bench import PlatesBench
+from jointbench.station.measure.bench_session import Measured, measure
+from jointbench.station.measure.chassis import OpenChassis, SimulatedHand, open_chassis
+from jointbench.station.measure.plan import read_plan
+from jointbench.station.measure.text_screen import TextScreen
+from jointbench.station.pipeline.chain import run_chain
+from jointbench.station.pipeline.preloads import by_preload
+from jointbench.station.screen.terminal import console
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plates.toml"
 VERDICTS = {
@@ -45,7 +45,7 @@ VERDICTS = {
 }
 
 
-class Quiet(Lines):
+class Quiet(TextScreen):
     """Say nothing."""
 
     def __init__(self) -> None:
@@ -78,7 +78,7 @@ def many_hits(folder: Path, seed: int) -> None:
         'most_rejected = 100\nlength = "0.5 s"'
     )
     path.write_text(plan_text(hits).replace("25.6 kHz", "12.8 kHz"), encoding="utf-8")
-    bench = PlatesBench(hand=Hand(seed=seed, fates=fates(seed)), seed=seed)
+    bench = PlatesBench(hand=SimulatedOperator(seed=seed, fates=fates(seed)), seed=seed)
     with SimulatedChassis(ChassisSetup(bench=bench, speed=math.inf)) as server:
         chassis = Chassis(server.address)
         opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import contact_model

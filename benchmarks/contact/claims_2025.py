@@ -20,7 +20,7 @@ from jointbench.analysis.contact.inverse import largest_area_of_real_area
 from jointbench.analysis.contact.models import contact_model, interaction_share
 from jointbench.analysis.contact.preload import preload_from_torque
 from jointbench.analysis.contact.sums import joint_sums
-from jointbench.signal.fractal import fractal_from_line
+from jointbench.signal.fractal.fractal_fit import fractal_from_line
 
 PAPER = "2025"
 TRIO = ("ke_2d", "ke_3d", "ke_3d_modified")

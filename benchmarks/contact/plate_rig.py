@@ -21,7 +21,7 @@ from jointbench.analysis.contact.material import ContactMaterial, effective_modu
 from jointbench.analysis.contact.models import contact_model
 from jointbench.analysis.contact.preload import preload_from_torque
 from jointbench.analysis.contact.solve import solve_largest_area
-from jointbench.signal.fractal import fractal_from_line
+from jointbench.signal.fractal.fractal_fit import fractal_from_line
 
 MEASURED, DAMPING = 2.8667e7, 1.2713e7  # [N/m], [N s/m], both printed
 DIMENSION, ROUGHNESS = 1.5404, 9.497e-12  # of a line, printed

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from claim import between
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 
 ERRORS = {"2D": 0.62966, "3D": 0.2521, "modified": 0.1597}
 """Mean relative error of the stiffness over three torques [-]."""

@@ -21,11 +21,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from jointbench.acquisition.records import Channel, Quantity, Recording
-from jointbench.acquisition.session import Session, new_session
-from jointbench.acquisition.session_file import read_session, write_session
-from jointbench.station.record import record_visit
-from jointbench.station.sources import open_visit
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.acquisition.records.session import Session, new_session
+from jointbench.acquisition.session_file.store import read_session, write_session
+from jointbench.station.sources.open_source import open_visit
+from jointbench.station.sources.record_source import record_visit
 
 SPECIMENS = 4
 TORQUES = (20, 35, 50, 65, 80)

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from bounds_files import FILES, READERS
 
-from jointbench.acquisition.errors import JointbenchError
+from jointbench.acquisition.basics.errors import JointbenchError
 
 CPU = 10.0
 """[s]"""

@@ -11,27 +11,27 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from jointbench.acquisition.describe import describe_file
-from jointbench.acquisition.import_hits import read_recording
-from jointbench.acquisition.import_surfaces import read_surface
-from jointbench.acquisition.mat_recording import read_mat_recording
-from jointbench.acquisition.rattlesnake import read_rattlesnake
-from jointbench.acquisition.session_file import read_session
-from jointbench.acquisition.tdms_file import read_tdms
-from jointbench.acquisition.universal_file import read_universal
-from jointbench.acquisition.wave_file import read_wave
-from jointbench.analysis.gap.campaign_file import read_campaign
-from jointbench.analysis.structures.mesh_files import read_matrix, read_mesh
-from jointbench.station.bench_model import BenchModel
-from jointbench.station.geometry import Geometry
-from jointbench.station.identify import describes_structure
-from jointbench.station.ledger import read_ledger
-from jointbench.station.measure_plan import read_plan
-from jointbench.station.processed_file import PROCESSED_SCHEMA
-from jointbench.station.recipe import read_recipe
-from jointbench.station.results_read import read_result
-from jointbench.station.toml_file import read_toml
-from jointbench.station.verify import run_verify
+from jointbench.acquisition.formats.heights.read_surfaces import read_surface
+from jointbench.acquisition.formats.samples.hit_tables import read_recording
+from jointbench.acquisition.formats.samples.mat_recording import read_mat_recording
+from jointbench.acquisition.formats.samples.rattlesnake import read_rattlesnake
+from jointbench.acquisition.formats.samples.tdms import read_tdms
+from jointbench.acquisition.formats.samples.universal import read_universal
+from jointbench.acquisition.formats.samples.wave import read_wave
+from jointbench.acquisition.session_file.describe_file import describe_file
+from jointbench.acquisition.session_file.store import read_session
+from jointbench.analysis.gap.intake.read_campaign import read_campaign
+from jointbench.analysis.structures.matrices.mesh_files import read_matrix, read_mesh
+from jointbench.station.archive.ledger import read_ledger
+from jointbench.station.commands.identify_links_command import describes_structure
+from jointbench.station.commands.verify_command import run_verify
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.measure.plan import read_plan
+from jointbench.station.models.bench_model import BenchModel
+from jointbench.station.models.geometry_file import Geometry
+from jointbench.station.models.recipe import read_recipe
+from jointbench.station.results.processed_file import PROCESSED_SCHEMA
+from jointbench.station.results.results_read import read_result
 
 MAT = "time.t:s,force.F:N,acceleration.a1:m/s^2"
 TABLE = "time:s,force:N,acceleration:m/s^2"
@@ -147,9 +147,9 @@ def array_tables(path: Path, scale: float) -> None:
 
 def session(path: Path, *, shape: tuple[int, ...], dtype: str, chunks=None) -> None:
     """Write what a session reader opens: one recording that unpacks to much."""
-    from jointbench.acquisition.records import Channel, Quantity, Recording
-    from jointbench.acquisition.session import Session
-    from jointbench.acquisition.session_file import write_session
+    from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+    from jointbench.acquisition.records.session import Session
+    from jointbench.acquisition.session_file.store import write_session
 
     rows = np.zeros((2, 64))
     channels = (

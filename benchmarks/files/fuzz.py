@@ -28,22 +28,22 @@ import numpy as np
 import scipy.io
 from scipy.io import wavfile
 
-from jointbench.acquisition.errors import JointbenchError
-from jointbench.acquisition.import_hits import read_recording
-from jointbench.acquisition.import_surfaces import read_surface
-from jointbench.acquisition.mat_recording import read_mat_recording
-from jointbench.acquisition.rattlesnake import read_rattlesnake
-from jointbench.acquisition.records import Channel, Quantity, Recording
-from jointbench.acquisition.session import Session
-from jointbench.acquisition.session_file import read_session, write_session
-from jointbench.acquisition.surfaces import Profile, SurfaceInstrument
-from jointbench.acquisition.tdms_file import read_tdms
-from jointbench.acquisition.universal_file import read_universal
-from jointbench.acquisition.wave_file import read_wave
-from jointbench.station.process_file import Task, process_task
-from jointbench.station.recipe import Recipe
-from jointbench.station.results_read import read_result
-from jointbench.station.universal_samples import write_universal_samples
+from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.acquisition.formats.heights.read_surfaces import read_surface
+from jointbench.acquisition.formats.samples.hit_tables import read_recording
+from jointbench.acquisition.formats.samples.mat_recording import read_mat_recording
+from jointbench.acquisition.formats.samples.rattlesnake import read_rattlesnake
+from jointbench.acquisition.formats.samples.tdms import read_tdms
+from jointbench.acquisition.formats.samples.universal import read_universal
+from jointbench.acquisition.formats.samples.wave import read_wave
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.acquisition.records.session import Session
+from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
+from jointbench.acquisition.session_file.store import read_session, write_session
+from jointbench.station.archive.process_file import Task, process_task
+from jointbench.station.files.universal_samples import write_universal_samples
+from jointbench.station.models.recipe import Recipe
+from jointbench.station.results.results_read import read_result
 
 MEMORY = 3 * 2**30
 """Address space of a child beyond what it starts with [bytes]."""

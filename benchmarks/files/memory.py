@@ -15,10 +15,10 @@ import numpy as np
 from fuzz import recording
 from runs import load_words
 
-from jointbench.acquisition.session import new_session
-from jointbench.acquisition.session_file import write_session
-from jointbench.station.process_file import State, Task, process_task
-from jointbench.station.recipe import Recipe
+from jointbench.acquisition.records.session import new_session
+from jointbench.acquisition.session_file.store import write_session
+from jointbench.station.archive.process_file import State, Task, process_task
+from jointbench.station.models.recipe import Recipe
 
 WARM = 200
 """Files after which all is loaded that will be."""

@@ -28,8 +28,9 @@ KINDS = ("null", "single")
 
 def no_coarse_stages() -> None:
     """Fit whole records from the first step on."""
-    from jointbench.analysis.gap import base_fit, race
-    from jointbench.analysis.gap.fit_records import FULL
+    from jointbench.analysis.gap.diagnosis import base_fit
+    from jointbench.analysis.gap.residuals.fit_records import FULL
+    from jointbench.analysis.gap.search import selection_round as race
 
     base_fit.BASE_STAGES = ((FULL, 19), (FULL, 20))
     race.EVERYDAY = np.inf
@@ -38,14 +39,15 @@ def no_coarse_stages() -> None:
 
 def no_bootstrap() -> None:
     """Hold the largest of all directed tests against the limit of one."""
-    from jointbench.analysis.gap import screening
+    from jointbench.analysis.gap.search import screening
 
     screening.null_threshold = lambda *_, **__: ONE_TEST
 
 
 def no_pulls() -> None:
     """Let the base go where it likes at no price, and ask nothing of it."""
-    from jointbench.analysis.gap import fit, naming
+    from jointbench.analysis.gap.judgement import naming
+    from jointbench.analysis.gap.residuals import joint_fit as fit
 
     free = fit.make_problem
 
@@ -63,7 +65,7 @@ def no_pulls() -> None:
 
 def one_start() -> None:
     """Give a candidate one start of its own, as its directed test foretells it."""
-    from jointbench.analysis.gap import race
+    from jointbench.analysis.gap.search import selection_round as race
 
     race.STARTS = 1
     race.SHARES = (1.0,)
@@ -72,7 +74,7 @@ def one_start() -> None:
 
 def no_groups() -> None:
     """Ask no part of the records whether it wants parameters of its own."""
-    from jointbench.analysis.gap import naming
+    from jointbench.analysis.gap.judgement import naming
 
     naming.UNLIKE_CHANCE = naming.UNLIKE_BASE_CHANCE = -1.0
 

@@ -6,7 +6,7 @@ Usage: python benchmarks/gap/calibrate.py RUNS.jsonl [RUNS.jsonl ...]
 Campaigns whose effect no catalogue holds are weighted as one in ten: how often that
 happens at a bench nobody knows, and a confidence has to assume something.
 
-A logistic model of the evidence (`jointbench.analysis.gap.confidence`), fitted to all
+A logistic model of the evidence (`confidence`), fitted to all
 names that were told, right or wrong, with a weak pull towards "more evidence, more
 confidence"; prints the coefficients to be written there.
 """
@@ -19,7 +19,7 @@ import numpy as np
 from outcomes import NOT_IN_CATALOGUE, word_of
 from scipy.optimize import minimize
 
-from jointbench.analysis.gap.confidence import Evidence, features
+from jointbench.analysis.gap.model.confidence import Evidence, features
 
 PRIOR = np.array([2.0, 1.0, 0.5, 0.5, -0.5])
 PULL = 0.5

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.simulators.campaign import make_campaign
-from jointbench.simulators.campaign_file import write_campaign
-from jointbench.simulators.effect_draws import CATALOGUE, OUTSIDE_CATALOGUE
+from jointbench.simulators.campaigns.campaign_records import make_campaign
+from jointbench.simulators.campaigns.write_campaign import write_campaign
+from jointbench.simulators.hidden.effect_draws import CATALOGUE, OUTSIDE_CATALOGUE
 
 KINDS = ("null", "single", "pair", "hidden", "outside")
 NAMEABLE = 50.0

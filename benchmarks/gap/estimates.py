@@ -68,8 +68,8 @@ def force_curves(runs: Sequence[Run]) -> str:
 
 def error_of(run: Run) -> float:
     """Return the error of one force curve [-]."""
-    from jointbench.simulators.campaign_design import draw_design
-    from jointbench.simulators.effect_draws import specimen_scales
+    from jointbench.simulators.hidden.campaign_design import draw_design
+    from jointbench.simulators.hidden.effect_draws import specimen_scales
 
     effect = run["found"]["effects"][0]
     told = {name: one["value"] for name, one in effect["parameters"].items()}
@@ -82,7 +82,7 @@ def error_of(run: Run) -> float:
 
 def softening(name: str, p: dict[str, float], r: np.ndarray) -> np.ndarray:
     """Return elastic force less that of a hysteretic law on first loading [N]."""
-    from jointbench.analysis.gap.slider_march import slider_tables
+    from jointbench.analysis.gap.response.slider_integration import slider_tables
 
     if name == "iwan":
         edges = np.linspace(0, 1, int(p.get("sliders", 14)) + 1)

@@ -29,9 +29,9 @@ def judged_as(name: str, whole: bool) -> str:
 
 def judge_one(truth_path: Path, *, whole: bool) -> dict[str, Any]:
     """Return the truth and the diagnosis of one campaign."""
-    from jointbench.analysis.gap.campaign_file import read_campaign
-    from jointbench.analysis.gap.diagnose import diagnose
-    from jointbench.analysis.gap.records import diagnosis_json
+    from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+    from jointbench.analysis.gap.intake.read_campaign import read_campaign
+    from jointbench.analysis.gap.model.diagnosis_record import diagnosis_json
 
     truth: dict[str, Any] = json.loads(truth_path.read_text(encoding="utf-8"))
     truth["kind"] = judged_as(truth["kind"], whole)

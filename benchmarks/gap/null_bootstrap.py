@@ -31,21 +31,21 @@ from null_directions import (
 )
 from null_page import QUANTILES, page
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.base_fit import fit_base
-from jointbench.analysis.gap.campaign import Campaign
-from jointbench.analysis.gap.campaign_file import read_campaign
-from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.fit import make_problem
-from jointbench.analysis.gap.fit_records import Fit
-from jointbench.analysis.gap.forward import respond
-from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.naming import gate, noise_sd
-from jointbench.analysis.gap.screening import screen
-from jointbench.analysis.lumped import LumpedModel
-from jointbench.simulators.campaign import make_campaign
-from jointbench.simulators.campaign_file import write_campaign
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.diagnosis.base_fit import fit_base
+from jointbench.analysis.gap.intake.read_campaign import read_campaign
+from jointbench.analysis.gap.judgement.naming import gate, noise_sd
+from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.response.predict_records import respond
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.screening import screen
+from jointbench.analysis.lumped.lumped_model import LumpedModel
+from jointbench.simulators.campaigns.campaign_records import make_campaign
+from jointbench.simulators.campaigns.write_campaign import write_campaign
 
 # Generators and second methods that the tests use as well.
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))

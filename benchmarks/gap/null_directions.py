@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.arrays import BoolArray, FloatArray
-from jointbench.analysis.gap.effects import Candidate, Term
-from jointbench.analysis.gap.fit_records import Fit
-from jointbench.analysis.gap.forward import prepare_excitation, respond
-from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.gap.physics import Conditions
-from jointbench.analysis.gap.screening import PROBE, SCREEN, start_grid
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.response.effect_hooks import HitConditions
+from jointbench.analysis.gap.response.predict_records import prepare_excitation, respond
+from jointbench.analysis.gap.search.screening import PROBE, SCREEN, start_grid
 
 HIDDEN = 1e-7
 """Share of a direction that must be left when the base has taken its part."""
@@ -94,7 +94,7 @@ def score_variance(bench: LumpedBench, fit: Fit, tested: Directions) -> FloatArr
             force,
             np.full(width, hit),
             bench.campaign.sample_rate,
-            Conditions(np.ones(width), np.zeros(width)),
+            HitConditions(np.ones(width), np.zeros(width)),
         )
         shaken = respond(bench.campaign.model, bench.theta(fit.base), excitation)
         bench.mask(shaken)

@@ -15,9 +15,9 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from jointbench.analysis.gap.campaign_file import read_campaign
-from jointbench.analysis.gap.diagnose import diagnose
-from jointbench.analysis.gap.records import Diagnosis
+from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.intake.read_campaign import read_campaign
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 
 
 def judge(names: set[str], found: Diagnosis, *, hidden: bool) -> str:

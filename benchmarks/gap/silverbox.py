@@ -15,10 +15,10 @@ import argparse
 import time
 from pathlib import Path
 
-from jointbench.analysis.gap.single_record import diagnose_record
-from jointbench.station.bench_model import BenchModel
-from jointbench.station.gap_record import read_record
-from jointbench.station.toml_file import read_toml
+from jointbench.analysis.gap.diagnosis.single_record import diagnose_record
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.gap.record_campaign import read_record
+from jointbench.station.models.bench_model import BenchModel
 
 MODEL = Path(__file__).parents[2] / "examples" / "silverbox.toml"
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray
-from jointbench.signal.frf import Frf, FrfKind
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.signal.frf.frf import Frf, FrfKind
 
 FREQUENCY = np.array(
     [48.7, 112.0, 166.5, 240.0, 310.7, 455.0, 458.5, 720.0, 1500.0, 2300.0]

@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 from case import WITHIN, Case, benchmark_case
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import NoModeFound
-from jointbench.signal.modal_model import ModalModel
-from jointbench.signal.modes import identify_modes
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import NoModeFound
+from jointbench.signal.modal.modal_model import ModalModel
+from jointbench.signal.modal.modes import identify_modes
 
 LEVELS = (20, 40, 60)
 _NORMAL_95 = 1.959964

@@ -21,12 +21,12 @@ from pathlib import Path
 import numpy as np
 from filterpy.kalman import KalmanFilter
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import NoModeFound
-from jointbench.acquisition.records import Channel, Quantity, Recording
-from jointbench.signal.frf import estimate_frf
-from jointbench.signal.hits import find_hits
-from jointbench.signal.kalman import (
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import NoModeFound
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.signal.frf.frf import estimate_frf
+from jointbench.signal.hits.find_hits import find_hits
+from jointbench.signal.kalman.smoothing import (
     KalmanModel,
     KalmanSettings,
     StateModel,
@@ -36,7 +36,7 @@ from jointbench.signal.kalman import (
     stage_gain,
     state_model,
 )
-from jointbench.signal.modes import ModalSettings, identify_modes
+from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
 FREQUENCY = np.array([48.7, 166.5, 310.7])
 DAMPING = np.array([1.2, 1.0, 0.9]) / 100.0

@@ -17,9 +17,9 @@ import numpy as np
 from case import benchmark_case
 from memory import peak_mib, reset_peak
 
-from jointbench.signal.frf import Frf, FrfKind
-from jointbench.signal.lscf import fit_poles
-from jointbench.signal.modes import ModalSettings, identify_modes
+from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.signal.modal.lscf import fit_poles
+from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
 _NOISE = 10.0 ** (-40.0 / 20.0)
 

@@ -20,10 +20,13 @@ import numpy as np
 from scipy.signal import lfilter
 from scipy.stats import beta
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import NoModeFound
-from jointbench.acquisition.records import Channel, Quantity, Recording
-from jointbench.signal.output_only import OutputOnlySettings, identify_output_only
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import NoModeFound
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.signal.output_only.output_only_modes import (
+    OutputOnlySettings,
+    identify_output_only,
+)
 
 RATE = 2048.0
 FREQUENCY = np.array([61.3, 127.0, 208.5, 344.0])

@@ -9,10 +9,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from jointbench.acquisition.arrays import ComplexArray
-from jointbench.signal.frf import Frf
-from jointbench.signal.lscf import fit_poles
-from jointbench.signal.modes import ModalSettings, identify_modes
+from jointbench.acquisition.basics.arrays import ComplexArray
+from jointbench.signal.frf.frf import Frf
+from jointbench.signal.modal.lscf import fit_poles
+from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
 # pyOMA2 takes seconds an order; its cost grows with them.
 _FEW_ORDERS = 3

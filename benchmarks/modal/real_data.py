@@ -14,11 +14,11 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.errors import NoModeFound
-from jointbench.acquisition.import_hits import read_recording
-from jointbench.signal.frf import Frf, FrfKind, estimate_frf
-from jointbench.signal.modal_model import ModalModel
-from jointbench.signal.modes import ModalSettings, identify_modes
+from jointbench.acquisition.basics.errors import NoModeFound
+from jointbench.acquisition.formats.samples.hit_tables import read_recording
+from jointbench.signal.frf.frf import Frf, FrfKind, estimate_frf
+from jointbench.signal.modal.modal_model import ModalModel
+from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
 # Range of frequency, tolerance beyond it, range of damping; 20 or 25 % beyond it.
 HITS = (

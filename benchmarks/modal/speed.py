@@ -26,9 +26,9 @@ from case import Case, benchmark_case
 from memory import peak_mib, reset_peak
 from peers import OURS, PEERS
 
-from jointbench.acquisition.arrays import ComplexArray
-from jointbench.signal.lscf import fit_poles
-from jointbench.signal.matrix_roots import companion_roots
+from jointbench.acquisition.basics.arrays import ComplexArray
+from jointbench.signal.modal.lscf import fit_poles
+from jointbench.signal.modal.matrix_roots import companion_roots
 
 OUTPUTS, LINES, HIGHEST = 40, 4096, 60
 _ONE_THREAD = {
@@ -176,7 +176,8 @@ def root_error(decibel: float) -> float:
     orders = range(2, HIGHEST + 1)
     ours = fit_poles(frf.frequency, frf.response, orders)
     with patch(
-        "jointbench.signal.lscf.inverse_roots", lambda a, start: companion_roots(a)
+        "jointbench.signal.modal.lscf.inverse_roots",
+        lambda a, start: companion_roots(a),
     ):
         theirs = fit_poles(frf.frequency, frf.response, orders)
     worst = 0.0

@@ -26,10 +26,10 @@ from types import FrameType
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray
-from jointbench.acquisition.errors import NoModeFound
-from jointbench.signal.frf import Frf, FrfKind
-from jointbench.signal.modes import identify_modes
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.errors import NoModeFound
+from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.signal.modal.modes import identify_modes
 
 _LINES = 2001
 _HIGHEST = 1000.0

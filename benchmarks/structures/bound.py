@@ -10,9 +10,9 @@ import time
 import numpy as np
 from cases import two_plates
 
-from jointbench.analysis.structures.full_modes import solve_full
-from jointbench.analysis.structures.reduced import frequency_bound
-from jointbench.analysis.structures.reduction import reduce_structure
+from jointbench.analysis.structures.reduction.full_modes import solve_full
+from jointbench.analysis.structures.reduction.reduce import reduce_structure
+from jointbench.analysis.structures.reduction.reduced_model import frequency_bound
 
 MODES = 18
 ROUNDING = 1e-8

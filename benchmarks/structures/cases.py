@@ -5,30 +5,30 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from jointbench.analysis.structures.assembly import Material
-from jointbench.analysis.structures.mesh import box_mesh
-from jointbench.analysis.structures.parts import (
+from jointbench.analysis.structures.matrices.element_assembly import Material
+from jointbench.analysis.structures.matrices.parts import (
     Joint,
     PointMass,
     solid_body,
 )
-from jointbench.analysis.structures.predict import JointValues
-from jointbench.analysis.structures.sensors import Sensor
-from jointbench.analysis.structures.structure import (
+from jointbench.analysis.structures.matrices.structure import (
     Structure,
     build_structure,
 )
+from jointbench.analysis.structures.meshes.mesh import box_mesh
+from jointbench.analysis.structures.reduction.mounted_sensors import MountedSensor
+from jointbench.analysis.structures.reduction.predict_response import JointValues
 
 MARBLE = Material(youngs_modulus=55e9, poisson_ratio=0.25, density=2600.0)
 PLATE = (0.5, 0.3, 0.05)
 TRUTH = JointValues(np.array([6e8, 9e7, 2e8]), np.array([4e3, 1.5e3, 2e3]))
 SENSORS = (
-    Sensor("a1", "lower", (0.0, 0.0, 0.0), (0, 0, 1)),
-    Sensor("a2", "lower", (0.5, 0.3, 0.0), (1, 0, 0)),
-    Sensor("a3", "upper", (0.05, 0.05, 0.1), (0, 0, 1)),
-    Sensor("a4", "upper", (0.5, 0.05, 0.1), (0, 1, 0)),
-    Sensor("a5", "upper", (0.5, 0.3, 0.1), (1, 0, 0)),
-    Sensor("a6", "upper", (0.25, 0.3, 0.1), (0, 0, 1)),
+    MountedSensor("a1", "lower", (0.0, 0.0, 0.0), (0, 0, 1)),
+    MountedSensor("a2", "lower", (0.5, 0.3, 0.0), (1, 0, 0)),
+    MountedSensor("a3", "upper", (0.05, 0.05, 0.1), (0, 0, 1)),
+    MountedSensor("a4", "upper", (0.5, 0.05, 0.1), (0, 1, 0)),
+    MountedSensor("a5", "upper", (0.5, 0.3, 0.1), (1, 0, 0)),
+    MountedSensor("a6", "upper", (0.25, 0.3, 0.1), (0, 0, 1)),
 )
 SENSOR_MASS = 0.0105
 """Of a triaxial accelerometer [kg]."""

@@ -11,12 +11,12 @@ from pathlib import Path
 import numpy as np
 from cases import MARBLE, PLATE
 
-from jointbench.analysis.structures.assembly import assemble
-from jointbench.analysis.structures.elements import ElementKind
-from jointbench.analysis.structures.full_modes import lowest_modes
-from jointbench.analysis.structures.mesh import box_mesh
-from jointbench.station.figures import PALETTE, axis, figure, line
-from jointbench.station.report_page import Plot, Report, Section, write_report
+from jointbench.analysis.structures.matrices.element_assembly import assemble
+from jointbench.analysis.structures.meshes.elements import ElementKind
+from jointbench.analysis.structures.meshes.mesh import box_mesh
+from jointbench.analysis.structures.reduction.full_modes import lowest_modes
+from jointbench.station.screen.figures import PALETTE, axis, figure, line
+from jointbench.station.screen.page import Plot, Report, Section, write_report
 
 # Legendre-Ritz, upper bounds within 1e-5 (design note on joint simulation, section 1).
 CONVERGED = np.array([916.16, 923.22, 2006.9, 2379.2, 2462.8, 2986.6])

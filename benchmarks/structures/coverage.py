@@ -16,14 +16,25 @@ from cases import SENSOR_MASS, SENSORS, TRUTH, two_plates
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray
-from jointbench.analysis.structures.evidence import Evidence
-from jointbench.analysis.structures.problem import pose_problem, residuals
-from jointbench.analysis.structures.reduction import reduce_structure
-from jointbench.analysis.structures.search import descend, find_optima
-from jointbench.analysis.structures.sensors import readout, sensor_rows
-from jointbench.analysis.structures.structure import Structure
-from jointbench.signal.frf import Frf, FrfKind
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.analysis.structures.identification.multistart import (
+    descend,
+    find_optima,
+)
+from jointbench.analysis.structures.identification.stiffness_problem import (
+    pose_problem,
+    residuals,
+)
+from jointbench.analysis.structures.identification.structure_evidence import (
+    StructureEvidence,
+)
+from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.mounted_sensors import (
+    readout,
+    sensor_rows,
+)
+from jointbench.analysis.structures.reduction.reduce import reduce_structure
+from jointbench.signal.frf.frf import Frf, FrfKind
 
 NOISE = 0.01
 HITS = (0, 5)
@@ -67,14 +78,14 @@ def main() -> None:
     variance = np.broadcast_to(sd**2, exact.shape)
     truth = np.log(np.concatenate([TRUTH.stiffness, TRUTH.damping]))
 
-    def evidence(response: ComplexArray) -> Evidence:
+    def evidence(response: ComplexArray) -> StructureEvidence:
         frf = Frf(
             frequency=frequency,
             response=response,
             kind=FrfKind.ACCELERANCE,
             variance=variance,
         )
-        return Evidence("draw", None, frf, outputs, outputs[list(HITS)])
+        return StructureEvidence("draw", None, frf, outputs, outputs[list(HITS)])
 
     clean = pose_problem(model, [evidence(exact)])
     left, slopes = residuals(clean, truth)

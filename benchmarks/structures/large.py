@@ -20,10 +20,10 @@ from pathlib import Path
 import numpy as np
 from cases import MARBLE, PLATE
 
-from jointbench.analysis.structures.assembly import assemble
-from jointbench.analysis.structures.factor import Solver
-from jointbench.analysis.structures.full_modes import lowest_modes
-from jointbench.analysis.structures.mesh import Mesh, box_mesh
+from jointbench.analysis.structures.matrices.element_assembly import assemble
+from jointbench.analysis.structures.meshes.mesh import Mesh, box_mesh
+from jointbench.analysis.structures.reduction.full_modes import lowest_modes
+from jointbench.analysis.structures.reduction.sparse_factor import Solver
 
 RIGID, ELASTIC = 6, 10
 CALCULIX = "calculix"

@@ -13,15 +13,17 @@ from pathlib import Path
 import numpy as np
 from cases import TRUTH, two_plates
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.measured_modes import MeasuredModes
-from jointbench.analysis.structures.evidence import Evidence
-from jointbench.analysis.structures.full_modes import solve_full
-from jointbench.analysis.structures.problem import pose_problem
-from jointbench.analysis.structures.reduced import solve_reduced
-from jointbench.analysis.structures.reduction import reduce_structure
-from jointbench.analysis.structures.search import find_optima
-from jointbench.analysis.structures.structure import Structure
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.lumped.measured_modes import MeasuredModes
+from jointbench.analysis.structures.identification.multistart import find_optima
+from jointbench.analysis.structures.identification.stiffness_problem import pose_problem
+from jointbench.analysis.structures.identification.structure_evidence import (
+    StructureEvidence,
+)
+from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.full_modes import solve_full
+from jointbench.analysis.structures.reduction.reduce import reduce_structure
+from jointbench.analysis.structures.reduction.reduced_model import solve_reduced
 
 # Generators and second methods that the tests use as well.
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
@@ -96,7 +98,7 @@ def race_ours(structure: Structure, target: FloatArray) -> tuple[float, float]:
     print(f"reduction to {model.size}: {offline:.2f} CPU s")
     measured = MeasuredModes(natural_frequency=target, frequency_sd=0.002 * target)
     rows = np.zeros((0, model.size))
-    evidence = Evidence("data", measured, None, rows, rows)
+    evidence = StructureEvidence("data", measured, None, rows, rows)
     begin = cpu()
     optimum = find_optima(pose_problem(model, [evidence]), starts=8, seed=0)[0]
     online = cpu() - begin

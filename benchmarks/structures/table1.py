@@ -15,27 +15,30 @@ from pathlib import Path
 import numpy as np
 from cases import MARBLE
 
-from jointbench.analysis.structures.full_modes import StructureModes, solve_full
-from jointbench.analysis.structures.mesh import box_mesh
-from jointbench.analysis.structures.parts import (
+from jointbench.analysis.structures.matrices.parts import (
     GROUND,
     FaceMass,
     Joint,
     Support,
     solid_body,
 )
-from jointbench.analysis.structures.structure import (
+from jointbench.analysis.structures.matrices.structure import (
     Structure,
     build_structure,
 )
-from jointbench.station.report_page import (
+from jointbench.analysis.structures.meshes.mesh import box_mesh
+from jointbench.analysis.structures.reduction.full_modes import (
+    StructureModes,
+    solve_full,
+)
+from jointbench.station.report.structure_report import shape_figure
+from jointbench.station.screen.page import (
     DataTable,
     Plot,
     Report,
     Section,
     write_report,
 )
-from jointbench.station.report_structure import shape_figure
 
 COLUMN, CELLS, ON_TOP = (0.694, 0.191, 0.415), (6, 2, 4), 96.0
 HEADS = ("measured", "printed, joint", "ours, joint", "printed, glued", "ours, glued")

@@ -23,23 +23,25 @@ from scipy import sparse
 from scipy.io import mmwrite
 
 from jointbench.analysis.contact.surface import ContactSurface
-from jointbench.analysis.structures.assembly import Sparse, assemble
-from jointbench.analysis.structures.mesh import Mesh, box_mesh
-from jointbench.simulators.plates import (
+from jointbench.analysis.structures.matrices.element_assembly import Sparse, assemble
+from jointbench.analysis.structures.meshes.mesh import Mesh, box_mesh
+from jointbench.simulators.plates.plates import (
     POINTS,
     REFERENCE_TORQUE,
     PlatesDesign,
 )
-from jointbench.station.identify_structure import run_identify_structure
-from jointbench.station.measure import run_measure
-from jointbench.station.structure_contact import TheoryTable
-from jointbench.station.theory import (
-    Estimate,
+from jointbench.station.commands.identify_structure_command import (
+    run_identify_structure,
+)
+from jointbench.station.joints.structure_contact import TheoryTable
+from jointbench.station.joints.theory import (
     IdentifiedState,
     JointQuantity,
+    StateEstimate,
     against_theory,
     theory_json,
 )
+from jointbench.station.measure.bench_session import run_measure
 
 # Generators and second methods that the tests use as well.
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
@@ -273,10 +275,12 @@ def printed() -> str:
     for torque in TORQUES:
         preload = 4 * torque / (0.2 * 0.016)
         values = {
-            JointQuantity.NORMAL_STIFFNESS: Estimate(PRINTED_STIFFNESS, None, None)
+            JointQuantity.NORMAL_STIFFNESS: StateEstimate(PRINTED_STIFFNESS, None, None)
         }
         if torque == TORQUES[0]:
-            values[JointQuantity.NORMAL_DAMPING] = Estimate(PRINTED_DAMPING, None, None)
+            values[JointQuantity.NORMAL_DAMPING] = StateEstimate(
+                PRINTED_DAMPING, None, None
+            )
         frequency = float(np.sqrt(PRINTED_STIFFNESS / mass) / (2 * np.pi))
         states.append(IdentifiedState("printed", preload, frequency, values))
     text = """

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.surfaces import Areal
-from jointbench.signal.structure_map import isotropy
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.records.surfaces import Areal
+from jointbench.signal.surface.structure_map import isotropy
 
 # Generators and second methods that the tests use as well.
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.errors import JointbenchError
-from jointbench.acquisition.import_surfaces import read_surface
-from jointbench.simulators.rough_surface import rough_map, rough_profile
-from jointbench.simulators.surface_files import (
+from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.acquisition.formats.heights.read_surfaces import read_surface
+from jointbench.simulators.rough_surfaces.rough_surface import rough_map, rough_profile
+from jointbench.simulators.rough_surfaces.surface_files import (
     ENCODINGS,
     write_dektak,
     write_keyence_csv,

@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.ndimage
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.surfaces import Profile
-from jointbench.signal.fractal import fit_fractal
-from jointbench.signal.structure_function import structure_function
-from jointbench.signal.surface_verdict import SurfaceVerdict
-from jointbench.simulators.profilometer import traced
-from jointbench.simulators.rough_surface import rough_profile
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.records.surfaces import Profile
+from jointbench.signal.fractal.fractal_fit import fit_fractal
+from jointbench.signal.fractal.surface_verdict import SurfaceVerdict
+from jointbench.signal.surface.structure_function import structure_function
+from jointbench.simulators.rough_surfaces.profilometer import traced
+from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 
 POINTS = 20_000
 SPACING = 1e-7  # [m]

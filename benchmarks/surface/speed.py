@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 from SurfaceTopography import UniformLineScan
 
-from jointbench.acquisition.surfaces import Areal, Profile, all_valid
-from jointbench.signal.fractal import fit_fractal
-from jointbench.signal.structure_function import structure_function
-from jointbench.signal.structure_map import structure_map
-from jointbench.simulators.brownian import brownian_lines
-from jointbench.simulators.rough_surface import rough_profile
+from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
+from jointbench.signal.fractal.fractal_fit import fit_fractal
+from jointbench.signal.surface.structure_function import structure_function
+from jointbench.signal.surface.structure_map import structure_map
+from jointbench.simulators.rough_surfaces.brownian import brownian_lines
+from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 
 # Generators and second methods that the tests use as well.
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))

@@ -12,11 +12,11 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 from scipy.signal import lfilter
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.surfaces import Profile, all_valid
-from jointbench.signal.fractal import fit_fractal
-from jointbench.signal.structure_function import structure_function
-from jointbench.simulators.rough_surface import rough_profile
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.records.surfaces import Profile, all_valid
+from jointbench.signal.fractal.fractal_fit import fit_fractal
+from jointbench.signal.surface.structure_function import structure_function
+from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 
 POINTS, SPACING = 12_000, 0.25e-6  # [-], [m]
 FULL = "fractal"

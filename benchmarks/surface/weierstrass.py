@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.signal.structure_function import structure_function
-from jointbench.signal.weierstrass_fit import fit_weierstrass
+from jointbench.signal.fractal.weierstrass_fit import fit_weierstrass
+from jointbench.signal.surface.structure_function import structure_function
 
 # Generators and second methods that the tests use as well.
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))

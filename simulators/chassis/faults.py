@@ -4,7 +4,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.basics.errors import UsageError
 
 
 class FaultKind(StrEnum):

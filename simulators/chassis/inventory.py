@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 
 from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal
-from jointbench.simulators.plates_bench import PluggedSensor
+from jointbench.simulators.plates.plates_bench import PluggedSensor
 
 INPUTS_PER_MODULE = 4
 PRODUCT = "NI 9234"

@@ -7,13 +7,13 @@
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.chassis import inventory as stock
 from jointbench.simulators.chassis.faults import Fault, FaultKind
 from jointbench.simulators.chassis.inventory import Inventory
 from jointbench.simulators.chassis.protocol import Daqmx, Refusal, attribute_of
 from jointbench.simulators.chassis.service import NewTask, TaskService, answered
-from jointbench.simulators.chassis.task import Pace, Task
+from jointbench.simulators.chassis.task import Pace, SimulatedTask
 
 _ACQUIRED, _AVAILABLE, _POSITION, _CHANNELS = 0x192A, 0x1223, 0x1221, 0x217B
 _CHANNELS_TO_READ = 0x1823
@@ -80,14 +80,14 @@ class ReadingService(TaskService):
         response.samps_per_chan_read = count
         return response
 
-    def _count(self, task: Task, request: Any) -> int:
+    def _count(self, task: SimulatedTask, request: Any) -> int:
         if request.num_samps_per_chan >= 0:
             return int(request.num_samps_per_chan)
         if task.finite is not None:
             return task.finite
         return max(0, task.acquired() - task.position)
 
-    def _read(self, task: Task, count: int, timeout: float) -> FloatArray:
+    def _read(self, task: SimulatedTask, count: int, timeout: float) -> FloatArray:
         self._break(task, count)
         if self._delay:
             self._pace.sleep(self._delay)
@@ -99,7 +99,7 @@ class ReadingService(TaskService):
         self.delivered += count
         return samples
 
-    def _break(self, task: Task, count: int) -> None:
+    def _break(self, task: SimulatedTask, count: int) -> None:
         """Let every fault happen whose sample is reached by this read."""
         while self._waiting and self._waiting[0].at < self.delivered + count:
             fault = self._waiting.pop(0)

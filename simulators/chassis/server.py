@@ -14,15 +14,15 @@ from typing import Any
 
 import grpc
 
-from jointbench.acquisition.errors import InstrumentError, UsageError
-from jointbench.acquisition.source import Source
+from jointbench.acquisition.basics.errors import InstrumentError, UsageError
+from jointbench.acquisition.records.source import Source
 from jointbench.simulators.chassis.faults import Fault, FaultKind
 from jointbench.simulators.chassis.inventory import CURRENTS, Inventory
 from jointbench.simulators.chassis.protocol import add_servicer
 from jointbench.simulators.chassis.reading import ReadingService
 from jointbench.simulators.chassis.specimen import StreamedSpecimen
-from jointbench.simulators.chassis.task import Pace, Task
-from jointbench.simulators.plates_bench import (
+from jointbench.simulators.chassis.task import Pace, SimulatedTask
+from jointbench.simulators.plates.plates_bench import (
     LivePlates,
     PlannedStroke,
     PlatesBench,
@@ -169,7 +169,7 @@ class SimulatedChassis:
         setup = self._setup
         service = ReadingService(
             _inventory(setup, self._live.sensors),
-            lambda name: Task(name, self._pace, self._live.volts),
+            lambda name: SimulatedTask(name, self._pace, self._live.volts),
             begin=self._live.begin,
             pace=self._pace,
             faults=tuple(f for f in self._faults if f.kind not in _FROM_THE_START),

@@ -33,7 +33,7 @@ from jointbench.simulators.chassis.protocol import (
     attribute_of,
     refuse,
 )
-from jointbench.simulators.chassis.task import Task, TaskChannel, Trigger
+from jointbench.simulators.chassis.task import SimulatedTask, TaskChannel, Trigger
 
 INVALID_TASK = DAQmxErrors.INVALID_TASK
 RISING = 10280
@@ -42,7 +42,7 @@ _CHANNEL_TYPE, _ANALOG_INPUT = 0x187F, 10100
 _MEASUREMENT, _VOLTAGE, _AC = 0x0695, 10322, 10045
 POUND_FORCE = 4.4482216152605
 Answer = TypeVar("Answer")
-NewTask = Callable[[str], Task]
+NewTask = Callable[[str], SimulatedTask]
 
 
 def answered(
@@ -137,11 +137,11 @@ class TaskService(DeviceService):
 
     def __init__(self, inventory: Inventory, new_task: NewTask) -> None:
         super().__init__(inventory)
-        self.tasks: dict[str, Task] = {}
+        self.tasks: dict[str, SimulatedTask] = {}
         self._new_task = new_task
         self._lock = threading.Lock()
 
-    def task(self, request: Any) -> Task:
+    def task(self, request: Any) -> SimulatedTask:
         """Return the task that a request is about.
 
         Raises:
@@ -149,7 +149,9 @@ class TaskService(DeviceService):
         """
         found = self.tasks.get(request.task.name)
         if found is None:
-            raise Refusal(INVALID_TASK, "Task specified is invalid or does not exist.")
+            raise Refusal(
+                INVALID_TASK, "SimulatedTask specified is invalid or does not exist."
+            )
         return found
 
     @answered

@@ -6,10 +6,10 @@ from typing import Protocol
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.records import Channel
-from jointbench.acquisition.source import Source
-from jointbench.simulators.plates_bench import PluggedSensor
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.records.recordings import Channel
+from jointbench.acquisition.records.source import Source
+from jointbench.simulators.plates.plates_bench import PluggedSensor
 
 INPUT_RANGE = 5.0  # [V]
 _KEPT = 4  # blocks behind the newest one that may still be asked for

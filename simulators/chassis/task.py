@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal
-from jointbench.simulators.converter import Digitiser
+from jointbench.simulators.measuring.converter import Digitiser
 
 INPUT_RANGE = 5.0  # [V], either sign
 BITS = 24
@@ -70,7 +70,7 @@ class Pace:
 Volts = Callable[[int, int, list[int]], FloatArray]
 
 
-class Task:
+class SimulatedTask:
     """State of one task; the service serialises the calls."""
 
     def __init__(self, name: str, pace: Pace, volts: Volts) -> None:

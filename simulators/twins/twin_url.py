@@ -6,9 +6,9 @@ from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import UsageError
-from jointbench.simulators.rough_surface import rough_profile
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 from jointbench.simulators.twins.dialogue import (
     Answer,
     DiaviteTwin,

@@ -9,19 +9,26 @@ from pathlib import Path
 import pytest
 from gap_contradictions import contradictions
 
-from jointbench.analysis.gap import base_fit
-from jointbench.analysis.gap.campaign_file import read_campaign
-from jointbench.analysis.gap.diagnose import diagnose
-from jointbench.analysis.gap.race import Progress
-from jointbench.analysis.gap.records import Diagnosis, Finding
-from jointbench.simulators.campaign import Campaign, make_campaign, quick_campaign
-from jointbench.simulators.campaign_file import write_campaign
+from jointbench.analysis.gap.diagnosis import base_fit
+from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.intake.read_campaign import read_campaign
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
+from jointbench.analysis.gap.search.selection_round import Progress
+from jointbench.simulators.campaigns.campaign_records import (
+    SimulatedCampaign,
+    make_campaign,
+    quick_campaign,
+)
+from jointbench.simulators.campaigns.write_campaign import write_campaign
 
 pytestmark = pytest.mark.timeout(400)
 
 
 def told(
-    campaign: Campaign, folder: Path, *without: str, progress: Progress | None = None
+    campaign: SimulatedCampaign,
+    folder: Path,
+    *without: str,
+    progress: Progress | None = None,
 ) -> Diagnosis:
     """Return the diagnosis of a campaign after a way through its file.
 

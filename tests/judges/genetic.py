@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution
 
-from jointbench.acquisition.arrays import FloatArray, freeze
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.errors import UsageError
 
 Objective = Callable[[FloatArray], float]
 

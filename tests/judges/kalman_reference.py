@@ -9,8 +9,8 @@ import numpy as np
 from filterpy.common import Q_discrete_white_noise
 from filterpy.kalman import KalmanFilter
 
-from jointbench.acquisition.arrays import BoolArray, FloatArray
-from jointbench.signal.kalman_model import StateModel
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.signal.kalman.process_models import StateModel
 
 
 def reference_process_noise() -> FloatArray:

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.surfaces import Profile
-from jointbench.signal.fractal import FractalLine, fractal_from_line
-from jointbench.signal.structure_constant import DEFAULT_GAMMA, ConstantForm
-from jointbench.signal.structure_function import structure_function
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.records.surfaces import Profile
+from jointbench.signal.fractal.fractal_fit import FractalLine, fractal_from_line
+from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA, ConstantForm
+from jointbench.signal.surface.structure_function import structure_function
 
 LONGEST_SHARE = 0.1
 """Longest lag over the length of a profile [-]."""

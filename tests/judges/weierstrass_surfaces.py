@@ -3,10 +3,10 @@
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray, require_positive
-from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.records import step
-from jointbench.acquisition.surfaces import Areal, Profile, all_valid
+from jointbench.acquisition.basics.arrays import FloatArray, require_positive
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 
 FREQUENCY_RATIO = 1.5  # gamma [-]
 FEWEST_RIDGES = 2

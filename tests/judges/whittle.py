@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import UsageError
-from jointbench.acquisition.surfaces import Profile
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.records.surfaces import Profile
 
 ALIASES = 30
 """Images of the spectrum on each side that sampling folds in [-]."""

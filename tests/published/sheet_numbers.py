@@ -29,9 +29,9 @@ from jointbench.analysis.contact.tangential import (
     contact_shear,
     tangential_stiffness,
 )
-from jointbench.analysis.lumped import Body, Link, LumpedModel
-from jointbench.analysis.lumped_modes import solve_modes
-from jointbench.signal.fractal import fractal_from_line
+from jointbench.analysis.lumped.lumped_model import Body, Link, LumpedModel
+from jointbench.analysis.lumped.lumped_modes import solve_modes
+from jointbench.signal.fractal.fractal_fit import fractal_from_line
 
 LINES = (
     (0.738, -15.149),

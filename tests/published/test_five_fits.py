@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from jointbench.signal.fractal import fractal_from_line
+from jointbench.signal.fractal.fractal_fit import fractal_from_line
 
 # Slope and intercept (base 10) of the five lines below Fig. 7.
 LINES = (

@@ -3,8 +3,8 @@
 
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.lumped import Body, Link, LumpedModel
-from jointbench.analysis.lumped_modes import solve_modes
+from jointbench.analysis.lumped.lumped_model import Body, Link, LumpedModel
+from jointbench.analysis.lumped.lumped_modes import solve_modes
 
 PLATE = 0.5 * 0.3 * 0.05 * 2600  # [kg]
 STIFFNESS = 2.8667e7  # normal stiffness the paper identified [N/m]

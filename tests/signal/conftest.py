@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jointbench.acquisition.arrays import ComplexArray, FloatArray
-from jointbench.acquisition.records import Channel, Quantity, Recording
-from jointbench.signal.frf import Frf, FrfKind
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.signal.frf.frf import Frf, FrfKind
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 

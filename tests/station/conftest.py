@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jointbench.acquisition.records import Channel, Quantity, Recording
-from jointbench.acquisition.session import JointSetup, Session
-from jointbench.acquisition.session_file import write_session
-from jointbench.signal.hits import find_hits
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+from jointbench.acquisition.records.session import JointSetup, Session
+from jointbench.acquisition.session_file.store import write_session
+from jointbench.signal.hits.find_hits import find_hits
 
 RATE = 2048.0
 FREQUENCY, DAMPING = np.array([150.0, 420.0]), np.array([0.01, 0.012])

@@ -6,7 +6,7 @@ import pytest
 from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
-from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.material import (
     ContactMaterial,

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from contact_cases import joint_case
 
-from jointbench.acquisition.errors import UsageError
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.contact.damping import DampingChoice
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.preload import Preload

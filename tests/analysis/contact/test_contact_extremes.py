@@ -5,7 +5,7 @@ import pytest
 from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.inverse import log_largest_of_stiffness

@@ -4,7 +4,7 @@ import pytest
 from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
-from jointbench.acquisition.errors import BadData, UsageError
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.contact.draws import predict_interval
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.predict import predict_contact

@@ -11,7 +11,7 @@ from contact_cases import joint_case
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.asperity import FractalSurface, interference
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.damping import (
@@ -38,7 +38,7 @@ from jointbench.analysis.contact.printed import printed_warnings
 from jointbench.analysis.contact.solve import solve_largest_area
 from jointbench.analysis.contact.sums import joint_sums
 from jointbench.analysis.contact.tangential import sticking_share
-from jointbench.analysis.contact.terms import Term, model_terms, with_term
+from jointbench.analysis.contact.terms import ContactTerm, model_terms, with_term
 
 IRON = ContactMaterial(69.3e9, 2.265e9, 0.25)
 
@@ -50,7 +50,7 @@ def surface_at(model, e=0.5, roughness=1e-9):
 
 
 @pytest.mark.parametrize("name", CONTACT_MODELS)
-@pytest.mark.parametrize("term", Term)
+@pytest.mark.parametrize("term", ContactTerm)
 def test_a_term_taken_out_and_put_back_leaves_the_model_as_it_was(name, term):
     """What acts is what was asked for, and nothing else changes."""
     model = contact_model(name)
@@ -58,12 +58,14 @@ def test_a_term_taken_out_and_put_back_leaves_the_model_as_it_was(name, term):
     other = with_term(model, term, present=not there)
     assert (term in model_terms(other)) is not there
     assert model_terms(other) ^ model_terms(model) == {term}
-    if term is not Term.FRICTION:  # its absence has one criterion, its models two
+    if (
+        term is not ContactTerm.FRICTION
+    ):  # its absence has one criterion, its models two
         assert with_term(other, term, present=there) == model
     assert with_term(model, term, present=there) is model
 
 
-@pytest.mark.parametrize("term", Term)
+@pytest.mark.parametrize("term", ContactTerm)
 def test_a_load_is_carried_whatever_term_is_missing(term):
     """The search for the largest area holds for every combination."""
     model = contact_model("friction_3d")
@@ -78,8 +80,8 @@ def test_a_load_is_carried_whatever_term_is_missing(term):
 @pytest.mark.parametrize(
     ("term", "regime"),
     [
-        (Term.ELASTIC, Regime.ELASTIC),
-        (Term.PLASTIC, Regime.PLASTIC),
+        (ContactTerm.ELASTIC, Regime.ELASTIC),
+        (ContactTerm.PLASTIC, Regime.PLASTIC),
     ],
 )
 def test_a_missing_regime_bears_nothing(term, regime):

@@ -2,7 +2,7 @@
 import pytest
 from numpy.testing import assert_allclose
 
-from jointbench.acquisition.errors import BadData
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.preload import preload_from_torque
 
 

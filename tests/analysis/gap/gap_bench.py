@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.campaign import Campaign
-from jointbench.analysis.gap.effects import Term
-from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.model import two_body_model
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.model.two_body_model import two_body_model
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.make_bench import make_bench
 
 NOMINAL = {"m1": 8.0, "m2": 4.0, "k0": 2.4e7, "c0": 300.0, "kj": 6e7, "cj": 220.0}
 SPREAD = {"m1": 0.003, "m2": 0.003, "k0": 0.05, "c0": 0.2, "kj": 0.1, "cj": 0.3}

@@ -5,12 +5,16 @@ import re
 
 from rich.console import Console
 
-from jointbench.analysis.gap.catalogue import CATALOGUE
-from jointbench.analysis.gap.records import Diagnosis, Finding, diagnosis_json
-from jointbench.station import gap_output
-from jointbench.station.gap_words import next_step
-from jointbench.station.report_gap import gap_report
-from jointbench.station.report_page import Text
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Finding,
+    diagnosis_json,
+)
+from jointbench.station.gap import gap_output
+from jointbench.station.report.gap_report import gap_report
+from jointbench.station.report.gap_sentences import next_step
+from jointbench.station.screen.page import Text
 
 LINEAR = re.compile(r"(?<!not )in proportion to the hit|cause is linear")
 BENT = re.compile(

@@ -5,17 +5,17 @@ from dataclasses import replace
 import gap_bench as made
 import numpy as np
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.analysis.gap.base_fit import fit_base
-from jointbench.analysis.gap.descent import minimise
-from jointbench.analysis.gap.fit import make_problem
-from jointbench.analysis.gap.fit_records import Fit
-from jointbench.analysis.gap.loop import Outcome
-from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.gap.lumped_make import make_bench
-from jointbench.analysis.gap.naming import gate
-from jointbench.analysis.gap.screening import screen
-from jointbench.signal.one_thread import one_thread
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.analysis.gap.diagnosis.base_fit import fit_base
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.judgement.naming import gate
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.screening import screen
 
 Hidden = tuple[str, str, list[float]]
 
@@ -28,7 +28,7 @@ def outcome_of(
     rivals: int = 1,
     continuous: bool = False,
     at_truth: bool = False,
-) -> tuple[Outcome, LumpedBench]:
+) -> tuple[SearchOutcome, LumpedBench]:
     """Fit the base and the tried effects to a campaign with hidden ones.
 
     Args:
@@ -61,7 +61,9 @@ def outcome_of(
     null = gate(refined, base, base, tests)
     judged = gate(refined, best, base, None) if fits else null
     level = tuple(fits[:rivals]) or (base,)
-    outcome = Outcome(refined, base, null, tests, best, judged, tuple(fits), level)
+    outcome = SearchOutcome(
+        refined, base, null, tests, best, judged, tuple(fits), level
+    )
     return outcome, refined
 
 

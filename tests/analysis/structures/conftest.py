@@ -7,20 +7,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jointbench.analysis.structures.assembly import Material
-from jointbench.analysis.structures.mesh import box_mesh
-from jointbench.analysis.structures.parts import (
+from jointbench.analysis.structures.matrices.element_assembly import Material
+from jointbench.analysis.structures.matrices.parts import (
     Joint,
     solid_body,
 )
-from jointbench.analysis.structures.predict import JointValues
-from jointbench.analysis.structures.reduced import ReducedModel
-from jointbench.analysis.structures.reduction import reduce_structure
-from jointbench.analysis.structures.sensors import Sensor, readout, sensor_rows
-from jointbench.analysis.structures.structure import (
+from jointbench.analysis.structures.matrices.structure import (
     Structure,
     build_structure,
 )
+from jointbench.analysis.structures.meshes.mesh import box_mesh
+from jointbench.analysis.structures.reduction.mounted_sensors import (
+    MountedSensor,
+    readout,
+    sensor_rows,
+)
+from jointbench.analysis.structures.reduction.predict_response import JointValues
+from jointbench.analysis.structures.reduction.reduce import reduce_structure
+from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 
 PLATE = (0.5, 0.3, 0.05)
 
@@ -61,19 +65,19 @@ def plates(marble: Material) -> Structure:
 
 
 @pytest.fixture(scope="session")
-def sensors() -> tuple[Sensor, ...]:
+def sensors() -> tuple[MountedSensor, ...]:
     """Five accelerometers, on both plates and along all axes."""
     return (
-        Sensor("a1", "lower", (0.0, 0.0, 0.0), (0, 0, 1)),
-        Sensor("a2", "lower", (0.5, 0.3, 0.0), (1, 0, 0)),
-        Sensor("a3", "upper", (0.05, 0.05, 0.1), (0, 0, 1)),
-        Sensor("a4", "upper", (0.5, 0.05, 0.1), (0, 1, 0)),
-        Sensor("a5", "upper", (0.25, 0.3, 0.1), (0, 0, 1)),
+        MountedSensor("a1", "lower", (0.0, 0.0, 0.0), (0, 0, 1)),
+        MountedSensor("a2", "lower", (0.5, 0.3, 0.0), (1, 0, 0)),
+        MountedSensor("a3", "upper", (0.05, 0.05, 0.1), (0, 0, 1)),
+        MountedSensor("a4", "upper", (0.5, 0.05, 0.1), (0, 1, 0)),
+        MountedSensor("a5", "upper", (0.25, 0.3, 0.1), (0, 0, 1)),
     )
 
 
 @pytest.fixture(scope="session")
-def reduced(plates: Structure, sensors: tuple[Sensor, ...]) -> ReducedModel:
+def reduced(plates: Structure, sensors: tuple[MountedSensor, ...]) -> ReducedModel:
     """The plates, reduced for six rigid and eight elastic modes."""
     loads = sensor_rows(plates, sensors)
     return reduce_structure(plates, modes=14, box=(1e6, 1e10), loads=loads)
@@ -81,7 +85,7 @@ def reduced(plates: Structure, sensors: tuple[Sensor, ...]) -> ReducedModel:
 
 @pytest.fixture(scope="session")
 def rows(
-    plates: Structure, reduced: ReducedModel, sensors: tuple[Sensor, ...]
+    plates: Structure, reduced: ReducedModel, sensors: tuple[MountedSensor, ...]
 ) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     """Readout of the sensors."""
     return readout(plates, reduced, sensors)

@@ -10,10 +10,10 @@ from scipy.signal import lfilter
 from second_route.laws import values_by_name
 from second_route.motion import UPSAMPLING
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.gap.assembly import Action
-from jointbench.analysis.gap.forward import Excitation
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.gap.response.dynamic_stiffness import Action
+from jointbench.analysis.gap.response.predict_records import Excitation
 
 Values = Mapping[str, float]
 AT_SAMPLES = ("saturation", "hum")

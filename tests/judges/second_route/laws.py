@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.gap.assembly import Action
-from jointbench.analysis.gap.curve_march import GRADE
-from jointbench.analysis.gap.march import CURVES
-from jointbench.analysis.gap.physics import Law
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.gap.response.curve_integration import GRADE
+from jointbench.analysis.gap.response.dynamic_stiffness import Action
+from jointbench.analysis.gap.response.effect_hooks import Law
+from jointbench.analysis.gap.response.force_integration import CURVES
 
 SLIDERS_OF_IWAN = 14
 """The catalogue's bank: equal steps of slip displacement, a slider in the mean of

@@ -14,9 +14,9 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from second_route.system import System
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import BadData
-from jointbench.analysis.gap.forward import Excitation, undamped
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.gap.response.predict_records import Excitation, undamped
 
 UPSAMPLING = 16
 """Points per sample between which a cubic spline carries the force: 2e-6 of a line at

@@ -17,11 +17,11 @@ from second_route.laws import (
     values_by_name,
 )
 
-from jointbench.acquisition.arrays import FloatArray
-from jointbench.acquisition.errors import UsageError
-from jointbench.analysis.gap.assembly import Action
-from jointbench.analysis.gap.forward import Excitation
-from jointbench.analysis.lumped import LumpedModel
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.gap.response.dynamic_stiffness import Action
+from jointbench.analysis.gap.response.predict_records import Excitation
+from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 LINEAR = (
     "added_mass",

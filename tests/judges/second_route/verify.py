@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Verify predicted responses by a second route that shares no step with the first.
 
-The first route (`jointbench.analysis.gap.forward`) works with transfer functions on a
+The first route (`predict_records`) works with transfer functions on a
 line in the Laplace plane and a compiled march of the link force; the second puts up the
 equations of motion and hands them to `scipy.integrate.solve_ivp`. Where both agree to a
 small part of the noise, a gap between model and measurement is none of the solver's.
@@ -19,13 +19,13 @@ from second_route.channels import (
 from second_route.motion import UPSAMPLING, integrate_motion
 from second_route.system import make_system
 
-from jointbench.acquisition.arrays import FloatArray, freeze
-from jointbench.analysis.gap.assembly import Action
-from jointbench.analysis.gap.campaign import TAIL
-from jointbench.analysis.gap.fit_records import Fit
-from jointbench.analysis.gap.forward import Excitation, respond
-from jointbench.analysis.gap.lumped import LumpedBench
-from jointbench.analysis.lumped import LumpedModel
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.analysis.gap.model.campaign import TAIL
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.response.dynamic_stiffness import Action
+from jointbench.analysis.gap.response.predict_records import Excitation, respond
+from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 TOLERANCE = 1e-9
 BEYOND = 64

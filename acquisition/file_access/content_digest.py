@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""A digest of what an HDF5 file holds, kept in it: accidents show, forgers do not.
+
+The digest is over names, types, shapes, values, dimensions and attributes, not over the
+bytes of the file: copying or repacking keeps it, a changed number does not. Nothing
+secret goes into it, so whoever changes a number on purpose can write a new digest.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from enum import StrEnum
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from h5py import h5a
+
+from jointbench.acquisition.basics.errors import RottenFile
+from jointbench.acquisition.file_access.netcdf_read import (
+    dimension_names,
+    read_attribute,
+)
+from jointbench.acquisition.file_access.netcdf_write import new_file, write_attributes
+from jointbench.acquisition.file_access.text_files import named
+
+DIGEST = "content_sha256"
+"""Attribute of the root that holds the digest."""
+_NOT_CONTENT = {DIGEST, "DIMENSION_LIST", "REFERENCE_LIST"}
+"""Left out: the digest itself, and scales, which go in by their names."""
+_PIECE = 2**24
+"""Values are read in pieces of about this size [bytes]."""
+_DAMAGE = (KeyError, ValueError, TypeError, OSError, RuntimeError)
+
+
+class Seal(StrEnum):
+    """What the digest of a file says about its content."""
+
+    WHOLE = "whole"
+    UNSIGNED = "unsigned"
+    ROTTEN = "rotten"
+
+
+@contextmanager
+def new_signed_file(
+    path: Path | str, *, schema: str, title: str
+) -> Iterator[h5py.File]:
+    """Write a file as `new_file` does, replacing an earlier one, with its digest.
+
+    Args:
+        path: of the file to be.
+        schema: name and version of the layout.
+        title: one line for people who open it elsewhere.
+
+    Yields:
+        The open file.
+
+    Raises:
+        UsageError: it cannot be written there.
+    """
+    with new_file(path, schema=schema, title=title, overwrite=True) as file:
+        yield file
+        write_attributes(file, {DIGEST: content_digest(file)})
+
+
+def seal_of(file: h5py.File) -> Seal:
+    """Compare the content of a file with its digest; one without is not read.
+
+    Args:
+        file: opened by `guards.open_guarded`, as all of it is read.
+    """
+    stored = read_attribute(file, DIGEST)
+    if stored is None:
+        return Seal.UNSIGNED
+    try:
+        same = content_digest(file) == stored
+    except _DAMAGE:  # a checksum of HDF5 itself, for example
+        return Seal.ROTTEN
+    return Seal.WHOLE if same else Seal.ROTTEN
+
+
+def require_whole(file: h5py.File, path: Path | str) -> None:
+    """Raise `RottenFile` if the content of a file is not what its digest says."""
+    if seal_of(file) is Seal.ROTTEN:
+        raise RottenFile(
+            f"{named(path)} is rotten: its content does not match the digest that it "
+            "was written with; make it anew from the session, or use another copy"
+        )
+
+
+def content_digest(file: h5py.File) -> str:
+    """Return the SHA-256 of all that a file holds, as hexadecimal text."""
+    digest = sha256()
+    waiting: list[h5py.Group | h5py.Dataset] = [file]
+    while waiting:
+        item = waiting.pop()
+        digest.update(f"{item.name}\n".encode("utf-8", "surrogateescape"))
+        for text in _attributes(item):
+            digest.update(text)
+        if isinstance(item, h5py.Dataset):
+            digest.update(_kind(item))
+            for piece in _pieces(item):
+                digest.update(piece)
+        else:
+            waiting += [item[name] for name in sorted(item, reverse=True)]
+    return digest.hexdigest()
+
+
+def _attributes(item: h5py.Group | h5py.Dataset) -> Iterator[bytes]:
+    for name in sorted(item.attrs):
+        if name in _NOT_CONTENT:
+            continue
+        attribute = h5a.open(item.id, name.encode("utf-8", "surrogateescape"))
+        values: np.ndarray[Any, Any] = np.empty(attribute.shape, attribute.dtype)
+        attribute.read(values)
+        data = values.tobytes()
+        if values.dtype.hasobject:  # a text of variable length: never one of ours
+            data = repr(values.tolist()).encode("utf-8", "surrogateescape")
+        yield f"{name} {values.dtype.str} {values.shape}\n".encode() + data
+
+
+def _kind(dataset: h5py.Dataset) -> bytes:
+    names = " ".join(dimension_names(dataset))
+    return f"{dataset.dtype.str} {dataset.shape} {names}\n".encode()
+
+
+def _pieces(dataset: h5py.Dataset) -> Iterator[bytes]:
+    if dataset.ndim == 0 or dataset.nbytes <= _PIECE:
+        yield np.asarray(dataset[()]).tobytes()
+        return
+    rows = max(1, _PIECE * dataset.shape[0] // dataset.nbytes)
+    for first in range(0, dataset.shape[0], rows):
+        yield np.asarray(dataset[first : first + rows]).tobytes()

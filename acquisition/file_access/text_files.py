@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: MIT
+"""Files as text: opened with a limit, decoded without loss, named in every message."""
+
+import codecs
+import hashlib
+import re
+import stat
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
+
+# A text takes up to six times its size in memory, a line 60 bytes beside its own.
+MAX_TEXT_BYTES = 100_000_000
+MAX_LINES = 3_000_000
+BYTES_A_LINE = 100
+"""A larger text may have one more line for so many of its characters."""
+MAX_LINE_CHARACTERS = 2**20
+_SHOWN = 60
+_SHOWN_PATH = 160
+_BOMS = (
+    (codecs.BOM_UTF8, "utf-8-sig"),
+    (codecs.BOM_UTF16_LE, "utf-16"),
+    (codecs.BOM_UTF16_BE, "utf-16"),
+)
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+# Letters and marks that Unicode counts as printable although they leave no mark:
+# joiner, fillers of Hangul, inherent vowels of Khmer, selectors of a variant.
+_NO_WIDTH = re.compile(
+    "[\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0\ufe00-\ufe0f\U000e0100-\U000e01ef]"
+)
+# What a text never holds: control characters other than tab, line and page ends and
+# the Ctrl-Z that old programs put at the end.
+_BINARY = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f\x7f]")
+
+
+def shown(text: object) -> str:
+    """Return `text` in quotes on one line, cut short, for a message."""
+    plain = str(text)
+    return visible(repr(plain if len(plain) <= _SHOWN else plain[:_SHOWN] + "..."))
+
+
+def named(path: Path | str) -> str:
+    """Return a path in quotes on one line for a message; a long one keeps its end."""
+    plain = str(path)
+    cut = plain if len(plain) <= _SHOWN_PATH else "..." + plain[-_SHOWN_PATH:]
+    return visible(repr(cut))
+
+
+def visible(text: str) -> str:
+    r"""Return `text` with every character that does not show written as its escape.
+
+    Names in files may hold line ends, sequences that command a terminal, marks that
+    turn the direction of writing, letters of no width, or bytes that are no text at
+    all. Whatever shows a text from a file (terminal, message, CSV, HTML, universal
+    file) takes it through here; JSON escapes by itself, binary formats keep it.
+
+    >>> visible("a1\x1b[2J")
+    'a1\\x1b[2J'
+    """
+    if text.isprintable() and not _NO_WIDTH.search(text):
+        return text
+    return "".join(
+        one if one.isprintable() and not _NO_WIDTH.match(one) else _escape(one)
+        for one in text
+    )
+
+
+def _escape(character: str) -> str:
+    """Return the escape by which Python writes a character, whether it shows or not."""
+    written = repr(character)[1:-1]
+    return written if written != character else f"\\u{ord(character):04x}"
+
+
+def file_size(path: Path | str) -> int:
+    """Return the size of an ordinary file [bytes].
+
+    Raises:
+        BadData: there is no such file, or it is a folder, a device or a pipe.
+    """
+    try:
+        info = Path(path).stat()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise BadData(f"{named(path)}: {reason}; check the name of the file") from error
+    if stat.S_ISDIR(info.st_mode):
+        raise BadData(f"{named(path)} is a folder; name the file inside it")
+    if not stat.S_ISREG(info.st_mode):
+        raise BadData(f"{named(path)} is a device or a pipe; give an ordinary file")
+    return info.st_size
+
+
+def file_digest(path: Path | str) -> str:
+    """Return the SHA-256 of a file as hexadecimal text."""
+    file_size(path)
+    try:
+        with Path(path).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
+
+
+def read_bytes(path: Path | str, *, limit: int = MAX_TEXT_BYTES) -> bytes:
+    """Return the content of a file that is not larger than `limit` [bytes].
+
+    Raises:
+        BadData: it cannot be opened.
+        FormatError: it is empty.
+        HostileFile: it is larger than `limit`.
+    """
+    size = file_size(path)
+    if size == 0:
+        raise FormatError(f"{named(path)} is empty; export it again")
+    if size > limit:
+        raise HostileFile(
+            f"{named(path)} has {size} bytes, at most {limit} are read as text; "
+            "split it, or save the numbers as .npy"
+        )
+    try:
+        with Path(path).open("rb") as file:
+            return file.read(limit)
+    except OSError as error:
+        raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
+
+
+def decode(data: bytes, path: Path | str) -> tuple[str, str]:
+    r"""Decode UTF-8, UTF-16 or Windows-1252, whichever fits without a loss.
+
+    Args:
+        data: the content.
+        path: the file it came from, for messages.
+
+    Returns:
+        The text with ``\n`` at the line ends, and the name of the encoding.
+
+    Raises:
+        FormatError: it is none of the three, or is no text at all.
+    """
+    if data.startswith(_HDF5):
+        raise FormatError(
+            f"{named(path)} is an HDF5 file, not a table: a session needs no import, "
+            "give it to 'jointbench modal' or 'jointbench report' directly"
+        )
+    candidates = _candidates(data)
+    if b"\r" in data and not candidates[0].startswith("utf-16"):
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    for encoding in candidates:
+        try:
+            text = data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if _BINARY.search(text) is None:
+            if "\r" in text:
+                text = text.replace("\r\n", "\n").replace("\r", "\n")
+            return text, encoding
+    raise FormatError(
+        f"{named(path)} is not text in UTF-8, UTF-16 or Windows-1252; it looks like a "
+        "binary file: export it as text, or convert it to .npy"
+    )
+
+
+def text_lines(text: str, path: Path | str) -> list[str]:
+    """Split a text into lines, none of them endless.
+
+    Raises:
+        HostileFile: a line has more than a million characters, or there are more
+            lines than any table of measured values has.
+    """
+    count, most = text.count("\n"), MAX_LINES + len(text) // BYTES_A_LINE
+    if count > most:
+        raise HostileFile(
+            f"{named(path)} has {count} lines, at most {most} are read of a text of "
+            "its size; split it, or save the numbers as .npy"
+        )
+    lines = text.split("\n")
+    lengths = list(map(len, lines))
+    if max(lengths) > MAX_LINE_CHARACTERS:
+        raise HostileFile(
+            f"{named(path)}: line {lengths.index(max(lengths)) + 1} has {max(lengths)} "
+            f"characters; at most {MAX_LINE_CHARACTERS} are read: write one row a line"
+        )
+    return lines
+
+
+def _candidates(data: bytes) -> tuple[str, ...]:
+    for mark, encoding in _BOMS:
+        if data.startswith(mark):
+            return (encoding,)
+    head = data[:400]
+    # Digits in UTF-16 are every other byte zero, with or without a mark in front.
+    if head and head[1::2].count(0) > 0.8 * len(head[1::2]):
+        return ("utf-16-le",)
+    if head and head[0::2].count(0) > 0.8 * len(head[0::2]):
+        return ("utf-16-be",)
+    return ("utf-8", "cp1252")

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Grid lines of a map from the coordinates of its points, in any order."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.errors import FormatError, SamplingError
+from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.formats.even_steps import fit_even_steps
+from jointbench.acquisition.formats.tables import Table
+
+# A coordinate may lie this far from its grid line [step], and two readings nearer
+# than `_SAME_LINE` of a typical step are the same line.
+_OFF_GRID = 0.25
+_SAME_LINE = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class GridAxis:
+    """Grid lines of one coordinate.
+
+    Attributes:
+        index: number of the grid line of each point, shape (n,).
+        count: number of grid lines.
+        step: their distance [unit of the file].
+    """
+
+    index: IntArray
+    count: int
+    step: float
+
+
+def grid_axis(table: Table, index: int, role: str) -> GridAxis:
+    """Find the grid lines of a coordinate from all values met.
+
+    Args:
+        table: as read.
+        index: of the column.
+        role: ``"x"`` or ``"y"``, for messages.
+
+    Raises:
+        SamplingError: a point has no place.
+        FormatError: the values lie on no even grid.
+    """
+    values = table.values[index]
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise SamplingError(
+            f"{named(table.path)}: {table.where(int(bad[0]))}: {role} is "
+            f"{values[bad[0]]}; every point needs its place"
+        )
+    met, inverse = np.unique(values, return_inverse=True)
+    line = _group_lines(met)
+    centres = np.bincount(line, weights=met) / np.bincount(line)
+    number, spacing = _number_lines(centres, table, role)
+    return GridAxis(number[line[inverse]], int(number[-1]) + 1, spacing)
+
+
+def _group_lines(met: FloatArray) -> IntArray:
+    """Put readings of one grid line together that differ by the encoder's noise."""
+    gaps = np.diff(met)
+    if gaps.size == 0:
+        return np.zeros(met.size, dtype=np.int64)
+    typical = float(np.median(gaps[gaps > _OFF_GRID * gaps.max()]))
+    return np.concatenate(([0], np.cumsum(gaps > _SAME_LINE * typical))).astype(
+        np.int64
+    )
+
+
+def _number_lines(
+    centres: FloatArray, table: Table, role: str
+) -> tuple[IntArray, float]:
+    """Number the grid lines from 0; a whole line that is missing keeps its number."""
+    if centres.size == 1:
+        return np.zeros(1, dtype=np.int64), 1.0
+    try:
+        steps = fit_even_steps(centres, what=role, unit="", where=str)
+    except SamplingError:
+        pass
+    else:
+        return np.arange(centres.size), steps.step
+    gaps = np.diff(centres)
+    typical = float(np.median(gaps))
+    number = np.concatenate(([0], np.cumsum(np.rint(gaps / typical)))).astype(np.int64)
+    spacing = float(centres[-1] - centres[0]) / float(number[-1])
+    off = np.abs(centres - centres[0] - number * spacing)
+    if off.max() > _OFF_GRID * spacing:
+        raise FormatError(
+            f"{named(table.path)}: {role} = {centres[np.argmax(off)]:.9g} lies off the "
+            f"even grid of step {spacing:.6g} that the other values form; export the "
+            "map on a regular grid"
+        )
+    return number, spacing
+
+
+def require_single(table: Table, cell: IntArray) -> None:
+    """Refuse a table that holds a point of the grid twice.
+
+    Args:
+        table: as read.
+        cell: number of the grid cell of each row, shape (n_rows,).
+
+    Raises:
+        FormatError: it does.
+    """
+    order = np.argsort(cell, kind="stable")
+    repeated = np.flatnonzero(np.diff(cell[order]) == 0)
+    if repeated.size:
+        first, second = order[repeated[0]], order[repeated[0] + 1]
+        raise FormatError(
+            f"{named(table.path)}: {table.where(int(second))} repeats the point of "
+            f"{table.where(int(first))}; each point of the grid may appear once"
+        )

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""Do the facts of a height file agree with each other, and with what can be measured?
+
+A length, a number of points, a pitch and the settings of a trace determine each other
+more than once. Where they contradict each other a file is refused; where they show
+that a trace or a map is not whole, its heights are read at the pitch that holds, and
+the surface carries a caution that screens, reports and JSON repeat.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.basics.errors import FormatError, UnitError
+from jointbench.acquisition.basics.units import to_si
+from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.formats.heights.printed_grids import HIGHEST
+from jointbench.acquisition.formats.tables import NUMBER
+from jointbench.acquisition.records.recordings import Provenance, Step, step
+from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
+
+LONGEST = 1.0
+"""No profilometer scans a metre: a longer trace has a wrong unit [m]."""
+LONGEST_TABLE = 100.0
+"""Tables come from other instruments too, up to a guideway's straightness [m]."""
+FINEST = 1e-12
+"""A hundredth of an atom: no pitch is finer [m]."""
+RANGE_SHARE = 0.98
+"""A height from this share of the stated range on lies at its limit [-]."""
+# So many equal heights at the end, at the extreme of a profile, are no roughness.
+_FLAT_END = 8
+_CAUTION = "caution"
+
+
+@dataclass(frozen=True, slots=True)
+class StatedLength:
+    """A length as it is printed.
+
+    Attributes:
+        value: [m].
+        half_digit: half a unit of its last digit [m].
+    """
+
+    value: float
+    half_digit: float
+
+    def agrees(self, other: "StatedLength") -> bool:
+        """Tell whether two printed lengths may be the same one, rounded."""
+        rounding = self.half_digit + other.half_digit
+        return abs(self.value - other.value) <= rounding * (1 + 1e-9)
+
+
+def stated_length(cell: str) -> StatedLength | None:
+    """Read a printed length with its unit; None where there is none above zero."""
+    text = cell.strip()
+    match = NUMBER.match(text)
+    if match is None:
+        return None
+    try:
+        unit = to_si(text[match.end() :].strip(), "length")
+    except UnitError:
+        return None
+    value = float(match[0]) * unit
+    if not 0 < value < float("inf"):
+        return None
+    return StatedLength(value, half_digit(match[0]) * unit)
+
+
+def caution(text: str) -> Step:
+    """Return a step of provenance that says what to keep in mind about heights."""
+    return step(_CAUTION, said=text)
+
+
+def cautions(provenance: Provenance) -> tuple[str, ...]:
+    """Return what to keep in mind about heights, in the order it was found."""
+    return tuple(
+        str(dict(one.detail).get("said", ""))
+        for one in provenance
+        if one.name == _CAUTION
+    )
+
+
+def half_digit(cell: str) -> float:
+    """Return half a unit of the last digit of a printed number [its unit].
+
+    >>> half_digit("10.0")
+    0.05
+    """
+    mantissa, _, exponent = cell.lower().partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    return float(f"0.5e{int(exponent or 0) - decimals}")
+
+
+def range_caution(heights: Profile, limit: float) -> tuple[Step, ...]:
+    """Say where a trace reaches the limit of its measuring range.
+
+    Args:
+        heights: the profile as the instrument wrote it.
+        limit: largest height the instrument reaches, to both sides of 0 [m].
+
+    Returns:
+        One caution, or none.
+    """
+    at_limit = (np.abs(heights.heights) >= RANGE_SHARE * limit) & heights.valid
+    if not at_limit.any():
+        return ()
+    end = float(heights.heights[heights.valid][-1])
+    if at_limit[heights.valid][-1]:
+        said = (
+            f"the trace ends at {1e6 * end:.4g} um, the limit of its range of +/- "
+            f"{1e6 * limit:g} um: the stylus has left its range there"
+        )
+    else:
+        said = (
+            f"{int(at_limit.sum())} heights lie at the limit of the range of +/- "
+            f"{1e6 * limit:g} um: they are cut off there"
+        )
+    return (caution(f"{said}; level the part, or measure with a larger range"),)
+
+
+def checked(surface: Surface, path: Path | str, *, longest: float = LONGEST) -> Surface:
+    """Refuse what nobody can have measured, and note what looks wrong.
+
+    Args:
+        surface: as a reader made it.
+        path: file or line that it came from, for messages.
+        longest: largest length of a trace, or side of a map [m].
+
+    Returns:
+        The surface, with cautions in its provenance where there are any.
+
+    Raises:
+        FormatError: it is longer, its pitch finer or its heights greater than any.
+    """
+    extents = _extents(surface)
+    for length, pitch, points in extents:
+        if not (length <= longest and pitch >= FINEST):
+            raise FormatError(
+                f"{named(path)}: {points} points over {length:.3g} m are {pitch:.3g} m "
+                f"apart; a length up to {longest:g} m and a pitch from {FINEST:g} m on "
+                "can be measured: the length in the header or its unit is wrong, "
+                "correct it or export the file again"
+            )
+    there = surface.heights[surface.valid]
+    span = float(np.ptp(there)) if there.size else 0.0
+    if there.size and float(np.abs(there).max()) > HIGHEST:
+        raise FormatError(
+            f"{named(path)} holds a height of {float(np.abs(there).max()):g} m, beyond "
+            f"{HIGHEST:g} m; it is a code for a missing point or a wrong unit: export "
+            "it again"
+        )
+    found = []
+    side = max(length for length, _, _ in extents)
+    if span > side > 0:
+        found.append(
+            caution(
+                f"heights span {1e6 * span:.4g} um over a length of {1e6 * side:.4g} "
+                "um, steeper than any machined surface: is a unit wrong?"
+            )
+        )
+    if isinstance(surface, Profile) and (flat := _flat_end(surface)):
+        found.append(
+            caution(
+                f"the trace ends in {flat} equal heights at its extreme: the "
+                "instrument had left its range; cut the end off, or measure again"
+            )
+        )
+    if not found:
+        return surface
+    return replace(surface, provenance=(*surface.provenance, *found))
+
+
+def _extents(surface: Surface) -> tuple[tuple[float, float, int], ...]:
+    """Return length [m], pitch [m] and points along each direction."""
+    if isinstance(surface, Areal):
+        pairs = zip(surface.spacing, surface.heights.shape, strict=True)
+        return tuple((pitch * n, pitch, n) for pitch, n in pairs)
+    return ((surface.length, surface.spacing, surface.heights.size),)
+
+
+def _flat_end(profile: Profile) -> int:
+    """Return how many equal heights end a profile at its extreme; 0 for few."""
+    there = profile.heights[profile.valid]
+    if there.size < 2 * _FLAT_END or there[-1] not in (there.min(), there.max()):
+        return 0
+    other = np.flatnonzero(there != there[-1])
+    count = there.size - 1 - int(other[-1]) if other.size else 0
+    return count if count >= _FLAT_END else 0

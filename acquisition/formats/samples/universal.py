@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""Time histories from universal files (data set 58) by pyuff, headers checked first.
+
+pyuff makes an axis as long as a header says, whatever the file holds. So every header
+is looked at before: none may claim more values than its data set has bytes.
+
+Source:
+    Structural Dynamics Research Laboratory, University of Cincinnati, Universal File
+    Formats, data set 58 (function at nodal degree of freedom).
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import FormatError, HostileFile, SamplingError
+from jointbench.acquisition.file_access.memory_room import require_room
+from jointbench.acquisition.file_access.text_files import named, read_bytes, shown
+from jointbench.acquisition.formats.even_steps import roundest
+from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
+from jointbench.acquisition.records.recordings import Quantity, Recording
+
+SUFFIXES = (".uff", ".unv")
+# As pyuff finds them: binary values need not end with a line.
+_EDGE = re.compile(rb"    -1(?=[\r\n]|$| {74})")
+_HEADER = 9
+"""Lines of a data set up to the one that says how many values there are."""
+_MOST_SETS = 10_000
+_MOST_BYTES = 2**28
+_BINARY_SET = re.compile(rb"\n {4}58b")
+# What pyuff takes for a byte of the file: values of text pass through words.
+_BINARY_NEEDED, _TEXT_NEEDED = 5.0, 7.5
+_DIGITS = 5e-6
+"""Half a unit of the last printed digit of a step, relative, at the most."""
+_TIME_RESPONSE = 1
+_COUNT = slice(10, 20)
+_QUANTITIES = {
+    8: Quantity.DISPLACEMENT,
+    11: Quantity.VELOCITY,
+    12: Quantity.ACCELERATION,
+    13: Quantity.FORCE,
+}
+_DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
+
+
+def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
+    """Read all time histories of a universal file as one recording.
+
+    Args:
+        path: of the file.
+        columns: what the channels hold, where the file does not say.
+        point: where the hammer struck.
+
+    Raises:
+        FormatError: it is no universal file, is damaged, or holds no time history.
+        HostileFile: a header claims more than the file holds.
+        SamplingError: the histories have different rates.
+        UnitError: see `recording_of`.
+    """
+    whole = read_universal_sets(path, kinds=(58,))
+    sets = [one for one in whole if one.get("func_type") == _TIME_RESPONSE]
+    if not sets:
+        raise FormatError(
+            f"{named(path)} holds no time history (data set 58, function type 1); "
+            "export the samples, not FRFs; `jointbench export` shows what it has"
+        )
+    intervals = {float(one["abscissa_inc"]) for one in sets}
+    uneven = any(int(one["abscissa_spacing"]) != 1 for one in sets)
+    if uneven or len(intervals) != 1 or not 0.0 < min(intervals) < math.inf:
+        raise SamplingError(
+            f"{named(path)}: time histories must share one even step above zero, they "
+            f"have {', '.join(f'{i:g} s' for i in sorted(intervals)[:5])}"
+        )
+    return recording_of(
+        path,
+        [_stated(name, one) for name, one in zip(_names(sets), sets, strict=True)],
+        sample_rate=_rate(intervals.pop()),
+        columns=columns,
+        point=point,
+        layout="universal file, data set 58",
+    )
+
+
+def _rate(interval: float) -> float:
+    """Return the roundest rate that the six digits of a header allow [Hz]."""
+    low, high = interval * (1.0 - _DIGITS), interval * (1.0 + _DIGITS)
+    return roundest(1.0 / high, 1.0 / low)
+
+
+def _stated(name: str, one: dict[str, Any]) -> StatedChannel:
+    data = np.asarray(one["data"])
+    node = str(one.get("rsp_node") or "")
+    kind = _QUANTITIES.get(int(one["ordinate_spec_data_type"]))
+    unit = str(one["ordinate_axis_units_lab"]).strip()
+    return StatedChannel(
+        name=name,
+        unit="" if unit.upper() == "NONE" else unit,
+        size=data.size,
+        read=partial(_real, data),
+        point="" if node == "0" else node,
+        direction=_DIRECTIONS.get(int(one.get("rsp_dir") or 0), ""),
+        quantity=kind,
+    )
+
+
+def _real(data: np.ndarray[Any, Any]) -> FloatArray:
+    return np.asarray(data.real, dtype=np.float64)
+
+
+def _names(sets: Sequence[dict[str, Any]]) -> list[str]:
+    """Return the entity of each set, with its number where that is not its own."""
+    entities = [str(one.get("rsp_ent_name") or "").strip() for one in sets]
+    return [
+        entity
+        if entity.upper() not in {"", "NONE"} and entities.count(entity) == 1
+        else f"{entity} {number}".removeprefix("NONE").strip()
+        for number, entity in enumerate(entities, 1)
+    ]
+
+
+def _require_sane_headers(path: Path) -> None:
+    data = read_bytes(path, limit=_MOST_BYTES)
+    binary = _BINARY_SET.search(data) is not None
+    require_room(path, (_BINARY_NEEDED if binary else _TEXT_NEEDED) * len(data))
+    edges = [found.start() for found in _EDGE.finditer(data)]
+    if not edges:
+        raise FormatError(f"{named(path)} is no universal file: it has no data set")
+    if len(edges) % 2:
+        raise FormatError(
+            f"{named(path)}: data set {len(edges) // 2 + 1} has no end; it is cut "
+            "short: use another copy"
+        )
+    if len(edges) > 2 * _MOST_SETS:
+        raise HostileFile(f"{named(path)} has {len(edges) // 2} data sets")
+    for begin, end in zip(edges[::2], edges[1::2], strict=True):
+        _require_sane_set(path, data[begin:end].split(b"\n", _HEADER))
+
+
+def _require_sane_set(path: Path, lines: Sequence[bytes]) -> None:
+    """Raise `HostileFile` where a data set 58 claims more than it holds."""
+    if len(lines) <= _HEADER or lines[1].split()[:1] not in ([b"58"], [b"58b"]):
+        return
+    size = sum(len(line) + 1 for line in lines)
+    try:
+        claimed = int(lines[8][_COUNT])
+    except ValueError as error:
+        raise FormatError(
+            f"{named(path)}: a data set 58 has no number of values"
+        ) from error
+    if not 0 <= claimed <= size:
+        raise HostileFile(
+            f"{named(path)}: a header claims {claimed} values, its data set has {size} "
+            "bytes; use another copy"
+        )
+
+
+def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, Any]]:
+    """Read the data sets of some kinds, as pyuff calls what is in them.
+
+    Args:
+        path: of the file.
+        kinds: numbers of data sets.
+
+    Raises:
+        FormatError: it is no universal file, or is damaged.
+        HostileFile: a header claims more than the file holds.
+    """
+    import pyuff
+
+    _require_sane_headers(path)
+    try:
+        file = pyuff.UFF(str(path))
+        return [
+            dict(file.read_sets(number))
+            for number, kind in enumerate(map(int, file.get_set_types()))
+            if kind in kinds
+        ]
+    except Exception as error:  # it raises whatever the content makes it raise
+        raise FormatError(
+            f"{named(path)} cannot be read as a universal file ({shown(error)}); use "
+            "another copy"
+        ) from error

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: MIT
+"""What a bench records: channels, recordings, hits and their verdicts.
+
+Frozen, read-only and in SI inside; `dataclasses.replace` derives one from another.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from jointbench.acquisition.basics.arrays import (
+    FloatArray,
+    freeze,
+    require_finite,
+    require_positive,
+    require_shape,
+)
+from jointbench.acquisition.basics.errors import ChannelMissing, ShapeError
+
+
+class Quantity(StrEnum):
+    """What a channel measures; the value is the word used in files and columns."""
+
+    FORCE = "force"
+    ACCELERATION = "acceleration"
+    VELOCITY = "velocity"
+    DISPLACEMENT = "displacement"
+
+
+class Verdict(StrEnum):
+    """What became of a hit; only `OK` hits enter an average."""
+
+    OK = "ok"
+    OVERLOAD = "overload"
+    DOUBLE = "double"
+    WEAK = "weak"
+    LATE = "late"
+    POOR_COHERENCE = "poor_coherence"
+    OPERATOR = "operator"
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One step of processing, as provenance keeps it.
+
+    Attributes:
+        name: what was done, for example ``"import"`` or ``"force_window"``.
+        detail: the parameters and reasons, by name; plain text, numbers or flags.
+    """
+
+    name: str
+    detail: tuple[tuple[str, str | float | int | bool], ...] = ()
+
+
+Provenance = tuple[Step, ...]
+
+
+def step(name: str, /, **detail: str | float | int | bool) -> Step:
+    """Make a `Step` from keyword details."""
+    return Step(name, tuple(detail.items()))
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One measuring channel.
+
+    Attributes:
+        name: unique within a recording, for example ``"a1"``.
+        quantity: what it measures; samples are kept in that quantity's SI unit.
+        point: where it sits on the structure (for a hammer: the default point).
+        direction: ``"+z"`` and the like; empty if not stated.
+        unit: unit the samples were recorded or imported in, for example ``"g"``.
+        sensitivity: of the sensor [V per SI unit], or None if not stated.
+        range: largest value the channel can carry [SI unit], or None if unknown.
+    """
+
+    name: str
+    quantity: Quantity
+    point: str = ""
+    direction: str = ""
+    unit: str = ""
+    sensitivity: float | None = None
+    range: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """One hammer hit found in a recording, judged.
+
+    Attributes:
+        start: index of the first sample of the hit's segment (pre-trigger included).
+        trigger: index of the sample at which the force crossed the trigger level.
+        stop: index one past the last sample of the segment.
+        point: where the hammer struck.
+        peak_force: largest force of the hit [N].
+        verdict: `Verdict.OK` or why it is left out.
+        measure: the number behind the verdict (see `reason` for its meaning).
+        reason: one line that says what `measure` is and which rule it met or broke.
+    """
+
+    start: int
+    trigger: int
+    stop: int
+    point: str
+    peak_force: float
+    verdict: Verdict
+    measure: float
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Recording:
+    """Simultaneous samples of several channels, and the hits found in them.
+
+    Attributes:
+        name: unique within a session.
+        samples: values in SI units, shape (n_channels, n_samples), finite.
+        sample_rate: [Hz].
+        channels: one for each row of `samples`.
+        start_time: time of the first sample since the session began [s].
+        hits: judged hits, in order of time; empty before detection.
+        provenance: how the samples came about.
+        preload: on the joint while this was recorded [N]; None where it was that of
+            the session, or nobody said.
+    """
+
+    name: str
+    samples: FloatArray
+    sample_rate: float
+    channels: tuple[Channel, ...]
+    start_time: float = 0.0
+    hits: tuple[Hit, ...] = ()
+    provenance: Provenance = field(default=())
+    preload: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check shapes once and make the samples read-only."""
+        require_shape("samples", self.samples, (len(self.channels), None))
+        require_finite("samples", self.samples)
+        require_positive("sample_rate", self.sample_rate)
+        if self.preload is not None:
+            require_positive("preload", self.preload)
+        names = [channel.name for channel in self.channels]
+        if len(set(names)) != len(names):
+            raise ShapeError(f"channel names must be unique, got {names}")
+        freeze(self, "samples")
+
+    def rows(self, quantity: Quantity) -> tuple[int, ...]:
+        """Return the indices of the channels that measure `quantity`."""
+        return tuple(
+            i for i, channel in enumerate(self.channels) if channel.quantity == quantity
+        )
+
+    def row(self, quantity: Quantity) -> int:
+        """Return the one channel that measures `quantity`.
+
+        Raises:
+            ChannelMissing: there is none, or more than one.
+        """
+        rows = self.rows(quantity)
+        if len(rows) != 1:
+            raise ChannelMissing(
+                f"recording {self.name!r} has {len(rows)} channels of quantity "
+                f"{quantity.value!r}, exactly one is needed; its channels are "
+                + ", ".join(f"{c.name} ({c.quantity.value})" for c in self.channels)
+            )
+        return rows[0]
+
+
+def response_rows(recording: Recording) -> tuple[int, ...]:
+    """Return the indices of all channels that are not a force.
+
+    Raises:
+        ChannelMissing: the recording holds forces only.
+    """
+    rows = tuple(
+        i
+        for i, channel in enumerate(recording.channels)
+        if channel.quantity is not Quantity.FORCE
+    )
+    if not rows:
+        raise ChannelMissing(
+            f"recording {recording.name!r} has no response channel; "
+            "give one of acceleration, velocity or displacement"
+        )
+    return rows
+
+
+def common_response(channels: Sequence[Channel]) -> Quantity:
+    """Return the quantity that all response channels share.
+
+    Raises:
+        ChannelMissing: they measure different quantities, or there is none.
+    """
+    quantities = {c.quantity for c in channels if c.quantity is not Quantity.FORCE}
+    if len(quantities) != 1:
+        raise ChannelMissing(
+            "response channels must measure one and the same quantity, got "
+            f"{sorted(q.value for q in quantities)}"
+        )
+    return quantities.pop()

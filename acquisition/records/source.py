@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""What every source of samples offers: channels, a rate, and blocks until it ends."""
+
+from collections.abc import Iterator
+from typing import Protocol
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.records.recordings import Channel
+
+
+class Source(Protocol):
+    """A chassis, a simulated bench or a replayed file; opened by a context manager."""
+
+    @property
+    def name(self) -> str:
+        """What the session file calls it, for example ``"sim:two-body?seed=1"``."""
+        ...
+
+    @property
+    def simulated(self) -> bool:
+        """True where no hardware is behind it."""
+        ...
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """The channels, in the order of the rows of every block."""
+        ...
+
+    @property
+    def sample_rate(self) -> float:
+        """Samples per second and channel [Hz]."""
+        ...
+
+    def blocks(self) -> Iterator[FloatArray]:
+        """Yield successive samples in SI units, shape (n_channels, block)."""
+        ...
+
+
+class Run(Source, Protocol):
+    """One stretch of a visit to the bench, recorded under one setting of the joint."""
+
+    @property
+    def preload(self) -> float | None:
+        """Preload on the joint meanwhile [N]; None where nobody says."""
+        ...
+
+    @property
+    def start_time(self) -> float:
+        """Time of the first sample since the visit began [s]."""
+        ...

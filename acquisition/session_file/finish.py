@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: MIT
+"""From the file of a recording to a finished session, piece by piece.
+
+Samples go from one file to the other some columns at a time, so that a session of any
+length is finished, or recovered, in the same memory.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import h5py
+
+from jointbench.acquisition.basics.arrays import require_finite
+from jointbench.acquisition.file_access.disk_room import DiskRoom
+from jointbench.acquisition.file_access.file_lock import locked
+from jointbench.acquisition.file_access.hdf5_guards import open_guarded
+from jointbench.acquisition.file_access.netcdf_write import new_file
+from jointbench.acquisition.session_file.extras import write_provenance
+from jointbench.acquisition.session_file.live_read import (
+    LiveContent,
+    LiveSpan,
+    Samples,
+    read_live,
+    read_pieces,
+)
+from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
+from jointbench.acquisition.session_file.recovery import is_finished, outline_live
+from jointbench.acquisition.session_file.replaceable import require_session
+from jointbench.acquisition.session_file.store import (
+    SESSION_SCHEMA,
+    SESSION_TITLE,
+    damage_named,
+    require_schema,
+    write_head,
+)
+from jointbench.acquisition.session_file.streams import write_recording_in_pieces
+
+# The time axis packs to less than this share of a byte a sample.
+_AXIS_SHARE = 0.125
+_ENTRY_TWICE = 2  # an entry of the log is in the session once as text, once as table
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """What a recording came to.
+
+    Attributes:
+        samples: per channel that are there and right.
+        hits: in the recordings.
+        damaged: blocks that were left out.
+        ended: whether it came to its end by itself.
+    """
+
+    samples: int
+    hits: int
+    damaged: int
+    ended: bool
+
+
+def finish_live(source: Path, target: Path, *, overwrite: bool = False) -> Finished:
+    """Write the session that a recording amounts to.
+
+    Args:
+        source: file of the recording, which nobody records into any more.
+        target: of the session; the source itself is replaced once the session is
+            whole and on the disk.
+        overwrite: replace a file that is there.
+
+    Raises:
+        UsageError: there is such a file and `overwrite` is off, or it cannot be
+            written there; the source stays as it is.
+        FormatError: the source is no recording, or damaged at its head.
+    """
+    new = new_file(
+        target,
+        schema=SESSION_SCHEMA,
+        title=SESSION_TITLE,
+        overwrite=overwrite,
+        memory=False,
+    )
+    if overwrite:
+        require_session(target)
+    # The source is closed before the target takes its name.
+    with locked(target), new as file, open_guarded(source) as live:
+        with damage_named(source):
+            require_schema(live, LIVE_SCHEMA, source)
+        return _copy(source, live, file)
+
+
+def _copy(source: Path, live: h5py.File, file: h5py.File) -> Finished:
+    with damage_named(source):
+        content = read_live(live)
+        session, spans = outline_live(content)
+    with Path(file.filename).open("rb+") as handle:
+        room = DiskRoom(handle, file)
+        room.make(_ENTRY_TWICE * int(live["log"].shape[0]))
+        write_head(file, session)
+        for position, (recording, span) in enumerate(
+            zip(session.recordings, spans, strict=True)
+        ):
+            room.make(round(_AXIS_SHARE * span.count))
+            write_recording_in_pieces(
+                file,
+                recording,
+                position,
+                count=span.count,
+                pieces=_pieces(source, live, span, room),
+            )
+        write_provenance(file, session)
+        file.flush()
+    return _account(content, sum(len(r.hits) for r in session.recordings))
+
+
+def _pieces(
+    source: Path, live: h5py.File, span: LiveSpan, room: DiskRoom
+) -> Iterator[Samples]:
+    """Yield the samples of a span once there is room for them."""
+    pieces = read_pieces(live, span.stored, span.count)
+    while True:
+        with damage_named(source):
+            piece = next(pieces, None)
+            if piece is not None:
+                require_finite("samples", piece)
+        if piece is None:
+            return
+        room.make(piece.nbytes)
+        yield piece
+
+
+def _account(content: LiveContent, hits: int) -> Finished:
+    return Finished(content.samples, hits, content.damaged, is_finished(content))

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""Catalogue v1 of lumped dynamics: 22 effects, each in one entry.
+
+To add one, write a `LumpedEffect` (one file, data plus one hook) and hand
+``(*CATALOGUE, MINE)`` to `make_bench`.
+"""
+
+import difflib
+from collections.abc import Iterable
+
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.gap.catalogue.linear_effects import LINEAR
+from jointbench.analysis.gap.catalogue.nonlinear_effects import NONLINEAR
+from jointbench.analysis.gap.model.effect import Candidate, Site
+from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+from jointbench.analysis.lumped.lumped_model import LumpedModel
+
+CATALOGUE: tuple[LumpedEffect, ...] = (*NONLINEAR, *LINEAR)
+ALL_CHANNELS = "all"
+
+
+def check_names(names: Iterable[str], entries: tuple[LumpedEffect, ...]) -> None:
+    """Raise `UsageError` for a name that no entry has, with near matches."""
+    known = [e.effect.name for e in entries]
+    for name in names:
+        if name not in known:
+            near = difflib.get_close_matches(name, known) or known
+            raise UsageError(
+                f"no effect is called {name!r}; did you mean {', '.join(near)}?"
+            )
+
+
+def sites_of(entry: LumpedEffect, model: LumpedModel) -> tuple[Site, ...]:
+    """Return the sites of a model at which an entry can sit."""
+    found: list[Site] = []
+    if "link" in entry.sites:
+        found += [Site("link", x.name) for x in model.links if x.joint]
+    if "body" in entry.sites:
+        found += [Site("body", x.name) for x in model.bodies]
+    if "channel" in entry.sites:
+        several = len(model.channels) > 1
+        if entry.mixing is None or several:
+            found += [Site("channel", x.name) for x in model.channels]
+        if entry.every_channel and several:
+            found.append(Site("channel", ALL_CHANNELS))
+    return tuple(found)
+
+
+def candidates_of(
+    entries: tuple[LumpedEffect, ...], model: LumpedModel
+) -> tuple[Candidate, ...]:
+    """Return every entry at every site it applies to."""
+    return tuple(
+        Candidate(entry.effect, site)
+        for entry in entries
+        for site in sites_of(entry, model)
+    )
+
+
+def site_index(model: LumpedModel, site: Site) -> int:
+    """Return the index of a site's element in the model, -1 for all channels."""
+    if site.kind == "channel" and site.name == ALL_CHANNELS:
+        return -1
+    rows = {
+        "link": [x.name for x in model.links],
+        "body": [x.name for x in model.bodies],
+        "channel": [x.name for x in model.channels],
+    }[site.kind]
+    return rows.index(site.name)

@@ -1,0 +1,246 @@
+# SPDX-License-Identifier: MIT
+"""Diagnose a campaign: the loop's outcome, put into a verdict with its evidence."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnosis.evidence import make_exhibit
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
+from jointbench.analysis.gap.diagnosis.verdict import verdict_on
+from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
+from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
+from jointbench.analysis.gap.judgement.naming import noise_sd, weakest
+from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Estimate,
+    Finding,
+    Gap,
+    NamedEffect,
+    Ranked,
+)
+from jointbench.analysis.gap.model.effect import (
+    Candidate,
+    Reported,
+    Term,
+)
+from jointbench.analysis.gap.residuals.bench_protocol import Bench, values_of
+from jointbench.analysis.gap.residuals.fit_records import FULL, Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.selection_round import Progress, score
+
+FAR = 1e12
+UNFORETOLD_WORDS = (
+    "; held out, a condition is not foretold by the others: it shows the effect "
+    "alone, so add conditions next to it"
+)
+LOOK_CLOSER = "look at the views of the gap; widen levels, points and preloads"
+
+
+@one_thread()
+def diagnose(
+    campaign: Campaign,
+    *,
+    without: frozenset[str] = frozenset(),
+    entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Find, name and add what a model misses.
+
+    Args:
+        campaign: measurement and model.
+        without: names of effects to leave out of the catalogue.
+        entries: the catalogue.
+        progress: told what is being tried, one line at a time.
+
+    Returns:
+        Verdict and evidence; `unknown` with a reason where the campaign cannot show
+        more (one level, no repeats, too few records).
+
+    Raises:
+        UsageError: `without` holds a name that no entry has.
+
+    Source:
+        Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63, 425, for the question; the
+        rules of naming are those of `jointbench.analysis.gap.judgement.naming`.
+    """
+    bench = make_bench(campaign, without=without, entries=entries)
+    outcome = investigate(bench, progress or (lambda line: None))
+    final = outcome.bench
+    if not isinstance(final, LumpedBench):
+        raise TypeError("the loop must hand back the bench it was given")
+    return conclude(outcome, final, limits=campaign_limits(campaign))
+
+
+def conclude(
+    outcome: SearchOutcome, bench: LumpedBench, *, limits: str = ""
+) -> Diagnosis:
+    """Put an outcome into words and numbers."""
+    base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
+    outcome = replace(outcome, base=base)
+    verdict = verdict_on(outcome, bench, limits)
+    finding = verdict.finding
+    shown: Sequence[Fit] = ()
+    if finding is Finding.NAMED:
+        shown = (outcome.best,)
+    elif finding is Finding.AMBIGUOUS:
+        shown = outcome.level
+    best = outcome.best if outcome.gate.passed else base
+    held = hold_out(base, bench)
+    exhibit = make_exhibit(bench, base, outcome, finding)
+    if verdict.step:
+        exhibit = replace(exhibit, advice="")
+    found = Diagnosis(
+        verdict=finding,
+        effects=_effects(outcome, bench, shown),
+        candidates=_ranked(outcome, bench),
+        gap_before=_gap(bench, base, held),
+        gap_after=_gap(bench, best, hold_out(best, bench, held)),
+        pulls={
+            name: (float(b), float(a))
+            for name, b, a in zip(bench.base_names, base.pulls, best.pulls, strict=True)
+        },
+        base=_base_estimates(bench, best),
+        noise={
+            "sigma_min": float(bench.noise.sigma.min()),
+            "sigma_max": float(bench.noise.sigma.max()),
+            "force_sigma_N": bench.noise.force_sigma,
+            "scatter_gain": bench.noise.scatter[0],
+            "scatter_joint": max(bench.noise.scatter[1:], default=0.0),
+        },
+        null_statistic=(
+            outcome.base_screening.largest,
+            outcome.base_screening.threshold,
+        ),
+        experiment=verdict.step or exhibit.advice or LOOK_CLOSER,
+        reason=verdict.reason,
+        exhibit=exhibit,
+        explanations=tuple(_labels(f) for f in outcome.level if outcome.gate.passed),
+    )
+    if finding is Finding.NAMED and not found.foretold:
+        return replace(found, reason=verdict.reason + UNFORETOLD_WORDS)
+    return found
+
+
+def _labels(fit: Fit) -> tuple[str, ...]:
+    return tuple(c.label for c in fit.candidates) or ("none",)
+
+
+def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
+    return Gap(
+        held.gap, held.chi2_per_dof, float(np.abs(fit.pulls).max()), bench.views(fit)
+    )
+
+
+def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
+    rows = sorted([outcome.base, *outcome.ranked], key=lambda f: score(bench, f))
+    first = score(bench, rows[0])
+    return tuple(
+        Ranked(
+            _labels(f),
+            score(bench, f),
+            score(bench, f) - first,
+            f.chi2 / bench.blocks.dof,
+            float(np.abs(f.pulls).max()),
+        )
+        for f in rows
+    )
+
+
+def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
+    """Return what the confidence of one explanation rests on."""
+    own = {c.label for c in fit.candidates}
+    others = [
+        score(bench, f)
+        for f in outcome.ranked
+        if {c.label for c in f.candidates} != own
+        and not own < {c.label for c in f.candidates}
+    ]
+    margin = (min(others) if others else FAR) - score(bench, fit)
+    allowed = max(outcome.gate.allowed, 1e-12)
+    slack = 1.0 - max(outcome.gate.excess, 0.0) / allowed
+    sure = weakest(fit, (outcome.base, *outcome.ranked))
+    return Evidence(margin, slack, sure, len(fit.candidates))
+
+
+def _effects(
+    outcome: SearchOutcome, bench: LumpedBench, fits: Sequence[Fit]
+) -> tuple[NamedEffect, ...]:
+    """Return the effects of some explanations, each as in the first that holds it.
+
+    What all rivals hold is as sure as all of them together.
+    """
+    found: dict[str, NamedEffect] = {}
+    for fit in fits:
+        evidence = evidence_of(outcome, bench, fit)
+        sure = confidence_of(evidence) / len(fits)
+        for k, (label, term) in enumerate(zip(_labels(fit), fit.terms, strict=True)):
+            if label in found:
+                one = found[label]
+                found[label] = replace(one, confidence=one.confidence + sure)
+                continue
+            found[label] = NamedEffect(
+                term.candidate.effect.name,
+                str(term.candidate.site),
+                estimates_of(bench, fit, k),
+                sure,
+                evidence,
+            )
+    return tuple(found.values())
+
+
+def estimates_of(bench: Bench, fit: Fit, index: int) -> tuple[Estimate, ...]:
+    """Return the parameters of the effect of that index, with sd by first order."""
+    term = fit.terms[index]
+    at = fit.n_base + sum(len(t.coordinates) for t in fit.terms[:index])
+    size = len(term.coordinates)
+    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
+    covariance = fit.covariance[at : at + size, at : at + size] * widened
+    reported = _report(bench, term.candidate, term.coordinates)
+    slopes = np.empty((len(reported), size))
+    for i in range(size):
+        step = 1e-5 * max(abs(float(term.coordinates[i])), 1e-3)
+        moved = np.array(term.coordinates)
+        moved[i] += step
+        after = _report(bench, term.candidate, moved)
+        slopes[:, i] = [
+            (b.value - a.value) / step for a, b in zip(reported, after, strict=True)
+        ]
+    sd = np.sqrt(np.maximum(np.diag(slopes @ covariance @ slopes.T), 0.0))
+    return tuple(
+        Estimate(r.name, r.value, float(s), r.unit)
+        for r, s in zip(reported, sd, strict=True)
+    )
+
+
+def _report(
+    bench: Bench, candidate: Candidate, coordinates: FloatArray
+) -> tuple[Reported, ...]:
+    term = Term(candidate, coordinates)
+    return candidate.effect.reported(values_of(bench, term))
+
+
+def _base_estimates(bench: LumpedBench, fit: Fit) -> tuple[Estimate, ...]:
+    widened = max(fit.chi2 / bench.blocks.dof, 1.0)
+    sd = np.sqrt(np.diag(fit.covariance)[: fit.n_base] * widened)
+    values = bench.theta(fit.base)
+    links = len(bench.campaign.model.links)
+    units = ["kg"] * len(bench.campaign.model.bodies) + ["N/m"] * links
+    units += ["N s/m"] * links
+    return tuple(
+        Estimate(name, float(v), float(v * s), unit)
+        for name, v, s, unit in zip(bench.base_names, values, sd, units, strict=True)
+    )
+
+
+__all__ = ["conclude", "diagnose", "estimates_of", "evidence_of", "noise_sd"]

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: MIT
+"""Does a misfit recur at other levels, in proportion to the hit?
+
+A cause that is linear in the motion leaves the same misfit per force at every level,
+whatever it is. So the misfit over the force of the hardest hits is looked for in softer
+ones: 1 where it recurs whole, 0 where not at all, below 0 where it turns round.
+
+The base must not have been bent by the hardest hits for that: a base that a softening
+joint has led to 1.3 times the true masses leaves a misfit in proportion to every hit,
+although nothing in the joint does. So it is fitted to the softer hits alone.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from enum import StrEnum
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    IntArray,
+)
+from jointbench.analysis.gap.residuals.fit_records import Fit, Stage
+from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.settling import joint_at
+from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages
+
+FORCE_FLOOR = 0.05
+"""Of the largest line of a force, below which a ratio to it says nothing."""
+VAGUE = 0.15
+"""Standard deviation beyond which a recurrence is not told."""
+LINEAR_WITHIN = 0.35
+STEP = 1e-4
+"""Difference step of the logarithm of the joint's stiffness."""
+
+
+class LevelScaling(StrEnum):
+    """How the misfit goes with the strength of the hit."""
+
+    PROPORTIONAL = "proportional"
+    CHANGES = "changes"
+    UNTOLD = "untold"
+
+
+@dataclass(frozen=True, slots=True)
+class Recurrence:
+    """How much of the misfit of the hardest hits recurs at a lower level.
+
+    Attributes:
+        level: nominal peak force [N].
+        share: of the misfit per force [-].
+        sd: of `share` by noise and by the scatter from hit to hit [-].
+        size: of the misfit per force, over that of the hardest hits [-].
+    """
+
+    level: float
+    share: float
+    sd: float
+    size: float
+
+
+@dataclass(frozen=True, slots=True)
+class Scatter:
+    """One way in which hits differ from one another by chance.
+
+    Attributes:
+        sd: of it, relative [-].
+        slope: change of the response with it, (n_records, n_channels, n_samples).
+    """
+
+    sd: float
+    slope: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Softer(FitProblem):
+    """A problem that does not see some of the records."""
+
+    hidden: BoolArray
+
+    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
+        """Return the whitened residual at x, 0 in the records that are hidden."""
+        seen = FitProblem.residual(self, x, stage)
+        seen.reshape(self.hidden.size, -1)[self.hidden] = 0.0
+        return seen
+
+
+def levels_of(bench: LumpedBench, base: Fit) -> tuple[Recurrence, ...]:
+    """Look for the misfit of the hardest hits in softer ones, the base fitted to those.
+
+    Args:
+        bench: measurement and noise.
+        base: fit without effects, to start from.
+
+    Returns:
+        As `recurrences` does.
+    """
+    campaign = bench.campaign
+    hardest = campaign.level == campaign.level.max()
+    if campaign.continuous or hardest.all():
+        return ()
+    whole = make_problem(bench, ())
+    known = {f.name: getattr(whole, f.name) for f in fields(whole)}
+    softer = fit_stages(_Softer(**known, hidden=hardest), base.base, BASE_STAGES).base
+    model = bench.response(softer, ())
+    return recurrences(
+        bench, campaign.response - model, _scatters(bench, softer, model)
+    )
+
+
+def _scatters(
+    bench: LumpedBench, base: FloatArray, model: FloatArray
+) -> tuple[Scatter, ...]:
+    """Return how hits scatter: in strength, and in the stiffness of the joint."""
+    moved = base.copy()
+    moved[joint_at(bench.campaign.model)] += STEP
+    gain, joint = bench.noise.scatter[0], max(bench.noise.scatter[1:], default=0.0)
+    slope = (bench.response(moved, ()) - model) / STEP
+    return Scatter(gain, model), Scatter(joint, slope)
+
+
+def recurrences(
+    bench: LumpedBench, misfit: FloatArray, scatters: Sequence[Scatter] = ()
+) -> tuple[Recurrence, ...]:
+    """Look for the misfit of the hardest hits at lower levels.
+
+    Args:
+        bench: measurement and noise.
+        misfit: measured less model, (n_records, n_channels, n_samples), any unit.
+        scatters: by which a hit may differ from the others without a cause.
+
+    Returns:
+        One for each lower level that the noise lets speak, hardest first; empty where
+        no hit point and preload met two levels.
+    """
+    if bench.campaign.continuous:
+        return ()
+    forces = np.fft.rfft(bench.campaign.force, axis=1)
+    size = np.abs(forces)
+    spoken = np.all(size > FORCE_FLOOR * size.max(axis=1, keepdims=True), axis=0)
+    forces = forces[:, spoken]
+
+    def lines(records: FloatArray) -> ComplexArray:
+        whitened = records / bench.noise.sigma[:, :, None]
+        return np.asarray(np.fft.rfft(whitened, axis=2)[:, :, spoken])
+
+    # White noise of unit variance: each part of a line has half of n.
+    spectra = lines(misfit) / np.sqrt(misfit.shape[2] / 2)
+    slopes = [
+        s.sd * lines(s.slope) / np.sqrt(misfit.shape[2] / 2)
+        for s in scatters
+        if s.sd > 0.0
+    ]
+    found, level = [], bench.campaign.level
+    for rows in _pairings(bench):
+        hard = rows[level[rows] == level[rows].max()]
+        for low in np.unique(level[rows])[:-1]:
+            soft = rows[level[rows] == low]
+            found.append(_compare(float(low), (spectra, *slopes), forces, hard, soft))
+    merged = [_merge(found, x) for x in sorted({f.level for f in found}, reverse=True)]
+    return tuple(f for f in merged if f.sd < VAGUE)
+
+
+def _pairings(bench: LumpedBench) -> list[IntArray]:
+    """Return the records of each hit point and preload that met several levels."""
+    keys = [f"{x['hit point']}|{x['preload']}" for x in bench.blocks.labels]
+    groups = [
+        np.array([i for i, k in enumerate(keys) if k == key])
+        for key in dict.fromkeys(keys)
+    ]
+    return [g for g in groups if np.unique(bench.campaign.level[g]).size > 1]
+
+
+def _per_force(
+    spectra: ComplexArray, forces: ComplexArray, rows: IntArray
+) -> ComplexArray:
+    """Return the misfit per force over some hits, shape (n_channels, n_lines)."""
+    push = forces[rows, None, :]
+    total = np.sum(np.abs(push) ** 2, axis=0)
+    return np.asarray(np.sum(spectra[rows] * push.conj(), axis=0) / total)
+
+
+def _compare(
+    level: float,
+    spectra: Sequence[ComplexArray],
+    forces: ComplexArray,
+    hard: IntArray,
+    soft: IntArray,
+) -> Recurrence:
+    """Compare the misfit per force of softer hits with that of the hardest.
+
+    Args:
+        level: of the softer hits [N].
+        spectra: of the misfit, then of one sd of each scatter; over the noise, shape
+            (n_records, n_channels, n_lines) each.
+        forces: shape (n_records, n_lines).
+        hard: the hardest hits.
+        soft: the softer hits.
+    """
+    weight = np.sqrt(np.sum(np.abs(forces[soft]) ** 2, axis=0))
+    top, low = (
+        _parts(_per_force(spectra[0], forces, r) * weight) for r in (hard, soft)
+    )
+    few = np.sqrt(1.0 / soft.size + 1.0 / hard.size)
+    ways = [_parts(_per_force(s, forces, hard) * weight * few) for s in spectra[1:]]
+    norm = max(float(top @ _without(top, ways)), 1e-300)
+    left = _without(low, ways)
+    return Recurrence(
+        level,
+        float(top @ left) / norm,
+        float(1.0 / np.sqrt(norm)),
+        float(np.sqrt(max(float(low @ left) - low.size, 0.0) / norm)),
+    )
+
+
+def _parts(lines: ComplexArray) -> FloatArray:
+    """Return real and imaginary parts in one row."""
+    return np.concatenate([lines.real.ravel(), lines.imag.ravel()])
+
+
+def _without(values: FloatArray, ways: Sequence[FloatArray]) -> FloatArray:
+    """Weigh values by the inverse of unit noise and scatter of unit sd along `ways`."""
+    if not ways:
+        return values
+    d = np.array(ways)
+    return np.asarray(
+        values - d.T @ np.linalg.solve(np.eye(len(ways)) + d @ d.T, d @ values)
+    )
+
+
+def _merge(found: Sequence[Recurrence], level: float) -> Recurrence:
+    own = [f for f in found if f.level == level]
+    weight = np.array([1.0 / max(f.sd, 1e-9) ** 2 for f in own])
+    return Recurrence(
+        level,
+        float(np.average([f.share for f in own], weights=weight)),
+        float(1.0 / np.sqrt(weight.sum())),
+        float(np.average([f.size for f in own], weights=weight)),
+    )
+
+
+def scaling_of(found: Sequence[Recurrence]) -> LevelScaling:
+    """Return how a misfit goes with the hit, by its recurrence at softer ones."""
+    if not found:
+        return LevelScaling.UNTOLD
+    return LevelScaling.PROPORTIONAL if is_linear(found) else LevelScaling.CHANGES
+
+
+def is_linear(found: Sequence[Recurrence]) -> bool:
+    """Return whether the misfit recurs whole at every level."""
+    return all(abs(f.share - 1.0) < LINEAR_WITHIN + 2 * f.sd for f in found)

@@ -1,0 +1,319 @@
+# SPDX-License-Identifier: MIT
+"""The loop: base, null test, race, gate, name, add, repeat, take back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
+from jointbench.analysis.gap.judgement.judging import Hopes, far_off, judge
+from jointbench.analysis.gap.judgement.naming import (
+    CROWDED_WITHIN,
+    Gate,
+    gate,
+    rivals,
+    without_twins,
+)
+from jointbench.analysis.gap.model.effect import Candidate, labels_of, may_join
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.response.search_effort import (
+    Effort,
+    SearchExhausted,
+    counted,
+    limited,
+)
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.exchange import exchanged
+from jointbench.analysis.gap.search.far_pairs import far_pairs
+from jointbench.analysis.gap.search.restarts import crossed, other_sliders
+from jointbench.analysis.gap.search.screening import Screening, screen
+from jointbench.analysis.gap.search.selection_round import (
+    Progress,
+    finish,
+    race,
+    race_on,
+    score,
+)
+
+MOST_EFFECTS = 3
+FIRSTS = 3
+THIRD_LEFT = 0.01
+"""Share of the base's excess chi2 that a pair may leave for a third effect."""
+HOPEFUL = 4.0
+"""Excess of the cost over the best first's above which a first is given no second."""
+NOTHING = 0.01
+"""Excess over dof that noise may make of nothing."""
+WRONG_VALLEY = 2.0
+"""Chi2 over dof above which a base may have stopped in a wrong valley."""
+SECONDS = 4
+MOST_EFFORT = 3.2e9
+"""Samples predicted after which no further effect is looked for: 75 to 87 s of a core
+of 2.3 GHz."""
+MOVED = 1000.0
+"""Gain of a winner by being settled after which one of its effects may be needless."""
+MIN_GAIN = 35.0
+"""Chi2 that a further effect must take, beyond its charge."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SearchOutcome:
+    """What the loop found, before it is put into words.
+
+    Attributes:
+        bench: with its noise as estimated at the end.
+        base: fit without effects.
+        base_gate: the null test.
+        base_screening: its directed tests.
+        best: the winning fit; the base where nothing is missing.
+        gate: its judgement.
+        ranked: rivals of the last round, best first.
+        level: rivals that are not told apart, the winner first.
+        given_up: whether the search for a further effect was ended for its cost.
+    """
+
+    bench: Bench
+    base: Fit
+    base_gate: Gate
+    base_screening: Screening
+    best: Fit
+    gate: Gate
+    ranked: tuple[Fit, ...]
+    level: tuple[Fit, ...]
+    given_up: bool = False
+
+
+def investigate(bench: Bench, progress: Progress) -> SearchOutcome:
+    """Run the whole loop on a bench."""
+    with counted() as effort:
+        return _investigate(bench, progress, effort)
+
+
+def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutcome:
+    progress("base")
+    bench, base = fit_base(bench)
+    screening = screen(bench, base, bench.candidates)
+    first = gate(bench, base, base, screening)
+    if first.passed:
+        return SearchOutcome(bench, base, first, screening, base, first, (), (base,))
+    fits = race(bench, base, screening, bench.candidates, progress)
+    found = _Round(*judge(bench, fits, base, progress, Hopes(base, screening)))
+    found = _other_sliders(found, base, progress)
+    grown: set[frozenset[str]] = set()
+    given_up = False
+    for count in range(1, MOST_EFFECTS):
+        firsts = found.fits[: FIRSTS if count == 1 else 1]
+        known = bool(firsts) and labels_of(firsts[0].candidates) in grown
+        if known or not _worth_more(found, base):
+            break
+        grown |= {labels_of(f.candidates) for f in firsts}
+        try:
+            with limited(effort, MOST_EFFORT):
+                after = _one_more(found, firsts, base, progress)
+        except SearchExhausted:
+            given_up = True
+            break
+        if after is None:
+            break
+        found = after
+    if again := _base_again(found, base, progress):
+        return again
+    fits = without_twins(found.bench, found.fits)
+    best = fits[0] if fits else base
+    level = tuple(rivals(found.bench, fits))
+    return SearchOutcome(
+        bench=found.bench,
+        base=base,
+        base_gate=first,
+        base_screening=screening,
+        best=best,
+        gate=found.gate,
+        ranked=tuple(fits),
+        level=level,
+        given_up=given_up,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Round:
+    """What a round ended with: the bench with its noise, fits best first, the gate."""
+
+    bench: Bench
+    fits: list[Fit]
+    gate: Gate
+
+
+def _one_more(
+    found: _Round, firsts: Sequence[Fit], base: Fit, progress: Progress
+) -> _Round | None:
+    """Add one more effect to each of some fits; None where none of them earns it."""
+    bench, alone = found.bench, len(firsts[0].candidates) == 1
+    if alone and far_off(bench, firsts[0]):
+        more = race_on(bench, far_pairs(bench, progress), progress)
+    else:
+        more = add_another(bench, firsts, progress)
+    if not more:
+        return None
+    more = crossed(bench, more, progress)
+    merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
+    merged = take_back(bench, merged, progress)
+    left = found.gate.left
+    hopes = Hopes(firsts[0], left) if alone and left is not None else None
+    after = judged(bench, merged, base, progress, hopes)
+    if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
+        return None
+    if after.gate.unexplained and len(after.fits[0].candidates) > 1:
+        return _exchange(after, base, progress)
+    return after
+
+
+def judged(
+    bench: Bench,
+    fits: Sequence[Fit],
+    base: Fit,
+    progress: Progress,
+    hopes: Hopes | None = None,
+) -> _Round:
+    """Judge, and take back what was needless only once the winner was settled.
+
+    A delay that led the base to where a relaxation is seen may end at nothing.
+    """
+    found = _Round(*judge(bench, fits, base, progress, hopes))
+    best = found.fits[0]
+    if len(best.candidates) == 1 or fits[0].cost - best.cost < MOVED:
+        return found
+    merged = take_back(found.bench, found.fits, progress)
+    if merged[0] is best:
+        return found
+    return _Round(*judge(found.bench, merged, base, progress))
+
+
+def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
+    """Let other slider laws start where one ended that does not explain the records."""
+    if found.gate.passed or not found.fits or far_off(found.bench, found.fits[0]):
+        return found
+    more = other_sliders(found.bench, found.fits[0], progress)
+    merged = sorted([*more, *found.fits], key=lambda f: score(found.bench, f))
+    if merged[0] is found.fits[0]:
+        return found
+    return _Round(*judge(found.bench, best_of_each(merged), base, progress))
+
+
+def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
+    """Put other effects in the place of each, if that helps.
+
+    What is not told apart from the best was fitted again when that was judged.
+    """
+    best = score(found.bench, found.fits[0])
+    close = [f for f in found.fits if score(found.bench, f) < best + CROWDED_WITHIN]
+    known = {labels_of(f.candidates) for f in close}
+    more = exchanged(found.bench, found.fits[0], known, progress)
+    merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
+    if merged[0] is found.fits[0]:
+        return found
+    return judged(found.bench, best_of_each(merged), base, progress)
+
+
+def _worth_more(found: _Round, base: Fit) -> bool:
+    """Tell whether the best fit is worth one more effect.
+
+    Three at one link explain anything, and a pair that leaves much is no part of it.
+    """
+    if not found.gate.unexplained or not found.fits:
+        return False
+    fit = found.fits[0]
+    if len(fit.candidates) == 1:
+        return True
+    links = [c.site for c in fit.candidates if c.site.kind == "link"]
+    apart = len(set(links)) == len(links)
+    dof = found.bench.blocks.dof
+    return apart and fit.chi2 - dof < THIRD_LEFT * (base.chi2 - dof)
+
+
+def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome | None:
+    """Return that nothing is missing, if the base alone fits from where it was led.
+
+    In a quiet campaign whose joint settles from hit to hit the base may stop in a
+    wrong valley (3 of 1,500 without an effect). An effect that leads it out looks as
+    if it explained all that the base had missed.
+    """
+    if not found.fits or base.chi2 < WRONG_VALLEY * found.bench.blocks.dof:
+        return None
+    progress("base again")
+    fit = minimise(make_problem(found.bench, ()), found.fits[0].base)
+    if fit.chi2 > WRONG_VALLEY * found.bench.blocks.dof:
+        return None
+    bench, fit = settled_base(found.bench, fit)
+    screening = screen(bench, fit, bench.candidates)
+    null = gate(bench, fit, fit, screening)
+    if not null.passed:
+        return None
+    return SearchOutcome(bench, fit, null, screening, fit, null, (), (fit,))
+
+
+def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+    """Take effects of the best fit away that a later one has made needless."""
+    best, found = fits[0], list(fits)
+    for k in range(len(best.candidates)):
+        kept = tuple(c for i, c in enumerate(best.candidates) if i != k)
+        if not kept:
+            continue
+        coordinates = [t.coordinates for i, t in enumerate(best.terms) if i != k]
+        start = np.concatenate([best.base, *coordinates])
+        found.append(finish(make_problem(bench, kept), start, progress))
+    return best_of_each(sorted(found, key=lambda f: score(bench, f)))
+
+
+def best_of_each(fits: Sequence[Fit]) -> list[Fit]:
+    """Return the first fit of each set of effects."""
+    best: dict[frozenset[str], Fit] = {}
+    for f in fits:
+        best.setdefault(labels_of(f.candidates), f)
+    return list(best.values())
+
+
+def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+    """Try the best further effects on the best fits."""
+    found: list[Fit] = []
+    tried: set[frozenset[str]] = set()
+    for first in _hopeful(bench, fits):
+        screening = screen(bench, first, _addable(bench, first))
+        chosen = [
+            c
+            for c in _seconds(bench, first, screening)
+            if labels_of((*first.candidates, c)) not in tried
+        ]
+        tried |= {labels_of((*first.candidates, c)) for c in chosen}
+        found += race(bench, first, screening, chosen, progress)
+    return sorted(found, key=lambda f: score(bench, f))
+
+
+def _addable(bench: Bench, fit: Fit) -> list[Candidate]:
+    return [c for c in bench.candidates if may_join(c, fit.candidates)]
+
+
+def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+    """Return the fits that a second effect may yet bring ahead of all others."""
+    dof = bench.blocks.dof
+    least = max(fits[0].cost - dof, NOTHING * dof)
+    return [f for f in fits if f.cost - dof < HOPEFUL * least]
+
+
+def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
+    """Choose seconds by predicted drop, and those that only the priors see."""
+    pulled = np.abs(first.pulls).max() > 3.5
+    chosen: list[Candidate] = []
+    for d in screening.directions:
+        if d.candidate not in chosen and len(chosen) < SECONDS:
+            chosen.append(d.candidate)
+    for c in _addable(bench, first):
+        if pulled and c.effect.by_prior and c not in chosen:
+            chosen.append(c)
+    return chosen
+
+
+def _worthwhile(bench: Bench, more: Fit, fewer: Fit) -> bool:
+    gain = MIN_GAIN if len(more.candidates) > len(fewer.candidates) else 0.0
+    return score(bench, more) + gain < score(bench, fewer)

@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: MIT
+"""One long record of a single-input, single-output bench, with a sheet."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, freeze, require_shape
+from jointbench.acquisition.basics.errors import BadData, SamplingError
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnosis.diagnose import conclude
+from jointbench.analysis.gap.diagnosis.loop import investigate
+from jointbench.analysis.gap.model.campaign import TAIL, Campaign
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
+from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+from jointbench.analysis.gap.search.selection_round import Progress
+
+OVERSAMPLING = 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SingleRecord:
+    """A long record of one input and one output.
+
+    Attributes:
+        name: as the user knows it.
+        excitation: input, shape (n_samples,).
+        response: output, shape (n_samples,).
+        sample_rate: [Hz].
+        driven: index of the body that the input acts on.
+    """
+
+    name: str
+    excitation: FloatArray
+    response: FloatArray
+    sample_rate: float
+    driven: int = 0
+
+    def __post_init__(self) -> None:
+        """Check the rows once and make them read-only."""
+        require_shape("excitation", self.excitation, (None,))
+        if self.excitation.shape != self.response.shape:
+            raise SamplingError(
+                f"input has shape {self.excitation.shape} and output "
+                f"{self.response.shape}; both must be one row of the same length"
+            )
+        if not np.all(np.isfinite(self.excitation) & np.isfinite(self.response)):
+            raise BadData("the record holds NaN or infinite samples; cut them out")
+        freeze(self, "excitation", "response")
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Realisations of one length in a long record.
+
+    Attributes:
+        name: for example ``"arrow"``.
+        starts: first sample of each realisation.
+        length: samples of each.
+        lead: samples before each start that are simulated but not scored: what the
+            bench did before dies out in them.
+    """
+
+    name: str
+    starts: tuple[int, ...]
+    length: int
+    lead: int = 1024
+
+
+@dataclass(frozen=True, slots=True)
+class StretchScore:
+    """How well a stretch is foretold that no fit has seen.
+
+    Attributes:
+        name: of the stretch.
+        rms: of the measured output itself.
+        before: rms of the error of the base.
+        after: rms of the error of the base with what was found.
+    """
+
+    name: str
+    rms: float
+    before: float
+    after: float
+
+    @property
+    def shrink(self) -> float:
+        """1 - after / before [-]."""
+        return 1.0 - self.after / self.before if self.before > 0 else 0.0
+
+
+def stretch_campaign(record: SingleRecord, stretch: Stretch, sheet: Sheet) -> Campaign:
+    """Cut realisations out of a long record and give them a model.
+
+    Args:
+        record: input and output.
+        stretch: where the realisations lie.
+        sheet: one channel; its repeatability stands for what repeats would tell.
+
+    Raises:
+        SamplingError: a realisation with its lead does not lie inside the record.
+    """
+    starts = np.array(stretch.starts, dtype=np.int64)
+    first = int(starts.min()) - stretch.lead
+    last = int(starts.max()) + stretch.length
+    if first < 0 or last > record.excitation.size:
+        raise SamplingError(
+            f"the realisations of {stretch.name!r} reach from sample {first} to "
+            f"{last}, the record from 0 to {record.excitation.size}; shorten the lead "
+            "or the realisations"
+        )
+    rows = starts[:, None] + np.arange(-stretch.lead, stretch.length)[None, :]
+    force = record.excitation[rows]
+    return Campaign(
+        name=f"{record.name}: {stretch.name}",
+        sample_rate=record.sample_rate,
+        force=force,
+        response=record.response[rows][:, None, :],
+        hit=np.full(starts.size, record.driven, dtype=np.int64),
+        level=np.std(force[:, stretch.lead :], axis=1),
+        preload=np.ones(starts.size),
+        order=np.arange(starts.size, dtype=float),
+        preload_reference=1.0,
+        model=sheet.model,
+        lead=stretch.lead,
+        continuous=True,
+        repeatability=sheet.repeatability,
+    )
+
+
+def diagnose_record(
+    record: SingleRecord,
+    training: Stretch,
+    scored: tuple[Stretch, ...],
+    sheet: Sheet,
+    *,
+    without: frozenset[str] = frozenset(),
+    entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    progress: Progress | None = None,
+) -> tuple[Diagnosis, tuple[StretchScore, ...]]:
+    """Diagnose one stretch of a record and score the outcome on others.
+
+    Args:
+        record: input and output.
+        training: what the fits see.
+        scored: what they do not.
+        sheet: the model with its priors.
+        without: names of effects to leave out of the catalogue.
+        entries: the catalogue.
+        progress: told what is being tried, one line at a time.
+
+    Returns:
+        The diagnosis, and the error on each scored stretch before and after. Where
+        nothing was found or told apart, after is that of the best explanation tried.
+
+    Raises:
+        SamplingError: a stretch does not lie inside the record.
+        UsageError: `without` holds a name that no entry has.
+    """
+    trained = make_bench(
+        stretch_campaign(record, training, sheet), without=without, entries=entries
+    )
+    unseen = [stretch_campaign(record, stretch, sheet) for stretch in scored]
+    outcome = investigate(trained, progress or (lambda line: None))
+    final = outcome.bench
+    if not isinstance(final, LumpedBench):
+        raise TypeError("the loop must hand back the bench it was given")
+    scores = []
+    for stretch, campaign in zip(scored, unseen, strict=True):
+        # Parameters of the fits are multiples of the scales of the trained bench.
+        bench = replace(
+            make_bench(campaign, without=without, entries=entries),
+            scales=final.scales,
+        )
+        scores.append(
+            StretchScore(
+                stretch.name,
+                _rms(bench, bench.campaign.response),
+                _error(bench, outcome.base),
+                _error(bench, outcome.best),
+            )
+        )
+    return conclude(outcome, final), tuple(scores)
+
+
+def _error(bench: LumpedBench, fit: Fit) -> float:
+    modelled = bench.response(fit.base, fit.terms, OVERSAMPLING)
+    return _rms(bench, modelled - bench.campaign.response)
+
+
+def _rms(bench: LumpedBench, values: FloatArray) -> float:
+    seen = values[:, :, bench.campaign.lead : -TAIL]
+    return float(np.sqrt(np.mean(seen**2)))

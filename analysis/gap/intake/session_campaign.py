@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""A campaign out of recordings from a bench: hits, levels, preloads, points."""
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.records.recordings import Hit, Quantity, Recording
+from jointbench.analysis.gap.intake.cut_hits import CutHits, cut_hits
+from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.lumped.lumped_model import Output
+
+SAME_LEVEL = 1.6
+"""Ratio between neighbouring peaks up to which hits may share a nominal level."""
+LEVEL_SPAN = 2.5
+"""Largest ratio between two peaks of one nominal level."""
+QUANTITIES = {
+    Output.DISPLACEMENT: Quantity.DISPLACEMENT,
+    Output.VELOCITY: Quantity.VELOCITY,
+    Output.ACCELERATION: Quantity.ACCELERATION,
+}
+
+
+def session_campaign(
+    name: str, recordings: Sequence[Recording], sheet: Sheet
+) -> tuple[Campaign, tuple[str, ...]]:
+    """Make a campaign of the accepted hits of recordings.
+
+    Args:
+        name: as the user knows it.
+        recordings: with judged hits, in the order recorded, each with its preload.
+        sheet: the model that should explain them.
+
+    Returns:
+        The campaign, and why accepted hits were left out of it, a line each.
+
+    Raises:
+        BadData: a preload is missing, a hit point belongs to no body, channels
+            measure something else than the sheet says, or hits cannot be cut.
+    """
+    _require_quantity(recordings, sheet)
+    cut = cut_hits(recordings, [channel.name for channel in sheet.model.channels])
+    owners = [recordings[index] for index in cut.recording]
+    preload = np.array([_preload(recording) for recording in owners])
+    bodies = [
+        _body(recording, hit, sheet)
+        for recording, hit in zip(owners, cut.hits, strict=True)
+    ]
+    campaign = Campaign(
+        name=name,
+        sample_rate=cut.sample_rate,
+        force=cut.force,
+        response=cut.response,
+        hit=np.array(bodies, dtype=np.int64),
+        level=nominal_levels(_peaks(cut)),
+        preload=preload,
+        order=np.arange(len(cut.hits), dtype=float),
+        preload_reference=_reference(preload, sheet),
+        model=sheet.model,
+        repeatability=sheet.repeatability,
+    )
+    return campaign, cut.left_out
+
+
+def nominal_levels(peaks: FloatArray) -> FloatArray:
+    """Group peak forces into the levels that the operator aimed at.
+
+    A level ends where the next larger peak stands apart, or where it would span more
+    than a factor of 2.5; it is called by its geometric mean, to two digits.
+
+    Args:
+        peaks: largest force of each hit [N], shape (n_hits,), above zero.
+
+    Returns:
+        Nominal level of each hit [N], same shape.
+    """
+    order = np.argsort(peaks)
+    groups = _split(np.log(peaks[order]))
+    levels = np.empty_like(peaks)
+    for first, last in groups:
+        members = order[first:last]
+        mean = float(np.exp(np.log(peaks[members]).mean()))
+        levels[members] = float(f"{mean:.2g}")
+    return levels
+
+
+def _split(logs: FloatArray) -> list[tuple[int, int]]:
+    """Return (first, past) of each group of ascending logarithms."""
+    steps = np.diff(logs)
+    edges = [0, *(np.flatnonzero(steps > np.log(SAME_LEVEL)) + 1).tolist(), logs.size]
+    groups = []
+    waiting = list(itertools.pairwise(edges))
+    while waiting:
+        first, last = waiting.pop()
+        if last - first > 1 and logs[last - 1] - logs[first] > np.log(LEVEL_SPAN):
+            cut = first + 1 + int(np.argmax(steps[first : last - 1]))
+            waiting += [(first, cut), (cut, last)]
+        else:
+            groups.append((first, last))
+    return groups
+
+
+def _peaks(cut: CutHits) -> FloatArray:
+    return np.asarray(cut.force.max(axis=1))
+
+
+def _require_quantity(recordings: Sequence[Recording], sheet: Sheet) -> None:
+    """Raise `BadData` where a channel measures something else than the sheet says."""
+    wanted = QUANTITIES[sheet.model.output]
+    names = {channel.name for channel in sheet.model.channels}
+    for recording in recordings:
+        for channel in recording.channels:
+            if channel.name in names and channel.quantity is not wanted:
+                raise BadData(
+                    f"channel {channel.name!r} of recording {recording.name!r} "
+                    f"measures {channel.quantity.value}, the model's output is "
+                    f"{wanted.value}; correct 'output' in its [gap] table"
+                )
+
+
+def _preload(recording: Recording) -> float:
+    preload = recording.preload
+    if preload is None:
+        raise BadData(
+            f"recording {recording.name!r} has no preload; give it with --preload "
+            "'4 kN', to `import` or here"
+        )
+    if not (np.isfinite(preload) and preload > 0):
+        raise BadData(
+            f"recording {recording.name!r} has the preload {preload:g} N, it must be "
+            "above zero; give the right one with --preload '4 kN'"
+        )
+    return preload
+
+
+def _reference(preload: FloatArray, sheet: Sheet) -> float:
+    if sheet.preload_reference is not None:
+        return sheet.preload_reference
+    values = sorted(set(preload.tolist()))
+    if len(values) > 1:
+        shown = ", ".join(f"{value:g}" for value in values)
+        raise BadData(
+            f"the hits have the preloads {shown} N, and the model does not say to "
+            "which its values belong; add preload_reference to its [gap] table"
+        )
+    return float(values[0])
+
+
+def _body(recording: Recording, hit: Hit, sheet: Sheet) -> int:
+    """Return the index of the body that a hit struck."""
+    if hit.point in sheet.points:
+        return sheet.points[hit.point]
+    at = {channel.name: channel.point for channel in recording.channels}
+    for channel in sheet.model.channels:
+        if hit.point and at.get(channel.name) == hit.point:
+            return sheet.model.index(channel.body)
+    names = [body.name for body in sheet.model.bodies]
+    if hit.point in names:
+        return names.index(hit.point)
+    raise BadData(
+        f"recording {recording.name!r} was hit at point {hit.point!r}, which belongs "
+        f"to none of the bodies {', '.join(names)}; add points = [{hit.point!r}] to "
+        "the body that was struck"
+    )

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""What a campaign cannot show, whatever the fit says: its own limits, in words."""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.residuals.noise_models import repeat_groups
+
+ONE_LEVEL = 1.5
+"""Ratio of the hardest hit to the softest below which all have one level."""
+FLAT_SAMPLES = 6
+"""Pairs of neighbours at the common maximum from which a record counts as clipped."""
+AT_TOP_SD = 5.0
+NEAR_TOP_SD = 20.0
+SHARPER = 1.5
+"""Growth of what lies near the maximum, from one to the other of these distances, below
+which it is an edge; the crest of an oscillation doubles."""
+LOUD_SD = 50.0
+MIN_RECORDS = 4
+
+
+def campaign_limits(campaign: Campaign) -> str:
+    """Return why no verdict but `unknown` can be given, or an empty text."""
+    if campaign.continuous:
+        return ""
+    if campaign.force.shape[0] < MIN_RECORDS:
+        return (
+            f"{campaign.force.shape[0]} records are too few, at least {MIN_RECORDS} "
+            "are needed: hit each point at three levels, twice"
+        )
+    level = np.abs(campaign.force).max(axis=1)
+    if level.max() < ONE_LEVEL * level.min():
+        return (
+            f"all hits have one level ({level.min():.0f} to {level.max():.0f} N): "
+            "nothing that depends on it can be told apart; hit over 30x in level"
+        )
+    if campaign.repeatability is None and not repeat_groups(
+        campaign.hit, campaign.level, campaign.preload
+    ):
+        return (
+            "no condition was measured twice, so the repeatability is not known; "
+            "repeat at least one point, level and preload"
+        )
+    return ""
+
+
+def flat_tops(response: FloatArray, sigma: FloatArray) -> list[int]:
+    """Return the records with flat tops: many samples at one common maximum.
+
+    Args:
+        response: shape (n_records, n_channels, n_samples).
+        sigma: noise, shape (n_records, n_channels).
+    """
+    size = np.abs(response)
+    top = size.max(axis=(0, 2))
+    at_top = _pairs_above(size, top - AT_TOP_SD * sigma)
+    near_top = _pairs_above(size, top - NEAR_TOP_SD * sigma)
+    flat = (at_top >= FLAT_SAMPLES) & (near_top < SHARPER * at_top)
+    loud = top > LOUD_SD * sigma
+    return [int(i) for i in np.flatnonzero((flat & loud).any(axis=1))]
+
+
+def _pairs_above(size: FloatArray, limit: FloatArray) -> IntArray:
+    """Count neighbours that are both above a limit, shape (n_records, n_channels)."""
+    near = size > limit[:, :, None]
+    return np.asarray(np.sum(near[:, :, 1:] & near[:, :, :-1], axis=2))

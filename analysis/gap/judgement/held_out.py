@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""Scores on records that the fit did not see, one group out at a time.
+
+With the fit at its minimum, leaving a group out moves the parameters by one Newton
+step whose matrices are at hand; the residual of the group after that step is what a
+refit without it would leave, to first order. Where that step is long its foretelling
+is worth nothing, so there the fit is made again. Of an effect that the other groups do
+not show at all (the only hits that slip, the only other preload) they foretell nothing,
+so there it is off: what the fit knows of it, it knows from the group held out.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray, freeze
+from jointbench.analysis.gap.model.effect import Transform
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.fit_records import (
+    FINE,
+    MIDDLE,
+    Blocks,
+    Fit,
+    Stage,
+)
+from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
+from jointbench.analysis.gap.search.descent import minimise
+
+LONG_STEP = 1.5
+"""Growth of a group's chi2 by being held out beyond which it is fitted again."""
+REFIT_STEPS = 8
+SHOWN = 4.0
+"""Size of a parameter, in sd by all groups, above which they show it."""
+UNSHOWN = 1.0
+"""Size of a parameter, in sd by the other groups, below which they do not."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldOut:
+    """Chi2 of each group when it is held out.
+
+    Attributes:
+        chi2: shape (n_groups,).
+        dof: residuals with weight in each group, shape (n_groups,).
+    """
+
+    chi2: FloatArray
+    dof: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "chi2", "dof")
+
+    @property
+    def chi2_per_dof(self) -> float:
+        """Over all groups [-]."""
+        return float(self.chi2.sum() / self.dof.sum())
+
+    @property
+    def gap(self) -> float:
+        """sqrt(max(0, chi2/dof - 1)) [-]."""
+        return float(np.sqrt(max(0.0, self.chi2_per_dof - 1.0)))
+
+
+def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
+    """Hold out every condition in turn, its repeats with it.
+
+    Where there is but one condition, the sheet alone foretells it.
+
+    Args:
+        fit: a minimum.
+        bench: on which it was found.
+        bare: of the fit without effects, which foretells what is left where all
+            effects are off.
+    """
+    blocks = bench.blocks
+    condition = conditions_of(blocks)
+    hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
+    chi2, dof = [], []
+    share = blocks.dof / fit.residual.size
+    for c in range(int(condition.max()) + 1):
+        rows = np.isin(blocks.group, np.flatnonzero(condition == c))
+        j, r = fit.jacobian[rows], fit.residual[rows]
+        others = hessian - j.T @ j
+        dof.append(share * rows.sum())
+        left = r + j @ np.linalg.lstsq(others, j.T @ r, rcond=1e-12)[0]
+        chi2.append(float(left @ left))
+        if rows.all():
+            continue
+        lone = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
+        if bare is not None and lone.size and lone.all():
+            chi2[c] = float(bare.chi2[c])
+        elif lone.any() or chi2[c] > LONG_STEP * (r @ r):
+            left = _fitted_without(fit, bench, rows, lone)
+            chi2[c] = float(left @ left)
+    return HeldOut(np.array(chi2), np.array(dof))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Without(FitProblem):
+    """A problem that does not see some of its rows."""
+
+    hidden: BoolArray
+
+    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
+        """Return the whitened residual at x, 0 in the rows that are hidden."""
+        seen = FitProblem.residual(self, x, stage)
+        seen[self.hidden] = 0.0
+        return seen
+
+
+def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolArray:
+    """Tell which effects hold a parameter that no other group shows.
+
+    Args:
+        fit: a minimum.
+        whole: curvature along each coordinate by all groups, shape (n,).
+        others: the same by all groups but one, shape (n,).
+    """
+    alone, at = [], fit.n_base
+    for term in fit.terms:
+        own = slice(at, at + term.coordinates.size)
+        logarithmic = [
+            p.transform is Transform.LOG for p in term.candidate.effect.parameters
+        ]
+        size = np.where(logarithmic, 1.0, np.abs(term.coordinates))
+        told = size * np.sqrt(np.maximum([whole[own], others[own]], 0.0))
+        alone.append(bool(np.any((told[0] > SHOWN) & (told[1] < UNSHOWN))))
+        at = own.stop
+    return np.array(alone, dtype=bool)
+
+
+def _fitted_without(
+    fit: Fit, bench: Bench, rows: BoolArray, off: BoolArray
+) -> FloatArray:
+    """Return the residual of some rows at a fit to all others.
+
+    Args:
+        fit: a minimum, to start from.
+        bench: on which it was found.
+        rows: those held out, shape (n_rows,).
+        off: effects to leave out, shape (n_candidates,).
+    """
+    kept = [t for t, o in zip(fit.terms, off, strict=True) if not o]
+    whole = make_problem(bench, [t.candidate for t in kept])
+    known = {f.name: getattr(whole, f.name) for f in fields(whole)}
+    moved = minimise(
+        _Without(**known, hidden=rows),
+        np.concatenate([fit.base, *(t.coordinates for t in kept)]),
+        FINE,
+        iterations=REFIT_STEPS,
+        jacobian_stage=MIDDLE,
+        exact_slopes=False,
+    )
+    return whole.residual(moved.x, FINE)[rows]
+
+
+def conditions_of(blocks: Blocks) -> IntArray:
+    """Return the condition of each group: same level, point and preload are one."""
+    keys = [
+        tuple(v for k, v in sorted(labels.items()) if k != "order")
+        for labels in blocks.labels
+    ]
+    index = {key: i for i, key in enumerate(dict.fromkeys(keys))}
+    return np.array([index[key] for key in keys])

@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""Judging: noise estimated at the winner, rivals fitted again there, and the gate."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.analysis.gap.judgement.naming import (
+    AMPLITUDE_SD,
+    Gate,
+    gate,
+    weakest_amplitude,
+)
+from jointbench.analysis.gap.model.effect import PROBE_FAMILY, labels_of
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.fit_records import EVERYDAY, FULL, Fit
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.restarts import caught_up
+from jointbench.analysis.gap.search.screening import Screening, screen
+from jointbench.analysis.gap.search.selection_round import (
+    Progress,
+    finish,
+    score,
+    started,
+)
+
+REJUDGED = 30
+AGREED = 2.0
+"""Change of a winner's cost below which it agrees with the noise estimated at it."""
+REPEATED = 20.0
+"""Difference of a winner's cost from that of two rounds before, of a to and fro."""
+OVERTAKEN = 2
+CLOSE = 1000.0
+"""Score behind the winner up to which a rival is fitted again with the new noise."""
+CLOSE_FAILED = 100.0
+"""The same where the winner itself does not explain the records."""
+STALE = 0.2
+"""Share of what the winner gains by being settled that may hide a rival."""
+MOST_STALE = 3
+MOST_HELD_BACK = 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Hopes:
+    """What directed tests of a fit foretold of one more effect on it.
+
+    Attributes:
+        onto: the fit.
+        screening: its directed tests.
+    """
+
+    onto: Fit
+    screening: Screening
+
+
+def judge(
+    bench: Bench,
+    fits: Sequence[Fit],
+    base: Fit,
+    progress: Progress,
+    hopes: Hopes | None = None,
+) -> tuple[Bench, list[Fit], Gate]:
+    """Estimate the noise at the winner, refit the leaders there and judge.
+
+    Noise, scatter and settling of the hits are known no better than the fit at which
+    they were estimated, so they and the winner are brought to agree. Rivals are then
+    fitted with the same noise; one that overtakes is judged in its turn. Where the
+    winner fails, those that were held back are settled each by itself.
+    """
+    if not fits:
+        return bench, [], gate(bench, base, base, None)
+    met = _brought_near(bench, fits[0], progress)
+    if met is None:
+        return bench, list(fits), gate(bench, fits[0], base, None, fits)
+    bench, first = met
+    ranked, tried = [first, *fits[1:]], set[frozenset[str]]()
+    for _ in range(OVERTAKEN):
+        found = _judged(bench, ranked, base, progress)
+        if hopes is not None and not found.gate.passed:
+            held = _held_back(found, ranked, hopes, tried)
+            found = _own_settling(found, held, ranked, base, progress, tried)
+        bench = found.bench
+        rest = [f for f in ranked if f is not found.first]
+        close = _close(found, rest)
+        ranked = [found.fit] + [
+            caught_up(bench, f, found.fit, progress)
+            if f in close or _part_of(f, found.fit)
+            else f
+            for f in rest
+        ]
+        ranked.sort(key=lambda f: score(bench, f))
+        if ranked[0] is found.fit:
+            break
+    best = ranked[0]
+    if best is found.fit:
+        return bench, ranked, gate(bench, best, found.base, found.left, ranked)
+    base, left = _alike(bench, best, base), _left_by(bench, best)
+    return bench, ranked, gate(bench, best, base, left, ranked)
+
+
+def far_off(bench: Bench, fit: Fit) -> bool:
+    """Tell whether a fit leaves a misfit of many times the noise."""
+    return fit.chi2 > EVERYDAY * bench.blocks.dof
+
+
+def _brought_near(
+    bench: Bench, fit: Fit, progress: Progress
+) -> tuple[Bench, Fit] | None:
+    """Return a fit on a bench where it is not far off, or None where it always is.
+
+    Nothing can be learnt of noise and scatter there, and rivals are no better. In a
+    quiet campaign the scatter alone may lead it off; then it is fitted about the hits
+    as they settled.
+    """
+    if not far_off(bench, fit):
+        return bench, fit
+    there = bench.refine(fit.base, fit.terms)
+    r = there.residual(fit.base, fit.terms, FULL)
+    if float(r @ r) < EVERYDAY * bench.blocks.dof:
+        return bench, fit
+    there = bench.refine(fit.base, fit.terms, astray=True)
+    if not there.expanded:
+        return None
+    again = finish(make_problem(there, fit.candidates), fit.x, progress)
+    return None if far_off(there, again) else (there, again)
+
+
+def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
+    """Return the fits behind the winner that may still overtake it.
+
+    What the winner gained by being settled, the next few may gain too: their costs
+    are those under a noise that was estimated where less was explained.
+    """
+    reach = CLOSE if found.gate.passed else CLOSE_FAILED
+    gained = max(found.first.cost - found.fit.cost, 0.0)
+    behind = [score(found.bench, f) - score(found.bench, found.first) for f in rest]
+    near = [f for f, b in zip(rest, behind, strict=True) if b < reach]
+    wide = [f for f, b in zip(rest, behind, strict=True) if b < STALE * gained]
+    return near + wide[:MOST_STALE]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Judged:
+    """A fit before and after it was settled, with all that it was judged by.
+
+    Attributes:
+        first: the fit before.
+        fit: the fit after.
+        bench: with the noise estimated at it.
+        base: fit without effects that it is held against.
+        left: directed tests of what it leaves.
+        gate: its judgement.
+    """
+
+    first: Fit
+    fit: Fit
+    bench: Bench
+    base: Fit
+    left: Screening
+    gate: Gate
+
+
+def _judged(
+    bench: Bench, ranked: Sequence[Fit], base: Fit, progress: Progress
+) -> _Judged:
+    """Settle the first of some fits and judge it."""
+    bench, fit = _settled(bench, ranked[0], progress)
+    left = _left_by(bench, fit)
+    base = _alike(bench, fit, base)
+    judgement = gate(bench, fit, base, left, ranked)
+    return _Judged(ranked[0], fit, bench, base, left, judgement)
+
+
+def _alike(bench: Bench, fit: Fit, base: Fit) -> Fit:
+    """Return the base under the noise of a fit, where its effect may be worth nothing.
+
+    A trend over the records that is in no catalogue was taken for scatter once any
+    effect was in. The base of before, to which there was no scatter, then makes that
+    effect look needed, though its amplitude is none.
+    """
+    if len(fit.candidates) != 1 or weakest_amplitude(fit) > AMPLITUDE_SD:
+        return base
+    return minimise(make_problem(bench, ()), fit.base)
+
+
+def _own_settling(
+    failed: _Judged,
+    held: Sequence[Fit],
+    ranked: Sequence[Fit],
+    base: Fit,
+    progress: Progress,
+    tried: set[frozenset[str]],
+) -> _Judged:
+    """Return the first of those held back that passes by itself, or what failed.
+
+    Those that were reached are added to `tried`.
+    """
+    for f in held:
+        tried.add(labels_of(f.candidates))
+        rest = [r for r in ranked if r is not f]
+        found = _judged(failed.bench, [f, *rest], base, progress)
+        if found.gate.passed:
+            return found
+    return failed
+
+
+def _held_back(
+    failed: _Judged,
+    ranked: Sequence[Fit],
+    hopes: Hopes,
+    tried: Collection[frozenset[str]],
+) -> list[Fit]:
+    """Return the fits of which their directed tests foretold more than was gained.
+
+    An expansion about another fit holds back one that differs from it; it may even
+    have lost the race. What scatters cannot be told where a fit misses by more than
+    noise. What was tried by itself before comes out the same.
+    """
+    if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
+        return []
+    onto, gained = hopes.onto, hopes.onto.cost - failed.first.cost
+    fits = {labels_of(f.candidates): f for f in ranked}
+    held: dict[frozenset[str], Fit] = {}
+    for d in hopes.screening.directions:
+        both = labels_of((*onto.candidates, d.candidate))
+        fair = not d.suggested and d.candidate.effect.family != PROBE_FAMILY
+        if fair and d.drop > gained and both not in held and both not in tried:
+            held[both] = fits.get(both) or started(failed.bench, onto, d)
+    fresh = [f for f in held.values() if f is not failed.first]
+    return fresh[:MOST_HELD_BACK]
+
+
+def _part_of(fewer: Fit, more: Fit) -> bool:
+    """Tell whether a fit is another one without some of its effects.
+
+    What an effect is worth is read from such a fit, so its noise must be the same.
+    """
+    return labels_of(fewer.candidates) < labels_of(more.candidates)
+
+
+def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
+    """Bring a fit and the noise estimated at it to agree, unless it runs away.
+
+    A trend that is scatter by one fit and none by the next goes to and fro for ever.
+    Then the fit that leaves more is taken: there the least is called scatter.
+    """
+    earlier, before = np.inf, fit.cost
+    for _ in range(REJUDGED):
+        bench = bench.refine(fit.base, fit.terms)
+        problem = make_problem(bench, fit.candidates)
+        fit = finish(problem, fit.x, progress)
+        to_and_fro = abs(fit.cost - earlier) < REPEATED and fit.cost > before
+        if abs(fit.cost - before) < AGREED or to_and_fro or far_off(bench, fit):
+            break
+        earlier, before = before, fit.cost
+    return bench, fit
+
+
+def _left_by(bench: Bench, fit: Fit) -> Screening:
+    """Test what a fit leaves for all other effects and the probes."""
+    others = [c for c in bench.candidates if c not in fit.candidates]
+    return screen(bench, fit, [*others, *bench.probes])

@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: MIT
+"""Would parts of the records rather have parameters of their own?
+
+A law that imitates the true one leaves misfits that no effect of the catalogue takes,
+but that differ from level to level, channel to channel, early to late, low to high
+frequency: parameters that fit all records together are then not the best of any part.
+These tests ask no catalogue, so they also see what is missing from it.
+
+Source:
+    Chow 1960, Econometrica 28, 591, for parameters that are the same in all parts;
+    here as a score test, so that no part is fitted again.
+"""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+import scipy.stats
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.fit_records import Fit
+
+BANDS = 6
+ALIKE = 1e-10
+"""Share of the largest eigenvalue below which a combination of slopes is none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unlike:
+    """The cut of the records whose parts differ most.
+
+    Attributes:
+        view: how the records were cut.
+        chance: that noise alone makes the parts differ so much [-].
+        excess: chi2 that own parameters would take beyond their number.
+    """
+
+    view: str
+    chance: float
+    excess: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Cells:
+    """Normal equations of the smallest parts: (..., n, n) and (..., n)."""
+
+    gram: FloatArray
+    pull: FloatArray
+
+
+def most_unlike(bench: Bench, fit: Fit, allowed: float) -> Unlike:
+    """Cut the records every way and return the cut whose parts differ most.
+
+    Args:
+        bench: that was fitted.
+        fit: a minimum.
+        allowed: chi2 that the error of the model itself may make of it.
+    """
+    shape = bench.blocks.shape
+    slopes = fit.jacobian / np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
+    cells = _time_cells(slopes, fit.residual, shape)
+    bands = _band_cells(slopes, fit.residual, shape)
+    tests = [
+        _test("frequency", bands, (0,), slopes, allowed),
+        _test("frequency and output", bands, (0, 1), slopes, allowed),
+        _line(fit.residual.reshape(shape), allowed),
+    ]
+    for name, axes in (
+        ("record", (0,)),
+        ("output", (1,)),
+        ("time", (2,)),
+        ("record and output", (0, 1)),
+        ("record and time", (0, 2)),
+        ("output and time", (1, 2)),
+    ):
+        tests.append(_test(name, cells, axes, slopes, allowed))
+    for name in bench.blocks.labels[0]:
+        words = [labels[name] for labels in bench.blocks.labels]
+        if 1 < len(set(words)) < len(words):
+            tests.append(_test(name, _pooled(cells, words), (0,), slopes, allowed))
+    return min(tests, key=lambda t: t.chance)
+
+
+def _time_cells(
+    slopes: FloatArray, residual: FloatArray, shape: tuple[int, int, int]
+) -> _Cells:
+    """Return records by channels by early and late, halved by what the slopes weigh."""
+    j, r = slopes.reshape(*shape, -1), residual.reshape(shape)
+    weight = np.cumsum(np.einsum("rctn,rctn->t", j, j))
+    half = int(np.searchsorted(weight, 0.5 * weight[-1])) + 1
+    parts = [slice(0, half), slice(half, None)]
+    gram = [np.matmul(j[:, :, p].transpose(0, 1, 3, 2), j[:, :, p]) for p in parts]
+    pull = [np.einsum("rctn,rct->rcn", j[:, :, p], r[:, :, p]) for p in parts]
+    return _Cells(np.stack(gram, axis=2), np.stack(pull, axis=2))
+
+
+def _band_cells(
+    slopes: FloatArray, residual: FloatArray, shape: tuple[int, int, int]
+) -> _Cells:
+    """Return bands of frequency, each as much to the slopes, by channels."""
+    n = shape[2]
+    unit = np.sqrt(2.0 / n)
+    r = scipy.fft.rfft(residual.reshape(shape), axis=2) * unit
+    j = scipy.fft.rfft(slopes.reshape(*shape, -1), axis=2) * unit
+    weight = np.cumsum(np.einsum("rctn,rctn->t", j.conj(), j).real)
+    shares = np.arange(1, BANDS) / BANDS
+    edges = [0, *np.searchsorted(weight, shares * weight[-1]), weight.size]
+    gram, pull = [], []
+    for low, high in itertools.pairwise(edges):
+        part = j[:, :, low:high].transpose(1, 3, 0, 2).reshape(shape[1], j.shape[3], -1)
+        data = r[:, :, low:high].transpose(1, 0, 2).reshape(shape[1], -1, 1)
+        gram.append((part @ part.conj().transpose(0, 2, 1)).real)
+        pull.append((part.conj() @ data).real[:, :, 0])
+    return _Cells(np.array(gram), np.array(pull))
+
+
+def _pooled(cells: _Cells, words: list[str]) -> _Cells:
+    """Return cells with the records of one word taken together."""
+    kinds = {w: [i for i, x in enumerate(words) if x == w] for w in words}
+    return _Cells(
+        np.array([cells.gram[rows].sum(axis=0) for rows in kinds.values()]),
+        np.array([cells.pull[rows].sum(axis=0) for rows in kinds.values()]),
+    )
+
+
+def _test(
+    name: str,
+    cells: _Cells,
+    axes: tuple[int, ...],
+    slopes: FloatArray,
+    allowed: float,
+) -> Unlike:
+    """Let every part along `axes` have its own parameters."""
+    n = slopes.shape[1]
+    others = tuple(k for k in range(cells.pull.ndim - 1) if k not in axes)
+    gram = cells.gram.sum(axis=others).reshape(-1, n, n)
+    pull = cells.pull.sum(axis=others).reshape(-1, n)
+    values, vectors = np.linalg.eigh(gram)
+    along = np.einsum("gnk,gn->gk", vectors, pull)
+    seen = values > ALIKE * np.maximum(values[:, -1:], 1e-300)
+    taken = float(np.sum(along[seen] ** 2 / values[seen]))
+    free = max(int(seen.sum()) - n, 1)
+    chance = float(scipy.stats.chi2.sf(max(taken - allowed, 0.0), free))
+    return Unlike(name, chance, taken - free)
+
+
+def _line(residual: FloatArray, allowed: float) -> Unlike:
+    """Test the largest line of the spectrum, of one channel or of all.
+
+    An ordinate of white noise is exponential, so that a sum over records is gamma.
+    """
+    n = residual.shape[2]
+    taper = np.hanning(n)
+    spectrum = scipy.fft.rfft(residual * taper, axis=2)
+    power = np.sum(np.abs(spectrum) ** 2, axis=0) / np.sum(taper**2)
+    rows = [*power, power.sum(axis=0)]
+    counts = [residual.shape[0]] * len(power) + [residual.shape[0] * len(power)]
+    found = []
+    for row, count in zip(rows, counts, strict=True):
+        top = float(row[2:-2].max())
+        chance = row.size * float(scipy.stats.gamma.sf(top - allowed, count))
+        found.append(Unlike("line of the spectrum", chance, top - count))
+    return min(found, key=lambda t: t.chance)

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""What the engine hands back: verdict and evidence, and its JSON."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from enum import StrEnum
+from typing import Any
+
+from jointbench.analysis.gap.model.confidence import Evidence
+from jointbench.analysis.gap.model.evidence_records import Exhibit, exhibit_json
+
+SEEN = 1.0
+"""Gap below which it does not count by what share it shrank."""
+UNFORETOLD = 0.5
+"""Share of the gap that a name may leave on held-out records before that is said."""
+
+
+class Finding(StrEnum):
+    """The four verdicts."""
+
+    NONE = "none"
+    NAMED = "named"
+    AMBIGUOUS = "ambiguous"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A parameter with its standard deviation [unit]."""
+
+    name: str
+    value: float
+    sd: float
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class NamedEffect:
+    """An effect that was found.
+
+    Attributes:
+        name: of the catalogue.
+        site: word of the site.
+        parameters: with intervals.
+        confidence: probability that name and site are right [-].
+        evidence: what the confidence rests on.
+    """
+
+    name: str
+    site: str
+    parameters: tuple[Estimate, ...]
+    confidence: float
+    evidence: Evidence
+
+
+@dataclass(frozen=True, slots=True)
+class Ranked:
+    """One explanation that was tried, with how well it does.
+
+    Attributes:
+        effects: name and site of each effect.
+        score: cost with a charge for parameters.
+        behind: score behind the best.
+        chi2_per_dof: of the data [-].
+        pull: largest distance of a base parameter from its sheet [sigma].
+    """
+
+    effects: tuple[str, ...]
+    score: float
+    behind: float
+    chi2_per_dof: float
+    pull: float
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """One way of cutting the misfit.
+
+    Attributes:
+        name: frequency, level, hit point, output, preload, order or time.
+        chi2_per_dof: of each slice [-]; 1 where noise explains it.
+        share: of the whole excess in each slice [-].
+    """
+
+    name: str
+    chi2_per_dof: Mapping[str, float]
+    share: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """How far model and measurement are apart, on records that were held out.
+
+    Attributes:
+        value: sqrt(max(0, chi2/dof - 1)) [-].
+        chi2_per_dof: held out [-].
+        pull: largest distance of a base parameter from its sheet [sigma].
+        views: where it sits.
+    """
+
+    value: float
+    chi2_per_dof: float
+    pull: float
+    views: tuple[View, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """Verdict and evidence.
+
+    Attributes:
+        verdict: none, named, ambiguous or unknown.
+        effects: what was found; for ambiguous, the rivals.
+        candidates: what was tried, best first.
+        gap_before: of the base, refitted with its priors.
+        gap_after: with the effects added.
+        pulls: of each base parameter, before and after [sigma].
+        base: parameters of the base at the end, with intervals.
+        noise: the noise floor, in words and numbers.
+        null_statistic: largest directed drop of the base, and its 99.5 % limit.
+        experiment: what to do next.
+        reason: why the verdict is not a name, or what the name rests on.
+        exhibit: the evidence as curves and sentences; None where none was made.
+        explanations: labels of the effects of each explanation that passed and is not
+            told apart from the best, that first; ("none",) is the base alone.
+    """
+
+    verdict: Finding
+    effects: tuple[NamedEffect, ...]
+    candidates: tuple[Ranked, ...]
+    gap_before: Gap
+    gap_after: Gap
+    pulls: Mapping[str, tuple[float, float]]
+    base: tuple[Estimate, ...]
+    noise: Mapping[str, float]
+    null_statistic: tuple[float, float]
+    experiment: str
+    reason: str
+    exhibit: Exhibit | None = None
+    explanations: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def foretold(self) -> bool:
+        """Whether the conditions foretell each that was held out, or need not."""
+        left = UNFORETOLD * self.gap_before.value
+        return self.gap_before.value < SEEN or self.gap_after.value < left
+
+    @property
+    def shrink(self) -> float:
+        """1 - gap after / gap before [-]; 0 where there was none."""
+        if self.gap_before.value <= 0:
+            return 0.0
+        return 1.0 - self.gap_after.value / self.gap_before.value
+
+
+def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Return the contract's JSON: plain numbers, texts, lists and objects."""
+    d = diagnosis
+    return {
+        "verdict": d.verdict.value,
+        "effects": [
+            {
+                "name": e.name,
+                "site": e.site,
+                "parameters": _estimates(e.parameters),
+                "confidence": e.confidence,
+                "evidence": asdict(e.evidence),
+            }
+            for e in d.effects
+        ],
+        "explanations": [list(labels) for labels in d.explanations],
+        "candidates": [
+            {
+                "effects": list(c.effects),
+                "score": c.score,
+                "behind": c.behind,
+                "chi2_per_dof": c.chi2_per_dof,
+                "pull": c.pull,
+            }
+            for c in d.candidates
+        ],
+        "where": _where(d.gap_before),
+        "where_after": _where(d.gap_after),
+        "gap_before": d.gap_before.value,
+        "gap_after": d.gap_after.value,
+        "shrink": d.shrink,
+        "chi2_per_dof": [d.gap_before.chi2_per_dof, d.gap_after.chi2_per_dof],
+        "pulls": {
+            name: {"before": before, "after": after}
+            for name, (before, after) in d.pulls.items()
+        },
+        "base": _estimates(d.base),
+        "noise": dict(d.noise),
+        "null_test": {"largest": d.null_statistic[0], "limit": d.null_statistic[1]},
+        "experiment": d.experiment,
+        "reason": d.reason,
+        "exhibit": None if d.exhibit is None else exhibit_json(d.exhibit),
+    }
+
+
+def _estimates(estimates: tuple[Estimate, ...]) -> dict[str, dict[str, float | str]]:
+    return {e.name: {"value": e.value, "sd": e.sd, "unit": e.unit} for e in estimates}
+
+
+def _where(gap: Gap) -> dict[str, dict[str, dict[str, float]]]:
+    return {
+        view.name: {
+            label: {"chi2_per_dof": value, "share": view.share[label]}
+            for label, value in view.chi2_per_dof.items()
+        }
+        for view in gap.views
+    }

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""What an effect is to the engine: a name, a site, parameters and its rivals.
+
+An effect is data plus pure functions; the functions that carry its physics belong to
+a bench (see `effect_hooks`), so the engine never sees any.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+
+PROBE_FAMILY = "probe"
+"""Family of what is tested of a fit but never named."""
+
+
+class Transform(StrEnum):
+    """How a fitted coordinate u becomes a value, given the scale of the bench.
+
+    ``LINEAR`` is value = scale u; ``LOG`` is value = scale exp(u).
+    """
+
+    LINEAR = "linear"
+    LOG = "log"
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One fitted parameter of an effect.
+
+    The first parameter of an effect is its amplitude: the effect vanishes at 0.
+    Bounds, starts and prior are multiples of a scale that the bench supplies, so
+    that one catalogue serves a watch and a machine bed.
+
+    Attributes:
+        name: as reported, for example ``"k3"``.
+        unit: of the value, for example ``"N/m^3"``.
+        scale: word of the bench's scale, for example ``"stiffness/travel^2"``.
+        lower: smallest value [scale].
+        upper: largest value [scale].
+        starts: start grid [scale]; an amplitude may leave it empty, its start
+            then comes from the score test.
+        transform: how the optimiser sees it.
+        prior: (median [scale], relative sd) of a lognormal prior, or None.
+        off: value at which the effect vanishes; None for shape parameters.
+        far: amplitudes [scale] from which a strong effect is tried as well, where
+            its directed test points too far or the wrong way.
+    """
+
+    name: str
+    unit: str
+    scale: str = "one"
+    lower: float = -np.inf
+    upper: float = np.inf
+    starts: tuple[float, ...] = ()
+    transform: Transform = Transform.LINEAR
+    prior: tuple[float, float] | None = None
+    off: float | None = None
+    far: tuple[float, ...] = ()
+
+    def encode(self, multiple: float) -> float:
+        """Return the fitted coordinate of a value given in multiples of the scale."""
+        return float(np.log(multiple)) if self.transform is Transform.LOG else multiple
+
+    def decode(self, coordinate: float) -> float:
+        """Return the value in multiples of the scale."""
+        if self.transform is Transform.LOG:
+            return float(np.exp(coordinate))
+        return float(coordinate)
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The bounds of the fitted coordinate."""
+        if self.transform is Transform.LOG:
+            return float(np.log(self.lower)), float(np.log(self.upper))
+        return self.lower, self.upper
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """Where an effect sits: ``link:joint``, ``body:m2``, ``channel:a1``."""
+
+    kind: str
+    name: str
+
+    def __str__(self) -> str:
+        """Return the site word."""
+        return f"{self.kind}:{self.name}"
+
+
+@dataclass(frozen=True, slots=True)
+class Reported:
+    """One parameter as the user reads it.
+
+    Attributes:
+        name: for example ``"Fs"``.
+        unit: for example ``"N"``.
+        value: [unit].
+    """
+
+    name: str
+    unit: str
+    value: float
+
+
+Report = Callable[[FloatArray], tuple[Reported, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One entry of a catalogue.
+
+    Attributes:
+        name: snake case, for example ``"cubic_stiffness"``.
+        family: stiffness, friction, contact, mass, damping, mode, sensor,
+            converter or preload.
+        parameters: amplitude first, then shape.
+        source: paper and equation.
+        separates: rival name to the experiment that tells the two apart.
+        report: from fitted values to what the user reads; None where they agree.
+        by_prior: True where the base can take the effect in whole, so that only the
+            priors of the base see it (an added mass, a gain).
+        refit_nominal: True where the fit must start from the nominal base as well.
+        has_sliders: True for friction laws made of sliders that stick and slip.
+        starts_at_peaks: True where the second parameter is a frequency at which a
+            residual without the effect peaks: fits start at those peaks as well.
+        own_phases: True where the effect finds a phase for itself in each record and
+            channel; each is a free number that its comparison with others pays for.
+    """
+
+    name: str
+    family: str
+    parameters: tuple[Parameter, ...]
+    source: str
+    separates: Mapping[str, str] = field(default_factory=dict)
+    report: Report | None = None
+    by_prior: bool = False
+    refit_nominal: bool = False
+    has_sliders: bool = False
+    starts_at_peaks: bool = False
+    own_phases: bool = False
+
+    def __post_init__(self) -> None:
+        """Check that what starts at peaks has a frequency."""
+        if self.starts_at_peaks and len(self.parameters) < 2:
+            raise UsageError(
+                f"effect {self.name!r} starts at peaks but has "
+                f"{len(self.parameters)} parameter; the second one must be its "
+                "frequency: add it, or leave out starts_at_peaks"
+            )
+
+    def reported(self, values: FloatArray) -> tuple[Reported, ...]:
+        """Return what the user reads of fitted `values`, shape (n_parameters,)."""
+        if self.report is not None:
+            return self.report(values)
+        return tuple(
+            Reported(p.name, p.unit, float(v))
+            for p, v in zip(self.parameters, values, strict=True)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """An effect at a site: what the engine tries, ranks and names."""
+
+    effect: Effect
+    site: Site
+
+    @property
+    def label(self) -> str:
+        """Name and site in one word, for progress lines and tables."""
+        return f"{self.effect.name}@{self.site}"
+
+
+def may_join(candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
+    """Tell whether a candidate is worth a race beside what is fitted.
+
+    Not twice the same; and two laws of sliders across one link are mostly one law of
+    more sliders, which few measurements split.
+
+    Args:
+        candidate: what would be added.
+        fitted: what is there.
+    """
+    if candidate in fitted:
+        return False
+    return not (
+        candidate.effect.has_sliders
+        and any(c.effect.has_sliders and c.site == candidate.site for c in fitted)
+    )
+
+
+def labels_of(candidates: Iterable[Candidate]) -> frozenset[str]:
+    """Return the labels of a set of candidates, which tell it from all others."""
+    return frozenset(c.label for c in candidates)
+
+
+def words_of(candidates: Iterable[Candidate]) -> str:
+    """Return a set of candidates in words, in an order of their own."""
+    return " + ".join(sorted(labels_of(candidates)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Term:
+    """A candidate switched on: its fitted coordinates, shape (n_parameters,)."""
+
+    candidate: Candidate
+    coordinates: FloatArray

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: MIT
+"""What the noise of a lumped bench is, at a solution: channels, force, scatter."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.model.campaign import TAIL
+from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
+from jointbench.analysis.gap.residuals.fit_records import EVERYDAY, FULL, Settled
+from jointbench.analysis.gap.residuals.lumped_residual import SomeBench, settle
+from jointbench.analysis.gap.residuals.noise_models import (
+    FORCE_SHAPES,
+    Noise,
+    channel_sigma,
+    gain_scatter,
+    regress,
+    repeat_groups,
+    whitening_basis,
+    without_trend,
+)
+from jointbench.analysis.gap.residuals.settling import (
+    hit_stiffness,
+    joint_at,
+    mean_stiffness,
+)
+from jointbench.analysis.gap.response.effect_hooks import HitConditions
+from jointbench.analysis.gap.response.predict_records import prepare_excitation, respond
+
+TELLS_NOTHING = 0.3
+"""Misfit over response above which a fit says nothing about the settling."""
+LEAST_FACTOR = 1e-3
+"""Smallest share of a stiffness that a settling may leave."""
+SETTLING_REACH = 40.0
+"""Scatter sd about which a model is expanded at most. A joint that loosens by 17 of
+them is no scatter, but each hit must be met at its own stiffness before its law can
+enter by the slope."""
+ASTRAY_REACH = 4.0
+"""Scatter sd beyond which nothing of it is believed where the solution is far off: of
+some dozens of hits none settles there, but what a trend has moved may lie anywhere."""
+SCATTER_STEP = 1e-6
+"""Difference step of the ways to scatter: at 1e-4 the late record has already bent a
+hundredth away from its slope, and a trend hides in that hundredth."""
+
+
+def refine_noise(
+    bench: SomeBench,
+    base: FloatArray,
+    terms: Sequence[Term],
+    *,
+    astray: bool = False,
+) -> SomeBench:
+    """Return the bench with its noise estimated at a solution.
+
+    Args:
+        bench: to be changed.
+        base: of the solution, shape (n_base,).
+        terms: of the solution.
+        astray: expand about the hits even where that leaves the solution far off.
+    """
+    at = with_converter_edge(_centred(bench, base, terms), base, terms)
+    model = at.response(base, terms)
+    residual = model - bench.campaign.response
+    bench.mask(residual)
+    sigma = _channel_noise(at, model, residual)
+    columns = _force_columns(bench, base, sigma)
+    ways = _scatter_ways(at, base, terms, model, sigma)
+    noise = replace(bench.noise, sigma=sigma)
+    none = tuple(0.0 for _ in range(ways.shape[1]))
+    bare = _with_noise(at, replace(noise, scatter=none), columns, ways)
+    coefficients, variances = regress(
+        (residual / sigma[:, :, None]).reshape(len(sigma), -1),
+        ways,
+        bare.basis,
+        bare.shrink,
+    )
+    rise = at.rise(terms)
+    known = at.excitation.conditions.settling
+    if known is not None:
+        coefficients[:, 1] -= np.log((np.exp(known) + rise) / (1.0 + rise))
+    scatter = _scatter_of(at, coefficients, variances)
+    noise = replace(noise, scatter=scatter)
+    refined = _with_noise(at, noise, columns, ways)
+    lost = np.linalg.norm(residual) > TELLS_NOTHING * np.linalg.norm(model)
+    if len(scatter) < 2 or scatter[1] == 0.0 or lost:
+        return settle(refined, None)
+    share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
+    off = -coefficients[:, 1] * share / scatter[1]
+    if astray and np.abs(off).max() > ASTRAY_REACH:
+        return settle(refined, None)
+    off = np.clip(off, -SETTLING_REACH, SETTLING_REACH) * scatter[1]
+    settling = np.log(np.maximum(np.exp(off) * (1.0 + rise) - rise, LEAST_FACTOR))
+    expanded = _expanded(refined, settling, base, terms, columns)
+    left = expanded.residual(base, terms, FULL)
+    if left @ left > EVERYDAY * bench.blocks.dof and not astray:
+        return settle(refined, None)
+    return expanded
+
+
+def _centred(bench: SomeBench, base: FloatArray, terms: Sequence[Term]) -> SomeBench:
+    """Return the bench with each hit's stiffness kept, about the base's mean.
+
+    A settling is what base and laws leave of that stiffness.
+    """
+    if bench.settled is None:
+        return bench
+    model = bench.campaign.model
+    mean = mean_stiffness(model, base, bench.settled)
+    hits = hit_stiffness(bench.excitation.conditions, bench.settled)
+    kept = np.exp(mean - base[joint_at(model)] + hits)
+    rest = np.maximum(kept - bench.rise(terms), LEAST_FACTOR)
+    return settle(bench, np.log(rest))
+
+
+def _channel_noise(
+    bench: SomeBench, model: FloatArray, residual: FloatArray
+) -> FloatArray:
+    """Return the noise of each record and channel, (n_records, n_channels)."""
+    peak = np.abs(model).max(axis=2)
+    sigma = channel_sigma(residual[:, :, bench.campaign.lead : -TAIL], peak)
+    if bench.campaign.repeatability is not None:
+        sigma = np.hypot(sigma, bench.campaign.repeatability * peak)
+    return sigma
+
+
+def _scatter_of(
+    bench: SomeBench, coefficients: FloatArray, variances: FloatArray
+) -> tuple[float, ...]:
+    """Return the scatter along each way."""
+    campaign = bench.campaign
+    count = len(coefficients.T)
+    if campaign.repeatability is not None:
+        return (0.0,) * count
+    groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
+    patterns = _patterns(bench.excitation.conditions)
+    return tuple(
+        gain_scatter(
+            without_trend(coefficients[:, i], variances[:, i], patterns),
+            variances[:, i],
+            groups,
+        )
+        for i in range(count)
+    )
+
+
+def _expanded(
+    bench: SomeBench,
+    settling: FloatArray,
+    base: FloatArray,
+    terms: Sequence[Term],
+    columns: list[FloatArray],
+) -> SomeBench:
+    """Return the bench expanded about a settling, with its scatter whitened there.
+
+    What is taken by the slope is then the very direction that whitening blurs,
+    and nothing of the settling leaks past it.
+    """
+    there = settle(bench, settling)
+    sigma = bench.noise.sigma
+    moved = there.response(base, terms)
+    ways = _scatter_ways(there, base, terms, moved, sigma)
+    slope = ways[:, 1].reshape(*sigma.shape, -1) * sigma[:, :, None]
+    whitened = _with_noise(there, bench.noise, columns, ways)
+    settled = Settled(base.copy(), slope, there.rise(terms))
+    return replace(whitened, settled=settled)
+
+
+def _patterns(conditions: HitConditions) -> FloatArray:
+    """Return what a joint could depend on from record to record, (2, n_records)."""
+    return np.stack([np.log(conditions.preload), conditions.progress])
+
+
+def _force_columns(
+    bench: SomeBench, base: FloatArray, sigma: FloatArray
+) -> list[FloatArray]:
+    """Responses to the force's own noise, over sigma, one array for each record."""
+    first, last = bench.gate
+    n, records = bench.excitation.growth.size, sigma.shape[0]
+    if last - first >= n or bench.noise.force_sigma <= 0:
+        return [np.zeros((0, sigma.shape[1] * n))] * records
+    force = np.zeros((1, n))
+    force[0, first] = bench.noise.force_sigma
+    cases = {}
+    for hit in sorted(set(bench.campaign.hit.tolist())):
+        still = HitConditions(np.ones(1), np.zeros(1))
+        rate = bench.campaign.sample_rate
+        shaken = prepare_excitation(force, np.array([hit]), rate, still)
+        y = respond(bench.campaign.model, bench.theta(base), shaken)[0]
+        cases[hit] = _shifted(y, last - first)
+        bench.mask(cases[hit])
+    return [
+        _leading((cases[int(h)] / s[:, None]).reshape(last - first, -1))
+        for h, s in zip(bench.campaign.hit, sigma, strict=True)
+    ]
+
+
+def _shifted(response: FloatArray, count: int) -> FloatArray:
+    """Return a response delayed by 0 to count - 1 samples, (count, *its shape)."""
+    out = np.zeros((count, *response.shape))
+    for k in range(count):
+        out[k, :, k:] = response[:, : response.shape[1] - k]
+    return out
+
+
+def _leading(rows: FloatArray) -> FloatArray:
+    """Return the few directions that hold most of unit noise in every row."""
+    _, vectors = np.linalg.eigh(rows @ rows.T)
+    return np.asarray(vectors[:, -FORCE_SHAPES:].T @ rows)
+
+
+def _scatter_ways(
+    bench: SomeBench,
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+    sigma: FloatArray,
+) -> FloatArray:
+    """Return how hits may scatter, over sigma, (n_records, n_ways, n_rows).
+
+    The hand: the force that acts is not quite the one measured. The joint: it settles
+    anew from hit to hit, a change of its stiffness.
+    """
+    ways = [_harder(bench, base, terms, model)]
+    n = len(bench.campaign.model.bodies)
+    for i, link in enumerate(bench.campaign.model.links):
+        if link.joint and not bench.campaign.continuous:
+            moved = base.copy()
+            moved[n + i] += SCATTER_STEP
+            ways.append((bench.response(moved, terms) - model) / SCATTER_STEP)
+    stacked = np.stack(ways, axis=1)
+    bench.mask(stacked)
+    stacked /= sigma[:, None, :, None]
+    return stacked.reshape(len(sigma), len(ways), -1)
+
+
+def _harder(
+    bench: SomeBench, base: FloatArray, terms: Sequence[Term], model: FloatArray
+) -> FloatArray:
+    """Return the change of the response per relative change of the force.
+
+    A clipped sample does not change at all.
+    """
+    entries = [a.entry for a in bench.actions(terms)]
+    if all(e.law is None and e.shape is None for e in entries):
+        return model.copy()
+    spectrum = bench.excitation.spectrum * (1.0 + SCATTER_STEP)
+    pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))
+    return (pushed.response(base, terms) - model) / SCATTER_STEP
+
+
+def _with_noise(
+    bench: SomeBench, noise: Noise, columns: list[FloatArray], ways: FloatArray
+) -> SomeBench:
+    """Return the bench with the whitening of `noise`."""
+    parts = []
+    for own, way in zip(columns, ways, strict=True):
+        spread = [s * w[None, :] for s, w in zip(noise.scatter, way, strict=True) if s]
+        parts.append(whitening_basis(np.concatenate([own, *spread])))
+    kept = max(b.shape[0] for b, _ in parts)
+    basis = np.zeros((len(parts), kept, ways.shape[2]))
+    shrink = np.zeros((len(parts), kept, 1))
+    for k, (b, s) in enumerate(parts):
+        basis[k, : b.shape[0]] = b
+        shrink[k, : b.shape[0], 0] = s
+    return replace(bench, noise=noise, basis=basis, shrink=shrink, short={})

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""Where the converter's pass band ends, estimated from what a stiff law makes there.
+
+Recorded force and recorded response carry the same anti-alias filter, so that it drops
+out of the linear part. The force of a nonlinear law is born inside the machine and
+meets the filter once. A stop that closes sounds up to the Nyquist frequency and
+beyond; a model that ends a hundredth of the sample rate too late is off there by
+thousands of times the noise of a quiet record. Data sheets give the pass band, not the
+shape of its end, so the shape is a nuisance: splines over frequency, by least squares.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.residuals.fit_records import EVERYDAY, FINE, FULL
+from jointbench.analysis.gap.residuals.lumped_residual import SomeBench
+from jointbench.analysis.gap.response.predict_records import pass_band_end
+
+KNOTS = np.arange(0.37, 0.505, 0.01)
+"""Middles of the splines over the sample rate."""
+PRIOR_SD = 0.5
+"""Sd of the filter about its usual end: anything from open to shut."""
+AUDIBLE = 10.0
+"""Chi2 that the law must make up there for the end to matter."""
+
+
+def with_converter_edge(
+    bench: SomeBench, base: FloatArray, terms: Sequence[Term]
+) -> SomeBench:
+    """Return the bench with the end of the pass band estimated at a solution.
+
+    Args:
+        bench: with any filter; it is estimated anew, or put back to the usual one.
+        base: log(parameter / nominal), shape (n_base,).
+        terms: the effects switched on; without a nonlinear law among them the end of
+            the pass band is of no consequence.
+    """
+    usual = pass_band_end(_frequency(bench))
+    plain = _with_taper(bench, usual)
+    if not any(a.entry.law is not None for a in bench.actions(terms)):
+        return plain
+    residual = plain.residual(base, terms, FULL)
+    splines = _splines(_frequency(bench))
+    mute = _with_taper(bench, usual * (1.0 - splines.sum(axis=0)))
+    heard = residual - mute.residual(base, terms, FULL)
+    if not heard @ heard > AUDIBLE:
+        return plain
+    raised = [
+        _with_taper(bench, usual + s).residual(base, terms, FULL) for s in splines
+    ]
+    slopes = np.stack([r - residual for r in raised])
+    normal = slopes @ slopes.T + np.eye(len(splines)) / PRIOR_SD**2
+    left = plain.residual(base, terms, FINE)
+    change = np.linalg.solve(normal, -slopes @ left)
+    left = left + change @ slopes
+    if not left @ left < EVERYDAY * bench.blocks.dof:
+        return plain
+    return _with_taper(bench, usual + change @ splines)
+
+
+def _frequency(bench: SomeBench) -> FloatArray:
+    """Return the lines over the sample rate, shape (n_lines,)."""
+    excitation = bench.excitation
+    return np.asarray(excitation.s.imag / (2 * np.pi * excitation.sample_rate))
+
+
+def _splines(frequency: FloatArray) -> FloatArray:
+    """Return a cubic B-spline about each knot, shape (n_knots, n_lines).
+
+    A corner would ring all through the record.
+    """
+    width = KNOTS[1] - KNOTS[0]
+    away = np.abs(frequency[None, :] - KNOTS[:, None]) / width
+    inner = 2.0 / 3.0 - away**2 + 0.5 * away**3
+    outer = np.maximum(2.0 - away, 0.0) ** 3 / 6.0
+    return np.asarray(np.where(away < 1.0, inner, outer))
+
+
+def _with_taper(bench: SomeBench, taper: FloatArray) -> SomeBench:
+    excitation = replace(bench.excitation, taper=taper)
+    return replace(bench, excitation=excitation, short={})

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""Joint least squares of base and effects: the problem."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.model.effect import Candidate
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.fit_records import Stage, split
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FitProblem:
+    """A bench with chosen effects, as a least-squares problem."""
+
+    bench: Bench
+    candidates: tuple[Candidate, ...]
+    lower: FloatArray
+    upper: FloatArray
+    prior: FloatArray
+    centre: FloatArray
+    n_base: int
+
+    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
+        """Return the whitened residual at x."""
+        terms = split(x, self.n_base, self.candidates)
+        return self.bench.residual(x[: self.n_base], terms, stage)
+
+    def penalty(self, x: FloatArray) -> float:
+        """Return the priors' share of the cost."""
+        return float(np.sum(self.prior * (x - self.centre) ** 2))
+
+
+def make_problem(bench: Bench, candidates: Sequence[Candidate]) -> FitProblem:
+    """Collect bounds and priors of base and effects."""
+    n_base = bench.base_sd.size
+    lower, upper = [-3.0] * n_base, [3.0] * n_base
+    prior = list(1.0 / bench.base_sd**2)
+    centre = [0.0] * n_base
+    for candidate in candidates:
+        for p in candidate.effect.parameters:
+            low, high = p.bounds
+            lower.append(low)
+            upper.append(high)
+            prior.append(0.0 if p.prior is None else 1.0 / p.prior[1] ** 2)
+            centre.append(0.0 if p.prior is None else p.encode(p.prior[0]))
+    return FitProblem(
+        bench,
+        tuple(candidates),
+        np.array(lower),
+        np.array(upper),
+        np.array(prior),
+        np.array(centre),
+        n_base,
+    )

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""The bench of lumped dynamics: a campaign and its model, as the engine sees them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.catalogue.catalogue import ALL_CHANNELS
+from jointbench.analysis.gap.model.campaign import TAIL
+from jointbench.analysis.gap.model.diagnosis_record import View
+from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.residuals.bench_noise import refine_noise
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.lumped_residual import LumpedResidual
+from jointbench.analysis.gap.residuals.residual_views import residual_peaks, slice_views
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LumpedBench(LumpedResidual):
+    """Residuals of a lumped model with the catalogue that is tried on them.
+
+    Attributes:
+        candidates: the catalogue, at every site.
+        probes: shapes that are tested of a fit beside it, at every site.
+    """
+
+    candidates: tuple[Candidate, ...]
+    probes: tuple[Candidate, ...]
+
+    @property
+    def base_names(self) -> tuple[str, ...]:
+        """Names of the base parameters."""
+        return self.campaign.model.base_names
+
+    @property
+    def base_sd(self) -> FloatArray:
+        """Prior sd of log(parameter / nominal), shape (n_base,)."""
+        return self.campaign.model.spread
+
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "LumpedBench":
+        """Return the bench with its noise estimated at a solution."""
+        return refine_noise(self, base, terms, astray=astray)
+
+    def views(self, fit: Fit) -> tuple[View, ...]:
+        """Return where the misfit of a fit sits."""
+        records, channels, samples = self.campaign.response.shape
+        residual = fit.residual.reshape(records, channels, samples)
+        return slice_views(
+            residual[:, :, self.campaign.lead : -TAIL],
+            self.blocks,
+            [c.name for c in self.campaign.model.channels],
+            self.campaign.sample_rate,
+        )
+
+    def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
+        """Return starts at the peaks of a fit's residual: lines of a hum, modes."""
+        if not candidate.effect.starts_at_peaks:
+            return []
+        records, channels, samples = self.campaign.response.shape
+        residual = fit.residual.reshape(records, channels, samples)
+        rows = [c.name for c in self.campaign.model.channels]
+        if candidate.site.kind == "channel" and candidate.site.name in rows:
+            at = rows.index(candidate.site.name)
+            residual = residual[:, at : at + 1]
+        peaks = residual_peaks(residual, self.campaign.sample_rate)
+        parameters = candidate.effect.parameters
+        scale = self.scale(parameters[1].scale)
+        rest = [p.encode(p.starts[0]) for p in parameters[2:]]
+        low, high = parameters[1].lower, parameters[1].upper
+        return [
+            np.array([0.0, parameters[1].encode(f / scale), *rest])
+            for f in peaks
+            if low < f / scale < high
+        ]
+
+    def phases(self, candidate: Candidate) -> int:
+        """Return how many phases an effect finds for itself, 0 for most."""
+        if not candidate.effect.own_phases:
+            return 0
+        records, channels = self.noise.sigma.shape
+        everywhere = candidate.site.name == ALL_CHANNELS
+        return int(records) * (int(channels) if everywhere else 1)

@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: MIT
+"""Whitened residuals of a lumped model: what a campaign and a noise make of a fit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+import scipy.fft
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.catalogue.catalogue import site_index
+from jointbench.analysis.gap.catalogue.probes import PROBES
+from jointbench.analysis.gap.model.campaign import TAIL, Campaign
+from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.residuals.bench_protocol import values_of
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled, Stage
+from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.settling import (
+    changes_joint,
+    hit_stiffness,
+    joint_at,
+    mean_stiffness,
+    stiffness_rise,
+)
+from jointbench.analysis.gap.response.dynamic_stiffness import Action
+from jointbench.analysis.gap.response.effect_hooks import HitConditions, LumpedEffect
+from jointbench.analysis.gap.response.predict_records import (
+    Excitation,
+    prepare_excitation,
+    respond,
+)
+from jointbench.analysis.gap.response.search_effort import spend
+
+WINDOW_REACH = 3.5
+"""Decay times after which a windowed record is cut."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LumpedResidual:
+    """Residuals of a lumped model, whitened by what the noise is known to be.
+
+    Attributes:
+        campaign: the measurement.
+        entries: the catalogue of this run.
+        excitation: forces made ready.
+        gate: first and last sample of the force that count.
+        noise: what is to be expected of a residual.
+        basis: directions of force noise and scatter, (n_records, n_kept, n_rows).
+        shrink: how much of each is taken out, (n_records, n_kept, 1).
+        scales: words to values.
+        blocks: records as groups.
+        short: the same with fewer samples, by length.
+        settled: where the model is expanded about the settling of each hit, or None.
+    """
+
+    campaign: Campaign
+    entries: tuple[LumpedEffect, ...]
+    excitation: Excitation
+    gate: tuple[int, int]
+    noise: Noise
+    basis: FloatArray
+    shrink: FloatArray
+    scales: dict[str, float]
+    blocks: Blocks
+    short: dict[int, "LumpedResidual"]
+    settled: Settled | None
+
+    @property
+    def expanded(self) -> bool:
+        """Whether the model is expanded about the settling of each hit."""
+        return self.settled is not None
+
+    def scale(self, word: str) -> float:
+        """Return the scale of a word [SI]; ``a/b^2`` is understood."""
+        if word not in self.scales:
+            top, _, bottom = word.partition("/")
+            base, _, power = bottom.partition("^")
+            below = self.scales[base] ** int(power or 1)
+            self.scales[word] = self.scales[top if top != "1" else "one"] / below
+        return self.scales[word]
+
+    def theta(self, base: FloatArray) -> FloatArray:
+        """Return base parameters [SI] of log(parameter / nominal)."""
+        return np.asarray(self.campaign.model.nominal * np.exp(base))
+
+    def actions(self, terms: Sequence[Term]) -> list[Action]:
+        """Return terms with the hooks of their entries."""
+        entries = {e.effect.name: e for e in (*self.entries, *PROBES)}
+        return [
+            Action(
+                entries[t.candidate.effect.name],
+                t.candidate.site.kind,
+                site_index(self.campaign.model, t.candidate.site),
+                values_of(self, t),
+            )
+            for t in terms
+        ]
+
+    def response(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int = 8
+    ) -> FloatArray:
+        """Predict the channels, shape (n_records, n_channels, n_samples)."""
+        actions = self.actions(terms)
+        marched = any(a.entry.law is not None for a in actions)
+        spend(self.campaign.response.size, oversampling if marched else 0)
+        return respond(
+            self.campaign.model,
+            self.theta(base),
+            self.excitation,
+            actions,
+            oversampling=oversampling,
+            measured=self.campaign.response,
+        )
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return model minus measurement, whitened, shape (n_rows,)."""
+        if stage.window is not None and not self.campaign.continuous:
+            return _windowed(self, base, terms, stage)
+        r = self.misfit(base, terms, stage.oversampling)
+        return self.residual_of(r)
+
+    def misfit(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int
+    ) -> FloatArray:
+        """Return model minus measurement, shape of the response.
+
+        The settling of each hit counts as scatter: its share is left in the misfit.
+        The response is taken at the stiffness of each hit, so that a law which does
+        nothing but change it from hit to hit enters by the slope alone.
+        """
+        if self.settled is None:
+            r = self.response(base, terms, oversampling)
+            r -= self.campaign.response
+            return r
+        model = self.campaign.model
+        at, mean = joint_at(model), mean_stiffness(model, base, self.settled)
+        moved = base.copy()
+        moved[at] = mean
+        others = [
+            t
+            for t, a in zip(terms, self.actions(terms), strict=True)
+            if not changes_joint(model, a)
+        ]
+        hits = hit_stiffness(self.excitation.conditions, self.settled)
+        r = settle(self, hits).response(moved, others, oversampling)
+        r -= self.campaign.response
+        share = base[at] - mean + np.log1p(self.rise(terms)) - hits
+        r += share[:, None, None] * self.settled.slope
+        return r
+
+    def rise(self, terms: Sequence[Term]) -> FloatArray:
+        """Return what terms add to the joint's stiffness in each record [-].
+
+        Shape (n_records,); as a share of the stiffness without them, above -1.
+        """
+        return stiffness_rise(
+            self.campaign.model, self.excitation.conditions, self.actions(terms)
+        )
+
+    def residual_of(self, misfit: FloatArray) -> FloatArray:
+        """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
+        r = misfit / self.noise.sigma[:, :, None]
+        self.mask(r)
+        rows = r.reshape(r.shape[0], -1, 1)
+        rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
+        return rows.ravel()
+
+    def mask(self, rows: FloatArray) -> None:
+        """Set to 0, in place, the samples that carry no weight."""
+        rows[..., -TAIL:] = 0.0
+        rows[..., : self.campaign.lead] = 0.0
+
+
+SomeBench = TypeVar("SomeBench", bound=LumpedResidual)
+
+
+def settle(bench: SomeBench, settling: FloatArray | None) -> SomeBench:
+    """Return the bench with its model taken at a settling of the joint.
+
+    Args:
+        bench: to be changed.
+        settling: log of the joint's stiffness in each hit over its mean, (n_records,).
+    """
+    conditions = replace(bench.excitation.conditions, settling=settling)
+    excitation = replace(bench.excitation, conditions=conditions)
+    return replace(bench, excitation=excitation, settled=None, short={})
+
+
+def _windowed(
+    bench: LumpedResidual, base: FloatArray, terms: Sequence[Term], stage: Stage
+) -> FloatArray:
+    """Return the residual under an exponential window, cut where it has decayed."""
+    decay = stage.window or 1.0
+    reach = bench.gate[1] + int(WINDOW_REACH * decay * bench.campaign.sample_rate)
+    short = _shortened(bench, scipy.fft.next_fast_len(reach, real=True))
+    r = short.response(base, terms, stage.oversampling)
+    r -= short.campaign.response
+    r /= bench.noise.sigma[:, :, None]
+    r *= _window(short, decay)
+    return r.ravel()
+
+
+def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
+    """Return the bench of the first `length` samples, made once and kept."""
+    if length >= bench.campaign.force.shape[1]:
+        return bench
+    if length not in bench.short:
+        campaign = replace(
+            bench.campaign,
+            force=bench.campaign.force[:, :length],
+            response=bench.campaign.response[:, :, :length],
+        )
+        bench.short[length] = replace(
+            bench,
+            campaign=campaign,
+            excitation=gated_excitation(
+                campaign, bench.gate, bench.excitation.conditions.settling
+            ),
+            short={},
+        )
+    return bench.short[length]
+
+
+def _window(bench: LumpedResidual, decay: float) -> FloatArray:
+    n = bench.excitation.growth.size
+    time = (np.arange(n) - bench.gate[0]) / bench.campaign.sample_rate
+    return np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
+
+
+def gated_excitation(
+    campaign: Campaign, gate: tuple[int, int], settling: FloatArray | None = None
+) -> Excitation:
+    """Cut the hits out of the forces and transform them."""
+    force = np.zeros_like(campaign.force)
+    force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
+    span = max(float(np.ptp(campaign.order)), 1.0)
+    conditions = HitConditions(
+        campaign.preload / campaign.preload_reference,
+        (campaign.order - campaign.order.min()) / span,
+        settling,
+    )
+    return prepare_excitation(force, campaign.hit, campaign.sample_rate, conditions)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""Dynamic stiffness of lumped bodies and links, with the effects that change it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.analysis.gap.response.effect_hooks import (
+    ElementState,
+    HitConditions,
+    LumpedEffect,
+)
+from jointbench.analysis.lumped.lumped_model import LumpedModel
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """A catalogue entry at a site with its values [SI].
+
+    Attributes:
+        entry: the entry.
+        kind: ``"link"``, ``"body"`` or ``"channel"``.
+        index: of the link, body or channel; -1 for every channel.
+        values: shape (n_parameters,).
+    """
+
+    entry: LumpedEffect
+    kind: str
+    index: int
+    values: FloatArray
+
+
+def dynamic_stiffness(
+    model: LumpedModel,
+    theta: FloatArray,
+    s: ComplexArray,
+    conditions: HitConditions,
+    actions: Sequence[Action],
+) -> ComplexArray:
+    """Assemble the dynamic stiffness.
+
+    Args:
+        model: bodies and links.
+        theta: masses, stiffnesses, dampings [SI], shape (n_base,).
+        s: Laplace variable [rad/s], shape (n_lines,).
+        conditions: of each record.
+        actions: effects; those without a stiffness hook are passed over.
+
+    Returns:
+        [N/m], shape (n_bodies, n_bodies, 1 or n_records, n_lines).
+    """
+    n, links = len(model.bodies), len(model.links)
+    rows = [(i, (1.0,), (i,), theta[i] * s * s) for i in range(n)]
+    elements: list[tuple[tuple[int, ...], ComplexArray]] = [
+        ((i,), value[None, :]) for i, _, _, value in rows
+    ]
+    for j, link in enumerate(model.links):
+        ends = tuple(e for e in model.ends(j) if e >= 0)
+        stiffness = (theta[n + j] + theta[n + links + j] * s)[None, :]
+        if link.joint and conditions.settling is not None:
+            rise = theta[n + j] * np.expm1(conditions.settling)
+            stiffness = stiffness + rise[:, None]
+        elements.append((ends, stiffness))
+    for action in actions:
+        if action.entry.stiffness is None:
+            continue
+        state = state_of(model, theta, s, conditions, action)
+        added = action.entry.stiffness(state, action.values)
+        if action.kind == "body":
+            elements.append(((action.index,), added))
+        else:
+            ends = tuple(e for e in model.ends(action.index) if e >= 0)
+            elements.append((ends, added))
+    variants = max(value.shape[0] for _, value in elements)
+    z = np.zeros((n, n, variants, s.size), dtype=np.complex128)
+    for ends, value in elements:
+        for a in ends:
+            for b in ends:
+                z[a, b] += value if a == b else -value
+    return z
+
+
+def state_of(
+    model: LumpedModel,
+    theta: FloatArray,
+    s: ComplexArray,
+    conditions: HitConditions,
+    action: Action,
+) -> ElementState:
+    """Return what an effect's hook may look at, at Laplace variables `s`."""
+    n, links = len(model.bodies), len(model.links)
+    body = action.kind == "body"
+    return ElementState(
+        s=s,
+        mass=float(theta[action.index]) if body else 0.0,
+        stiffness=0.0 if body else float(theta[n + action.index]),
+        damping=0.0 if body else float(theta[n + links + action.index]),
+        conditions=conditions,
+    )
+
+
+def invert(z: ComplexArray) -> ComplexArray:
+    """Invert dynamic stiffnesses, shape (n, n, ...): closed form up to two bodies."""
+    if z.shape[0] == 1:
+        return 1.0 / z
+    if z.shape[0] == 2:
+        scale = 1.0 / (z[0, 0] * z[1, 1] - z[0, 1] * z[1, 0])
+        out = np.empty_like(z)
+        out[0, 0], out[1, 1] = z[1, 1] * scale, z[0, 0] * scale
+        out[0, 1], out[1, 0] = -z[0, 1] * scale, -z[1, 0] * scale
+        return out
+    moved = np.moveaxis(z, (0, 1), (-2, -1))
+    inverse: ComplexArray = np.linalg.inv(moved).astype(np.complex128)
+    return np.moveaxis(inverse, (-2, -1), (0, 1))

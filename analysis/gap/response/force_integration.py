@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: MIT
+"""Compiled march of the nonlinear link force along a known linear motion.
+
+Only the difference e between the motion with and without the effect is stepped, so
+that a force law of amplitude 0 leaves the linear response untouched to the last bit.
+The link's own compliance is a sum of modes, each stepped exactly for a force that is
+a straight line within the step (first-order hold); the force at the end of a step is
+found from the motion predicted with an extrapolated force, whose error is of the
+order dt^2/m of a second difference and far below the noise.
+
+All that a step calls is compiled into it: handing arrays over would cost more than the
+step.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.acquisition.basics.compiled import compiled
+from jointbench.analysis.gap.response.curve_integration import curve_force
+from jointbench.analysis.gap.response.slider_integration import (
+    Bank,
+    Sliders,
+    bank_forces,
+)
+
+POLYNOMIAL = 0
+ONE_SIDED = 1
+SLIDERS = 2
+COULOMB = 3
+QUADRATIC_DAMPING = 4
+CURVES = 5
+LANES = 8
+"""Records that are marched side by side."""
+
+# What a march keeps of its lanes lies in two plain arrays, each quantity at a place
+# that the compiler knows: with an array for each, a step takes twice as long.
+FORCE, GUESS, BEFORE, MOTION, SPEED, SLOPE = (i * LANES for i in range(6))
+"""Places of the force of all laws, its guess, the last motion, the motion, its rate,
+and what a unit of force takes of that rate within a step."""
+MODES = 6 * LANES
+REAL, IMAGINARY, TURN, QUARTER, START, START_I, END, END_I, POLE, POLE_I = (
+    i * LANES for i in range(10)
+)
+"""Places within a mode: its motion, growth, hold weights and pole (re, im)."""
+MODE = 10 * LANES
+OWN, EARLIER, HOPE = (i * LANES for i in range(3))
+"""Places within a law: its force, that of the step before, and what is hoped for."""
+LAW = 3 * LANES
+
+
+class MarchLaws(NamedTuple):
+    """All force laws of a link as the compiled march wants them.
+
+    They lie in common arrays: a law that is handed over as an array of its own, or cut
+    out of one as a view, costs more at every step than what is done with it.
+
+    Attributes:
+        kinds: which laws, shape (n_laws,).
+        p: their parameters, shape (n_laws, 2).
+        ends: where the sliders of each law begin, and end, shape (n_laws + 1,).
+        slips: slip displacements of the sliders [m], rising within a law, shape
+            (n_sliders,).
+        weights: stiffness of each slider [N/m], same shape.
+        tables: of sliders, four rows a law, shape (4 n_laws, n_points).
+        tops: what goes with them, shape (n_laws, 7).
+        curves: of curve laws, three rows a law, shape (3 n_laws, n_points).
+    """
+
+    kinds: IntArray
+    p: FloatArray
+    ends: IntArray
+    slips: FloatArray
+    weights: FloatArray
+    tables: FloatArray
+    tops: FloatArray
+    curves: FloatArray
+
+
+@compiled()
+def _rub(limit: float, width: float, v: float, slope: float, guess: float) -> float:
+    """Solve f = limit tanh((v - slope (f - guess)) / width), by safe Newton steps."""
+    low, high = -abs(limit), abs(limit)
+    force = limit * math.tanh(v / width)
+    for _ in range(12):
+        t = math.tanh((v - slope * (force - guess)) / width)
+        excess = force - limit * t
+        if excess > 0.0:
+            high = force
+        else:
+            low = force
+        step = excess / (1.0 + limit * slope * (1.0 - t * t) / width)
+        trial = force - step
+        if not low <= trial <= high:
+            trial = 0.5 * (low + high)
+        if abs(trial - force) < 1e-7 * (abs(limit) + 1e-300):
+            return trial
+        force = trial
+    return force
+
+
+@compiled(fastmath=True, inline="always")
+def _forces(
+    a: int,
+    w: FloatArray,
+    f: FloatArray,
+    kinds: IntArray,
+    p: FloatArray,
+    curves: FloatArray,
+) -> None:
+    """Write the force of law `a` in every lane, unless it is one of sliders."""
+    kind, first, second, own = kinds[a], p[a, 0], p[a, 1], a * LAW + OWN
+    if kind == POLYNOMIAL:
+        for k in range(LANES):
+            r = w[MOTION + k]
+            f[own + k] = r * r * (first + second * r)
+    elif kind == ONE_SIDED:
+        for k in range(LANES):
+            f[own + k] = first * max(w[MOTION + k] - second, 0.0)
+    elif kind == QUADRATIC_DAMPING:
+        for k in range(LANES):
+            f[own + k] = first * w[SPEED + k] * abs(w[SPEED + k])
+    elif kind == COULOMB:
+        for k in range(LANES):
+            hope = f[a * LAW + HOPE + k]
+            f[own + k] = _rub(first, second, w[SPEED + k], w[SLOPE + k], hope)
+    elif kind == CURVES:
+        for k in range(LANES):
+            r, v = w[MOTION + k], w[SPEED + k]
+            f[own + k] = curve_force(curves, 3 * a, first, second, r, v)
+
+
+@compiled()
+def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> FloatArray:
+    """Return what a march keeps of its lanes, at rest.
+
+    Modes are scaled by their residues, so that a real part is a displacement; each is
+    stepped by its growth and by first-order-hold weights.
+    """
+    w = np.zeros(MODES + poles.shape[0] * MODE)
+    for m in range(poles.shape[0]):
+        for k in range(LANES):
+            at, pole = MODES + m * MODE + k, poles[m, k]
+            z = pole * dt
+            growth = np.exp(z)
+            end = residues[m, k] * dt * (growth - 1.0 - z) / (z * z)
+            start = residues[m, k] * dt * (growth - 1.0) / z - end
+            w[at + TURN], w[at + QUARTER] = growth.real, growth.imag
+            w[at + START], w[at + START_I] = start.real, start.imag
+            w[at + END], w[at + END_I] = end.real, end.imag
+            w[at + POLE], w[at + POLE_I] = pole.real, pole.imag
+            w[SLOPE + k] += end.real * pole.real - end.imag * pole.imag
+    return w
+
+
+@compiled(fastmath=True, inline="always")
+def _predict(w: FloatArray, n_modes: int) -> None:
+    """Step the modes in place with a guessed force, and add them to the motion."""
+    for m in range(n_modes):
+        at = MODES + m * MODE
+        for k in range(LANES):
+            x, y = w[at + REAL + k], w[at + IMAGINARY + k]
+            turn, quarter = w[at + TURN + k], w[at + QUARTER + k]
+            pull, push = w[FORCE + k], w[GUESS + k]
+            moved = turn * x - quarter * y
+            moved -= w[at + START + k] * pull + w[at + END + k] * push
+            w[at + IMAGINARY + k] = (
+                turn * y
+                + quarter * x
+                - w[at + START_I + k] * pull
+                - w[at + END_I + k] * push
+            )
+            w[at + REAL + k] = moved
+            w[MOTION + k] += moved
+
+
+@compiled(fastmath=True)
+def _march_lanes(
+    displacement: FloatArray,
+    velocity: FloatArray,
+    w: FloatArray,
+    laws: MarchLaws,
+    needs_velocity: bool,
+    first: int,
+    out: FloatArray,
+) -> None:
+    """March the records from `first` on, as many as there are lanes."""
+    n_modes, n_laws = (w.size - MODES) // MODE, laws.kinds.size
+    states = np.zeros((LANES, laws.slips.size, 2))
+    active = np.zeros((n_laws, LANES), dtype=np.int64)
+    # Taken out once: each look into a tuple counts a reference up and down.
+    kinds, p, ends, slips, weights, tables, tops, curves = laws
+    sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * LAW)
+    for i in range(displacement.shape[0]):
+        for k in range(LANES):
+            w[GUESS + k] = 0.0
+            w[BEFORE + k] = w[MOTION + k]
+            w[MOTION + k] = displacement[i, first + k]
+        for a in range(n_laws):
+            for k in range(LANES):
+                at = a * LAW + k
+                f[at + HOPE] = 2.0 * f[at + OWN] - f[at + EARLIER]
+                f[at + EARLIER] = f[at + OWN]
+                w[GUESS + k] += f[at + HOPE]
+        _predict(w, n_modes)
+        if needs_velocity:
+            for k in range(LANES):
+                w[SPEED + k] = velocity[i, first + k]
+            for m in range(n_modes):
+                for k in range(LANES):
+                    at = MODES + m * MODE + k
+                    w[SPEED + k] += w[at + POLE] * w[at + REAL]
+                    w[SPEED + k] -= w[at + POLE_I] * w[at + IMAGINARY]
+        for a in range(n_laws):
+            if kinds[a] == SLIDERS:
+                bank = Bank(
+                    law=a,
+                    first=ends[a],
+                    beyond=ends[a + 1],
+                    lanes=LANES,
+                    now=MOTION,
+                    last=BEFORE,
+                    force=a * LAW + OWN,
+                )
+                bank_forces(bank, w, f, states, active, sliders, tables, tops)
+            else:
+                _forces(a, w, f, kinds, p, curves)
+        for k in range(LANES):
+            w[FORCE + k] = 0.0
+        for a in range(n_laws):
+            for k in range(LANES):
+                w[FORCE + k] += f[a * LAW + OWN + k]
+        for k in range(LANES):
+            out[i, first + k] = w[FORCE + k]
+            w[GUESS + k] = w[FORCE + k] - w[GUESS + k]
+        for m in range(n_modes):
+            for k in range(LANES):
+                at = MODES + m * MODE + k
+                w[at + REAL] -= w[at + END] * w[GUESS + k]
+                w[at + IMAGINARY] -= w[at + END_I] * w[GUESS + k]
+
+
+@compiled(nogil=True)
+def march(
+    displacement: FloatArray,
+    velocity: FloatArray,
+    poles: ComplexArray,
+    residues: ComplexArray,
+    dt: float,
+    laws: MarchLaws,
+    needs_velocity: bool,
+) -> FloatArray:
+    """Return the force of all laws of a link along the coupled motion.
+
+    Args:
+        displacement: linear motion across the link [m], shape (n_steps, n_columns):
+            a column a record, and columns of zeros up to a multiple of `LANES`.
+        velocity: its rate [m/s], same shape; not looked at unless needed.
+        poles: of the link's compliance [rad/s], shape (n_modes, n_records), one of
+            each conjugate pair.
+        residues: of it, doubled for a pair [m/N rad/s], same shape.
+        dt: step [s].
+        laws: that act together.
+        needs_velocity: True where one of them looks at it.
+
+    Returns:
+        Force of the laws together [N], shape (n_steps, n_columns).
+    """
+    n_modes, n_records = poles.shape
+    out = np.empty(displacement.shape)
+    for first in range(0, displacement.shape[1], LANES):
+        count = min(LANES, n_records - first)
+        own_poles = np.full((n_modes, LANES), -1.0 + 0.0j)
+        own_residues = np.zeros((n_modes, LANES), dtype=np.complex128)
+        own_poles[:, :count] = poles[:, first : first + count]
+        own_residues[:, :count] = residues[:, first : first + count]
+        w = _made_ready(own_poles, own_residues, dt)
+        _march_lanes(displacement, velocity, w, laws, needs_velocity, first, out)
+    return out

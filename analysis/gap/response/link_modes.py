@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""Modes of the compliance across a link, with every linear effect that is switched on.
+
+The compiled march steps the motion that a nonlinear link force causes. It needs the
+poles and residues of the link's compliance, record by record: a preload, a settling
+or an attached oscillator changes them as it changes the linear response.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.analysis.gap.response.dynamic_stiffness import Action, state_of
+from jointbench.analysis.gap.response.effect_hooks import HitConditions
+from jointbench.analysis.lumped.lumped_matrices import incidence
+from jointbench.analysis.lumped.lumped_model import LumpedModel
+
+REAL = 1e-9
+"""Imaginary part over the modulus of a pole, below which it is real."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Part:
+    """One element as a rational function of s: k + c s + m s^2 + sum rho/(s - q).
+
+    Attributes:
+        across: +1 and -1 at its ends, shape (n_bodies,).
+        polynomial: k, c, m, shape (n_records, 3).
+        poles: q [rad/s], shape (n_poles,).
+        strengths: rho, shape (n_records, n_poles).
+    """
+
+    across: FloatArray
+    polynomial: FloatArray
+    poles: ComplexArray
+    strengths: ComplexArray
+
+
+def link_modes(
+    model: LumpedModel,
+    theta: FloatArray,
+    conditions: HitConditions,
+    link: int,
+    actions: Sequence[Action] = (),
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return poles and doubled residues of the compliance across a link.
+
+    Args:
+        model: bodies and links.
+        theta: masses, stiffnesses, dampings [SI], shape (n_base,).
+        conditions: of each record.
+        link: index of the link.
+        actions: effects; those with a stiffness hook count.
+
+    Returns:
+        Poles [rad/s], one of each conjugate pair, and residues [m/N rad/s], those of
+        a pair doubled; both of shape (n_modes, n_records).
+    """
+    linear = [a for a in actions if a.entry.stiffness is not None]
+    records = conditions.preload.size
+    parts = _base_parts(model, theta, conditions)
+    parts += [_part(model, theta, conditions, action) for action in linear]
+    variants = max(p.polynomial.shape[0] for p in parts)
+    across = incidence(model)[link]
+    poles, right = np.linalg.eig(_state_matrix(theta[: across.size], parts, variants))
+    push = np.zeros((variants, poles.shape[1], 1), dtype=np.complex128)
+    inertia = _inertia(theta[: across.size], parts, variants)
+    n = across.size
+    push[:, n : 2 * n, 0] = np.linalg.solve(inertia, across[None, :, None])[..., 0]
+    left = np.linalg.solve(right, push)[..., 0]
+    residues = np.einsum("i,rij->rj", across, right[:, :n]) * left
+    poles, residues = _one_of_each_pair(poles, residues)
+    repeat = records // variants
+    return (
+        np.repeat(poles, repeat, axis=0).T.copy(),
+        np.repeat(residues, repeat, axis=0).T.copy(),
+    )
+
+
+def _one_of_each_pair(
+    poles: ComplexArray, residues: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Keep upper poles, their residues doubled, and real ones; pad with nothing."""
+    size = np.abs(poles) + 1e-300
+    upper = poles.imag > REAL * size
+    weight = np.where(upper, 2.0, np.where(poles.imag < -REAL * size, 0.0, 1.0))
+    order = np.argsort(-weight, axis=1, kind="stable")
+    count = int((weight > 0).sum(axis=1).max())
+    rows = np.arange(poles.shape[0])[:, None]
+    kept = order[:, :count]
+    return poles[rows, kept], (residues * weight)[rows, kept]
+
+
+def _base_parts(
+    model: LumpedModel, theta: FloatArray, conditions: HitConditions
+) -> list[_Part]:
+    n, links = len(model.bodies), len(model.links)
+    rows = incidence(model)
+    nothing = np.zeros(0, dtype=np.complex128)
+    parts = []
+    for j, link in enumerate(model.links):
+        k, c = theta[n + j], theta[n + links + j]
+        factor = np.ones(1)
+        if link.joint and conditions.settling is not None:
+            factor = np.exp(conditions.settling)
+        polynomial = np.stack(
+            [k * factor, np.full_like(factor, c), np.zeros_like(factor)], axis=1
+        )
+        none = np.zeros((factor.size, 0), dtype=np.complex128)
+        parts.append(_Part(rows[j], polynomial, nothing, none))
+    return parts
+
+
+def _part(
+    model: LumpedModel, theta: FloatArray, conditions: HitConditions, action: Action
+) -> _Part:
+    """Resolve an effect's dynamic stiffness into its rational parts, exactly."""
+    if action.kind == "body":
+        across = np.eye(len(model.bodies))[action.index]
+    else:
+        across = incidence(model)[action.index]
+    own = np.zeros(0, dtype=np.complex128)
+    if action.entry.poles is not None:
+        own = np.asarray(action.entry.poles(action.values), dtype=np.complex128)
+    scale = float(np.sqrt(theta[len(model.bodies) :].max() / theta[0]))
+    turn = np.arange(2 * (3 + own.size)) + 0.5
+    s = np.asarray(scale * (0.3 + 1j * turn / turn.size), dtype=np.complex128)
+    columns = [np.ones_like(s), s / scale, (s / scale) ** 2]
+    columns += [scale / (s - q) for q in own]
+    state = state_of(model, theta, s, conditions, action)
+    if action.entry.stiffness is None:
+        raise ValueError(f"{action.entry.effect.name} has no stiffness hook")
+    added = np.asarray(action.entry.stiffness(state, action.values))
+    found = np.linalg.lstsq(np.stack(columns, axis=1), added.T, rcond=None)[0].T
+    polynomial = found[:, :3].real / np.array([1.0, scale, scale**2])
+    strengths = np.asarray(found[:, 3:] * scale, dtype=np.complex128)
+    return _Part(across, polynomial, own, strengths)
+
+
+def _inertia(masses: FloatArray, parts: Sequence[_Part], variants: int) -> FloatArray:
+    inertia = np.tile(np.diag(masses), (variants, 1, 1))
+    for p in parts:
+        inertia = inertia + p.polynomial[:, 2, None, None] * np.outer(
+            p.across, p.across
+        )
+    return inertia
+
+
+def _state_matrix(
+    masses: FloatArray, parts: Sequence[_Part], variants: int
+) -> ComplexArray:
+    """Return the state matrix of displacements, velocities and internal states."""
+    n = masses.size
+    inner = sum(p.poles.size for p in parts)
+    a = np.zeros((variants, 2 * n + inner, 2 * n + inner), dtype=np.complex128)
+    a[:, :n, n : 2 * n] = np.eye(n)
+    forces = np.zeros((variants, n, 2 * n + inner), dtype=np.complex128)
+    at = 2 * n
+    for p in parts:
+        pair = np.outer(p.across, p.across)
+        forces[:, :, :n] -= p.polynomial[:, 0, None, None] * pair
+        forces[:, :, n : 2 * n] -= p.polynomial[:, 1, None, None] * pair
+        for j, q in enumerate(p.poles):
+            forces[:, :, at] -= p.strengths[:, j, None] * p.across
+            a[:, at, :n] = p.across
+            a[:, at, at] = q
+            at += 1
+    a[:, n : 2 * n] = np.linalg.solve(_inertia(masses, parts, variants), forces)
+    return a

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""Put the force laws of a link into the common arrays of the compiled march."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.response.effect_hooks import Law
+from jointbench.analysis.gap.response.force_integration import (
+    CURVES,
+    SLIDERS,
+    MarchLaws,
+)
+
+PARAMETERS = 2
+SLIDER_ROWS = 4
+CURVE_ROWS = 3
+
+
+def pack_laws(laws: Sequence[Law]) -> MarchLaws:
+    """Return laws that act together at one link as the march wants them."""
+    p = np.zeros((len(laws), PARAMETERS))
+    for row, law in zip(p, laws, strict=True):
+        row[: law.parameters.size] = law.parameters
+    sizes = [law.slips.size for law in laws]
+    return MarchLaws(
+        kinds=np.array([law.kind for law in laws], dtype=np.int64),
+        p=p,
+        ends=np.cumsum([0, *sizes], dtype=np.int64),
+        slips=np.concatenate([law.slips for law in laws]),
+        weights=np.concatenate([law.weights for law in laws]),
+        tables=_rows(laws, SLIDERS, SLIDER_ROWS),
+        tops=np.stack([law.tops for law in laws]),
+        curves=_rows(laws, CURVES, CURVE_ROWS),
+    )
+
+
+def _rows(laws: Sequence[Law], kind: int, count: int) -> FloatArray:
+    """Return the tables of one kind of law, so many rows a law, zeros for others."""
+    own = [law.tables if law.kind == kind else None for law in laws]
+    width = max((t.shape[1] for t in own if t is not None), default=1)
+    rows = [np.zeros((count, width)) if t is None else t for t in own]
+    return rows[0] if len(rows) == 1 else np.concatenate(rows)

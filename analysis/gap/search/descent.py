@@ -1,0 +1,277 @@
+# SPDX-License-Identifier: MIT
+"""Descend to a minimum of the cost: Levenberg and Marquardt, coarse to fine."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.fit_records import FULL, Fit, Stage
+from jointbench.analysis.gap.residuals.joint_fit import FitProblem
+from jointbench.analysis.gap.response.threads import each
+
+EXCESS_TOLERANCE = 1e-3
+"""Stop below this share of the excess of chi2 over its degrees of freedom: a share
+of chi2 itself would hide an effect of a hundred units among 60,000."""
+ABSOLUTE_TOLERANCE = 0.03
+BASE_STEP = 1e-7
+"""Difference step of a logarithm. A record holds some hundred radians, so that a step
+of 1e-5 would already bend its end away from the slope."""
+EFFECT_STEP = 1e-6
+PATIENCE = 12.0
+"""Steps of the last size that a descent may still need to come down to a rival."""
+LONGEST = 1.5
+"""Longest step of a coordinate; most are logarithms."""
+CORRECTIONS = 2
+"""Steps back into the valley, by the slopes at hand, before a step is shortened."""
+LEAST_DAMPING = 1e-11
+"""A first step is all but Gauss and Newton's: where hits scatter, the scale of all
+masses and stiffnesses is so soft that a damping of 1e-6 would hold it."""
+STIFF = 1e-3
+"""Damping under which only what the data fix well moves."""
+OLDEST = 2
+"""Steps in a row for which slopes are updated by the secant instead of differenced."""
+TRUSTED = 0.6
+"""Share of the foretold drop below which the slopes are differenced again."""
+
+
+def steps_of(problem: FitProblem, x: FloatArray) -> FloatArray:
+    """Return the difference steps of x, turned inwards at a bound."""
+    step = np.full(x.size, BASE_STEP)
+    tail = slice(problem.n_base, None)
+    step[tail] = EFFECT_STEP * np.maximum(np.abs(x[tail]), 1e-2)
+    return np.where(x + step > problem.upper, -step, step)
+
+
+def jacobian_of(
+    problem: FitProblem,
+    x: FloatArray,
+    residual: FloatArray,
+    stage: Stage,
+) -> FloatArray:
+    """Difference the residual.
+
+    Args:
+        problem: what is fitted.
+        x: where, shape (n,).
+        residual: at x, shape (n_rows,).
+        stage: how thoroughly.
+    """
+    columns = np.empty((x.size, residual.size))
+    steps = steps_of(problem, x)
+
+    def difference(i: int) -> None:
+        moved = x.copy()
+        moved[i] += steps[i]
+        columns[i] = problem.residual(moved, stage)
+        columns[i] -= residual
+        columns[i] /= steps[i]
+
+    each(difference, x.size)
+    return columns.T
+
+
+def minimise(
+    problem: FitProblem,
+    start: FloatArray,
+    stage: Stage = FULL,
+    *,
+    iterations: int = 20,
+    rival: float | None = None,
+    jacobian_stage: Stage | None = None,
+    exact_slopes: bool = True,
+) -> Fit:
+    """Descend from one start.
+
+    Args:
+        problem: what is fitted.
+        start: coordinates, shape (n,).
+        stage: window and step of the residual.
+        iterations: at most.
+        rival: cost of the best so far; a descent that at its pace would need very
+            many more steps to come there is given up.
+        jacobian_stage: a cheaper stage for the slopes, or None for the same.
+        exact_slopes: difference the slopes once more at the end, which an
+            intermediate stage does not need.
+    """
+
+    def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
+        if jacobian_stage is None:
+            return jacobian_of(problem, x, r, stage)
+        coarse = problem.residual(x, jacobian_stage)
+        return jacobian_of(problem, x, coarse, jacobian_stage)
+
+    x = np.clip(start, problem.lower, problem.upper)
+    r, cost = _looked_at(problem, x, stage)
+    if not np.isfinite(cost):
+        return _hopeless(problem, x, r)
+    damping, age, j = LEAST_DAMPING, 0, slopes(x, r)
+    for k in range(iterations):
+        moved, damping = _step(problem, x, r, j, cost, damping, stage)
+        if moved is None:
+            if age == 0:
+                break
+            j, age, damping = slopes(x, r), 0, 1e-3
+            continue
+        drop = cost - moved[2]
+        small = drop < EXCESS_TOLERANCE * _excess(problem, cost) + ABSOLUTE_TOLERANCE
+        guessed = _predicted_drop(problem, x, r, j, moved[0])
+        change, before = moved[0] - x, r
+        x, r, cost = moved
+        if small and age == 0:
+            break
+        if rival is not None and k >= 1 and cost - rival > PATIENCE * drop:
+            break
+        if not small and age < OLDEST and drop > TRUSTED * guessed:
+            j, age = _secant(j, change, r - before), age + 1
+        else:
+            j, age = slopes(x, r), 0
+    if age > 0 and exact_slopes:
+        j = slopes(x, r)
+    return Fit(
+        x, problem.n_base, problem.candidates, r, j, cost, problem.prior, problem.centre
+    )
+
+
+def _hopeless(problem: FitProblem, x: FloatArray, r: FloatArray) -> Fit:
+    """Return the fit of a start at which the model runs away."""
+    return Fit(
+        x,
+        problem.n_base,
+        problem.candidates,
+        np.full_like(r, np.inf),
+        np.zeros((r.size, x.size)),
+        np.inf,
+        problem.prior,
+        problem.centre,
+    )
+
+
+def _excess(problem: FitProblem, cost: float) -> float:
+    return max(cost - problem_dof(problem), 0.0)
+
+
+def _predicted_drop(
+    problem: FitProblem, x: FloatArray, r: FloatArray, j: FloatArray, moved: FloatArray
+) -> float:
+    """Return the drop of the cost that the linear model foretold."""
+    left = r + j @ (moved - x)
+    return float(r @ r - left @ left + problem.penalty(x) - problem.penalty(moved))
+
+
+def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatArray:
+    """Update slopes by what a step has shown, at the price of no evaluation.
+
+    Source:
+        Broyden 1965, Math. Comp. 19, 577, eq. (4.5), with parameters scaled by the
+        norm of their columns.
+    """
+    along = np.einsum("ij,ij->j", j, j) * change
+    return j + np.outer(difference - j @ change, along / (change @ along))
+
+
+def problem_dof(problem: FitProblem) -> int:
+    """Return the number of residuals that carry weight."""
+    return problem.bench.blocks.dof
+
+
+Moved = tuple[FloatArray, FloatArray, float]
+
+
+def _step(
+    problem: FitProblem,
+    x: FloatArray,
+    r: FloatArray,
+    j: FloatArray,
+    cost: float,
+    damping: float,
+    stage: Stage,
+) -> tuple[Moved | None, float]:
+    """Try ever shorter steps until one goes down.
+
+    Effects hand stiffness and damping to the base and back, so their valleys are long
+    and curved. A step that climbed a wall is first led back down by what the data fix
+    well, with the slopes at hand, and only then shortened.
+    """
+    hessian = j.T @ j + np.diag(problem.prior)
+    gradient = j.T @ r + problem.prior * (x - problem.centre)
+    free = ~(
+        ((x <= problem.lower) & (gradient > 0))
+        | ((x >= problem.upper) & (gradient < 0))
+    )
+    size = np.sqrt(np.maximum(np.diag(hessian), 1e-12))
+    h = (hessian / np.outer(size, size))[np.ix_(free, free)]
+    g = (gradient / size)[free]
+    for _ in range(9):
+        step = np.zeros(x.size)
+        step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
+        trial = _moved(problem, x, step / size)
+        try_r, try_cost = _looked_at(problem, trial, stage)
+        for _ in range(CORRECTIONS):
+            if try_cost < cost or not np.isfinite(try_cost):
+                break
+            pull = j.T @ try_r + problem.prior * (trial - problem.centre)
+            stiff = h + STIFF * np.eye(h.shape[0])
+            step[free] = -_solve(stiff, (pull / size)[free])
+            trial = _moved(problem, trial, step / size)
+            try_r, try_cost = _looked_at(problem, trial, stage)
+        if np.isfinite(try_cost) and try_cost < cost:
+            return (trial, try_r, try_cost), max(damping / 10, LEAST_DAMPING)
+        damping = max(damping * 8, 1e-6)
+        if damping > 1e7:
+            break
+    return None, damping
+
+
+def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve, or return the least of all solutions where two parameters are one."""
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-14)[0])
+
+
+def _moved(problem: FitProblem, x: FloatArray, step: FloatArray) -> FloatArray:
+    bounded = np.clip(step, -LONGEST, LONGEST)
+    return np.clip(x + bounded, problem.lower, problem.upper)
+
+
+def cost_at(problem: FitProblem, x: FloatArray, stage: Stage) -> float:
+    """Return the cost at x, infinite where the model runs away."""
+    return _looked_at(problem, x, stage)[1]
+
+
+def chi2_between(
+    problem: FitProblem, x: FloatArray, coarse: Stage, fine: Stage
+) -> float:
+    """Return the chi2 by which two stages differ at x; NaN where one runs away."""
+    one, two = (_looked_at(problem, x, stage)[0] for stage in (coarse, fine))
+    with np.errstate(all="ignore"):
+        return float(np.sum((two - one) ** 2))
+
+
+def _looked_at(
+    problem: FitProblem, x: FloatArray, stage: Stage
+) -> tuple[FloatArray, float]:
+    with np.errstate(all="ignore"):
+        try:
+            r = problem.residual(x, stage)
+        except np.linalg.LinAlgError:  # a model whose modes cannot be told apart
+            return np.full(problem.bench.blocks.group.size, np.inf), np.inf
+        cost = float(r @ r) + problem.penalty(x)
+    return r, cost if np.isfinite(cost) else np.inf
+
+
+Stages = Sequence[tuple[Stage, int]]
+BASE_STAGES: Stages = (
+    (Stage(0.002), 6),
+    (Stage(0.006), 6),
+    (Stage(0.020), 6),
+    (FULL, 20),
+)
+
+
+def fit_stages(problem: FitProblem, start: FloatArray, stages: Stages) -> Fit:
+    """Fit coarse to fine; the last stage decides."""
+    x = start
+    for stage, iterations in stages[:-1]:
+        x = minimise(problem, x, stage, iterations=iterations, exact_slopes=False).x
+    last, iterations = stages[-1]
+    return minimise(problem, x, last, iterations=iterations)

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: MIT
+"""Directed tests: how much chi2 would each effect take, and is that more than noise?
+
+The amplitude of an effect enters linearly at OFF, so that one evaluation gives its
+direction in the space of residuals. With the base and its priors projected out, the
+squared score along it is the drop of chi2 to be expected, and the amplitude that goes
+with it is a start value. The largest drop over the catalogue is the statistic of the
+null test; under the null it is the maximum of correlated chi2 variables, drawn from
+the directions' own correlation.
+"""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.fit_records import Fit, Stage
+from jointbench.analysis.gap.response.threads import each
+
+PROBE = 1e-6
+SEEN = 1e-10
+"""Share of a direction's squared length that the fit must leave for it to count."""
+SCREEN = Stage(oversampling=2)
+DRAWS = 4000
+QUANTILE = 0.995
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Direction:
+    """One effect at one shape, tested.
+
+    Attributes:
+        candidate: the effect and site.
+        coordinates: start for a fit, shape (n_parameters,).
+        shift: of what is already fitted, as the effect takes its part, (n_x,).
+        drop: chi2 that it is predicted to take.
+        one_sided: True where only one sign is allowed.
+        suggested: True where the residual itself suggested the shape, so that the
+            drop is no fair test.
+    """
+
+    candidate: Candidate
+    coordinates: FloatArray
+    shift: FloatArray
+    drop: float
+    one_sided: bool
+    suggested: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Screening:
+    """All directed tests of a fit.
+
+    Attributes:
+        directions: by falling drop.
+        threshold: drop that a fit without a missing effect exceeds in 0.5 % of cases.
+        largest: the largest drop met.
+    """
+
+    directions: tuple[Direction, ...]
+    threshold: float
+    largest: float
+
+    def leaders(self, count: int) -> list[Candidate]:
+        """Return the candidates of the largest drops."""
+        found: list[Candidate] = []
+        for d in self.directions:
+            if d.candidate not in found and len(found) < count:
+                found.append(d.candidate)
+        return found
+
+    def best(self, candidate: Candidate, count: int) -> list[Direction]:
+        """Return the best starts of a candidate."""
+        own = [d for d in self.directions if d.candidate == candidate]
+        return own[:count]
+
+
+def screen(
+    bench: Bench,
+    fit: Fit,
+    candidates: Sequence[Candidate],
+    *,
+    stage: Stage = SCREEN,
+    seed: int = 0,
+) -> Screening:
+    """Test every candidate at every point of its start grid.
+
+    Args:
+        bench: measurement and model.
+        fit: a minimum, possibly with effects switched on.
+        candidates: what to test.
+        stage: how thoroughly; the fit must be one of the same window.
+        seed: of the null draws.
+    """
+    starts = [(c, u) for c in candidates for u in start_grid(c)]
+    fixed = len(starts)
+    if stage.window is None:
+        starts += [(c, u) for c in candidates for u in bench.hints(fit, c)]
+    tangent = _tangent(fit)
+    base = bench.residual(fit.base, fit.terms, stage)
+    left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
+    taken = np.empty((len(starts), fit.x.size))
+    norm = np.empty(len(starts))
+
+    def test(k: int) -> None:
+        candidate, u = starts[k]
+        probe, unit = _probe(candidate, u)
+        terms = (*fit.terms, Term(candidate, probe))
+        row = np.zeros(tangent.q.shape[0])
+        row[: base.size] = (bench.residual(fit.base, terms, stage) - base) / unit
+        taken[k] = tangent.q.T @ row
+        norm[k] = row @ row
+        left[k] = row - tangent.q @ taken[k]
+
+    each(test, len(starts))
+    return _judge(bench, starts, tangent, _Tested(left, taken, norm, fixed), seed)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tangent:
+    """What the parameters that are fitted can follow: slopes and priors, orthonormal.
+
+    Attributes:
+        q: orthonormal columns of slopes over priors, shape (n_rows + n_x, n_x).
+        r: upper triangle that belongs to them, shape (n_x, n_x).
+        residual: of the data over that of the priors, shape (n_rows + n_x,).
+    """
+
+    q: FloatArray
+    r: FloatArray
+    residual: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tested:
+    """Directions of the effects, split by what the fit can follow.
+
+    Attributes:
+        left: what it cannot follow, shape (n_starts, n_rows + n_x).
+        taken: coordinates of what it can, shape (n_starts, n_x).
+        norm: squared length of the whole, shape (n_starts,).
+        fixed: how many belong to the grid; the others were suggested by the very
+            residual that is tested, so they are starts and no statistic.
+    """
+
+    left: NDArray[np.float32]
+    taken: FloatArray
+    norm: FloatArray
+    fixed: int
+
+
+def _tangent(fit: Fit) -> _Tangent:
+    root = np.sqrt(fit.prior)
+    q, r = np.linalg.qr(np.concatenate([fit.jacobian, np.diag(root)]))
+    residual = np.concatenate([fit.residual, root * (fit.x - fit.centre)])
+    return _Tangent(np.asarray(q), np.asarray(r), residual)
+
+
+def _probe(candidate: Candidate, u: FloatArray) -> tuple[FloatArray, float]:
+    """Return coordinates that switch the effect on a little, and by how much."""
+    first = candidate.effect.parameters[0]
+    probe = u.copy()
+    if first.starts:
+        return probe, 1.0
+    probe[0] = PROBE
+    return probe, PROBE
+
+
+def start_grid(candidate: Candidate) -> list[FloatArray]:
+    """Return the start coordinates of a candidate, amplitude 0 where it is scored."""
+    axes = [
+        [p.encode(s) for s in p.starts] or [0.0] for p in candidate.effect.parameters
+    ]
+    return [np.array(point) for point in itertools.product(*axes)]
+
+
+def _judge(
+    bench: Bench,
+    starts: Sequence[tuple[Candidate, FloatArray]],
+    tangent: _Tangent,
+    tested: _Tested,
+    seed: int,
+) -> Screening:
+    gram = (tested.left @ tested.left.T).astype(np.float64)
+    score = tested.left @ tangent.residual
+    left = np.diag(gram).copy()
+    left = np.where(left > SEEN * np.maximum(tested.norm, 1e-300), left, np.inf)
+    amplitude = -score / left
+    minimum = tangent.q.T @ tangent.residual
+    directions = []
+    one_sided = np.zeros(len(starts), dtype=bool)
+    for k, (candidate, u) in enumerate(starts):
+        first = candidate.effect.parameters[0]
+        one_sided[k] = first.lower >= 0.0
+        drop = float(score[k] ** 2 / left[k])
+        start = u.copy()
+        if not first.starts:
+            low, high = first.bounds
+            start[0] = np.clip(amplitude[k], 0.9 * low, 0.9 * high)
+        if one_sided[k] and amplitude[k] <= 0:
+            drop = 0.0
+            start[0] = start[0] if first.starts else 1e-3
+        phases = bench.phases(candidate)
+        if phases:
+            drop = _phase_drop(drop, phases)
+        moved = start[0] if not first.starts else 1.0
+        shift = -_solve(tangent.r, minimum + tested.taken[k] * moved)
+        directions.append(
+            Direction(
+                candidate, start, shift, drop, bool(one_sided[k]), k >= tested.fixed
+            )
+        )
+    counted = np.array([bench.phases(c) == 0 for c, _ in starts])
+    counted[tested.fixed :] = False
+    left = np.where(counted, left, np.inf)
+    threshold = null_threshold(gram, one_sided & np.isfinite(left), left, seed)
+    largest = max((d.drop for d in directions[: tested.fixed]), default=0.0)
+    directions.sort(key=lambda d: -d.drop)
+    return Screening(tuple(directions), threshold, largest)
+
+
+def _solve(r: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve with a triangle that may be singular where a parameter does nothing."""
+    return np.asarray(np.linalg.lstsq(r, right, rcond=1e-13)[0])
+
+
+def _phase_drop(drop: float, phases: int) -> float:
+    """Return the drop of an effect that chose its own phases, as one free of choice.
+
+    Under the null the amplitude is the mean of `phases` Rayleigh variables, not 0.
+    """
+    mean, sd = np.sqrt(np.pi / 2), np.sqrt(2 - np.pi / 2)
+    excess = (np.sqrt(drop) - np.sqrt(phases) * mean) / sd
+    return float(max(excess, 0.0) ** 2)
+
+
+def null_threshold(
+    gram: FloatArray, one_sided: BoolArray, left: FloatArray, seed: int
+) -> float:
+    """Draw the largest drop under the null and return its upper quantile.
+
+    Args:
+        gram: inner products of the projected directions, shape (n, n).
+        one_sided: where only one sign counts, shape (n,).
+        left: their squared norms, inf where the base hides them, shape (n,).
+        seed: of the draws.
+    """
+    keep = np.isfinite(left)
+    if not keep.any():
+        return 0.0
+    size = np.sqrt(left[keep])
+    correlation = gram[np.ix_(keep, keep)] / np.outer(size, size)
+    values, vectors = np.linalg.eigh(correlation)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    rng = np.random.default_rng(seed)
+    draws = rng.standard_normal((DRAWS, root.shape[1])) @ root.T
+    draws = np.where(one_sided[keep] & (draws < 0), 0.0, draws)
+    return float(np.quantile(np.max(draws**2, axis=1), QUANTILE))

@@ -1,0 +1,290 @@
+# SPDX-License-Identifier: MIT
+"""Stiffness and damping of joints from what was measured of a structure."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2 as chi2_distribution
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.analysis.lumped.identified import IdentificationVerdict, JointParameter
+from jointbench.analysis.structures.identification.joint_result import (
+    FullCheck,
+    JointSolution,
+    LikelihoodProfile,
+    StateFit,
+    StructureIdentification,
+)
+from jointbench.analysis.structures.identification.multistart import (
+    LARGEST_LOG_SD,
+    find_optima,
+)
+from jointbench.analysis.structures.identification.next_measurement import (
+    what_separates,
+    what_to_measure,
+)
+from jointbench.analysis.structures.identification.parameter_intervals import (
+    admissible_interval,
+    local_interval,
+)
+from jointbench.analysis.structures.identification.profile_likelihood import (
+    profile_likelihood,
+)
+from jointbench.analysis.structures.identification.stiffness_problem import (
+    Optimum,
+    StiffnessProblem,
+    pose_problem,
+    values_of,
+)
+from jointbench.analysis.structures.identification.structure_evidence import (
+    StructureEvidence,
+    mac,
+    pair_modes,
+    states,
+)
+from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.full_modes import frequency_of, solve_full
+from jointbench.analysis.structures.reduction.predict_response import (
+    JointValues,
+    damping_ratios,
+    energy_shares,
+    modal_state,
+)
+from jointbench.analysis.structures.reduction.reduced_model import (
+    ReducedModel,
+    frequency_bound,
+)
+
+# The model does not fit if noise alone would do worse this seldom.
+_MISFIT = 1e-3
+# Chi2 of measurements that leave no degree of freedom fits below three sd.
+_NO_FREEDOM = 9.0
+# Rivals further away than this many standard deviations make a value ambiguous ...
+_RIVAL_SD = 3.0
+# ... if they differ by more than this in ln.
+_RIVAL_LOG = 0.02
+_LISTED = 12
+_NAMED = 3
+# Rounding of the full eigensolution, relative frequency.
+_ROUNDING = 1e-7
+
+
+@dataclass(frozen=True, slots=True)
+class StructureSearch:
+    """How the joints of a structure are sought.
+
+    Attributes:
+        starts: of the search over the box of the reduction.
+        seed: of the starts.
+        profiles: whether to follow the likelihood of every parameter.
+    """
+
+    starts: int = 48
+    seed: int = 0
+    profiles: bool = True
+
+
+@one_thread()
+def identify_structure(
+    model: ReducedModel,
+    evidence: Sequence[StructureEvidence],
+    *,
+    known: JointValues | None = None,
+    sought: Sequence[str] | None = None,
+    shared: Sequence[str] = (),
+    search: StructureSearch | None = None,
+    structure: Structure | None = None,
+) -> StructureIdentification:
+    """Find the stiffness and damping of joints.
+
+    Args:
+        model: the reduced structure.
+        evidence: modes or FRFs of one or several states (torques).
+        known: values of what is not sought.
+        sought: names ``"<joint>.<direction>"``; default all.
+        shared: names that all states have in common.
+        search: how it is sought; None for the defaults.
+        structure: of which the optimum is checked by one full solve; None skips it.
+
+    Returns:
+        Values with standard deviations (enlarged where the misfit shows that the
+        given uncertainties are too small), every distinct solution, and what to
+        measure next for what is not identifiable.
+
+    Raises:
+        BadData: names do not exist, or more modes were measured than predicted.
+
+    Source:
+        Appl. Sci. 2023, 13, 11680, eq. (6), whose genetic algorithm on absolute
+        frequency errors is replaced by weighted least squares from many starts.
+    """
+    search = search or StructureSearch()
+    states(evidence)
+    problem = pose_problem(model, evidence, known=known, sought=sought, shared=shared)
+    optima = find_optima(problem, starts=search.starts, seed=search.seed)
+    best = optima[0]
+    freedom = best.slopes.shape[0] - problem.size
+    scale, limit = best.noise(), best.limit()
+    standing = [best, *(one for one in optima[1:] if one.chi2 < limit)]
+    covariance = scale * best.covariance()
+    curves = profile_likelihood(problem, best, covariance, scale, search.profiles)
+    parameters = tuple(
+        _parameter(problem, standing, at, curves) for at in range(problem.size)
+    )
+    verdict, reasons = _judge(parameters, best, freedom, len(standing) > 1)
+    return StructureIdentification(
+        verdict=verdict,
+        reasons=reasons,
+        parameters=parameters,
+        log_covariance=covariance,
+        solutions=tuple(
+            _solution(problem, one, limit) for one in _listed(optima, standing)
+        ),
+        profiles=curves,
+        states=tuple(_state_fit(problem, best, at) for at in range(len(evidence))),
+        full_check=_full_checks(structure, problem, best),
+        degrees_of_freedom=freedom,
+    )
+
+
+def _parameter(
+    problem: StiffnessProblem,
+    standing: Sequence[Optimum],
+    at: int,
+    curves: Mapping[str, LikelihoodProfile],
+) -> JointParameter:
+    """Return a parameter with its uncertainty and whether it is determined."""
+    best, name = standing[0], problem.names[at]
+    scale = best.noise()
+    value = float(np.exp(best.unknowns[at]))
+    unit = "N s/m" if problem.damping[at] else "N/m"
+    sd = float(np.sqrt(scale * best.covariance()[at, at]))
+    reason = _open_reason(problem, standing, at, sd, unit)
+    if reason:
+        ends = admissible_interval(problem, standing, at, scale)
+        return JointParameter(name, value, None, unit, False, reason, ends)
+    curve = curves.get(name)
+    own = local_interval(best, at, scale) if curve is None else (curve.low, curve.high)
+    return JointParameter(name, value, value * sd, unit, True, "", own)
+
+
+def _open_reason(
+    problem: StiffnessProblem,
+    standing: Sequence[Optimum],
+    at: int,
+    sd: float,
+    unit: str,
+) -> str:
+    """Say why a parameter is not identifiable; empty if it is."""
+    best, rivals = standing[0], standing[1:]
+    if not sd < LARGEST_LOG_SD:
+        return (
+            "not identifiable: its standard deviation exceeds 100 %; "
+            + what_to_measure(problem, best, at)
+        )
+    limit = max(_RIVAL_LOG, _RIVAL_SD * sd)
+    others = [
+        one for one in rivals if abs(one.unknowns[at] - best.unknowns[at]) > limit
+    ]
+    if not others:
+        return ""
+    logs = [float(one.unknowns[at]) for one in (best, *others)]
+    return (
+        f"not identifiable: {_listing(np.exp(np.sort(logs)), unit)} fit alike; "
+        + what_separates(problem, best, others[0])
+    )
+
+
+def _listed(
+    optima: Sequence[Optimum], standing: Sequence[Optimum]
+) -> tuple[Optimum, ...]:
+    """Return the solutions to list: the best ones, and of each unknown the extremes."""
+    value = np.array([one.unknowns for one in standing])
+    wanted = {*range(_LISTED), *value.argmin(axis=0), *value.argmax(axis=0)}
+    # Those that stand come first among all.
+    return tuple(one for at, one in enumerate(optima) if at in wanted)
+
+
+def _listing(values: FloatArray, unit: str) -> str:
+    """Name a few values, or say how many there are and how far they reach."""
+    if values.size <= _NAMED:
+        return " or ".join(f"{one:.3g}" for one in values) + f" {unit}"
+    return f"{values.size} values from {values[0]:.3g} to {values[-1]:.3g} {unit}"
+
+
+def _judge(
+    parameters: Sequence[JointParameter], best: Optimum, freedom: int, rivals: bool
+) -> tuple[IdentificationVerdict, tuple[str, ...]]:
+    """Return the verdict on the whole, and its reasons."""
+    reasons = [f"{one.name}: {one.reason}" for one in parameters if one.reason]
+    limit = chi2_distribution.isf(_MISFIT, freedom) if freedom > 0 else _NO_FREEDOM
+    if best.chi2 > limit:
+        line = (
+            f"chi2 is {best.chi2:.3g} for {freedom} degrees of freedom: no joint "
+            "explains the measurement within its uncertainty; check material, masses, "
+            "supports and the pairing of modes"
+        )
+        return IdentificationVerdict.INCONSISTENT, (line, *reasons)
+    open_ones = sum(not one.identifiable for one in parameters)
+    if not open_ones:
+        return IdentificationVerdict.DETERMINED, ()
+    if open_ones == len(parameters):
+        word = (
+            IdentificationVerdict.AMBIGUOUS
+            if rivals
+            else IdentificationVerdict.UNDETERMINED
+        )
+        return word, tuple(reasons)
+    return IdentificationVerdict.PARTLY, tuple(reasons)
+
+
+def _solution(
+    problem: StiffnessProblem, optimum: Optimum, limit: float
+) -> JointSolution:
+    values = np.exp(optimum.unknowns).tolist()
+    named = dict(zip(problem.names, values, strict=True))
+    return JointSolution(named, optimum.chi2, optimum.chi2 < limit)
+
+
+def _state_fit(problem: StiffnessProblem, best: Optimum, row: int) -> StateFit:
+    """Return measured beside predicted modes of one state."""
+    model, evidence = problem.model, problem.evidence[row]
+    values = values_of(problem, best.unknowns, row)
+    state = modal_state(model, values.stiffness)
+    elastic = np.arange(state.rigid, model.modes)
+    measured, likeness, chosen = np.zeros(0), np.zeros(0), elastic
+    if evidence.modes is not None:
+        measured = evidence.modes.natural_frequency
+        chosen = pair_modes(state, elastic, evidence.modes, evidence.outputs)
+        if evidence.modes.shapes is not None:
+            shapes = (evidence.outputs @ state.shapes[:, chosen]).T.astype(complex)
+            likeness = np.diag(mac(evidence.modes.shapes, shapes))
+    return StateFit(
+        evidence.label,
+        measured,
+        frequency_of(state.eigenvalue[chosen]),
+        damping_ratios(state, values.damping)[chosen],
+        likeness,
+        energy_shares(state, values.stiffness)[chosen],
+    )
+
+
+def _full_checks(
+    structure: Structure | None, problem: StiffnessProblem, best: Optimum
+) -> tuple[FullCheck, ...]:
+    """Solve the optimum of every state once with the whole mesh, if there is one."""
+    if structure is None:
+        return ()
+    checks = []
+    for row, evidence in enumerate(problem.evidence):
+        stiffness = values_of(problem, best.unknowns, row).stiffness
+        reduced, bound = frequency_bound(problem.model, stiffness)
+        full = solve_full(structure, stiffness, problem.model.modes)
+        elastic = (reduced > 0) & (full.natural_frequency > 0)
+        reduced, bound = reduced[elastic], bound[elastic]
+        whole = full.natural_frequency[elastic]
+        agrees = bool(np.all(np.abs(reduced - whole) <= bound + _ROUNDING * whole))
+        checks.append(FullCheck(evidence.label, reduced, whole, bound, agrees))
+    return tuple(checks)

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: MIT
+"""Many starts, one least-squares descent each, and what is distinct among the ends."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import qmc
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.structures.identification.stiffness_problem import (
+    Optimum,
+    StiffnessProblem,
+    residuals,
+    states_apart,
+)
+
+# Damping starts at this fraction of stiffness over frequency.
+_DAMPING_START = 1e-2
+# Two ends are one solution if every parameter agrees to this in ln.
+_SAME = 0.02
+_MOST_STEPS = 100
+# So many branches of solutions are followed along what is open ...
+_FOLLOWED = 4
+# ... with each open unknown held at so many values, over the whole box.
+_HELD = 12
+# Chi2 that differs by less than this is the same but for rounding.
+_TIE = 1e-6
+# More than this standard deviation in ln counts as not identifiable (100 %).
+LARGEST_LOG_SD = 1.0
+
+
+def descend(
+    problem: StiffnessProblem, start: FloatArray, fixed: Sequence[int] = ()
+) -> Optimum:
+    """Go down from one start, some unknowns held.
+
+    Args:
+        problem: what is sought.
+        start: logarithms, shape (n_unknowns,).
+        fixed: numbers of the unknowns that stay.
+
+    Returns:
+        Where it ends.
+    """
+    parts = states_apart(problem)
+    if len(parts) == 1:
+        return _descend(problem, start, fixed)
+    ends = []
+    for part, own in parts:
+        held = np.flatnonzero(np.isin(own, np.asarray(fixed, np.int64)))
+        ends.append(_descend(part, start[own], held.tolist()))
+    return _joined(problem, ends)
+
+
+def _joined(problem: StiffnessProblem, ends: Sequence[Optimum]) -> Optimum:
+    """Put the ends of all states together."""
+    unknowns = np.empty(problem.size)
+    rows = sum(end.slopes.shape[0] for end in ends)
+    slopes, begin = np.zeros((rows, problem.size)), 0
+    for (_, own), end in zip(states_apart(problem), ends, strict=True):
+        unknowns[own] = end.unknowns
+        after = begin + end.slopes.shape[0]
+        slopes[begin:after, own] = end.slopes
+        begin = after
+    return Optimum(unknowns, sum(end.chi2 for end in ends), slopes)
+
+
+def _descend(
+    problem: StiffnessProblem, start: FloatArray, fixed: Sequence[int]
+) -> Optimum:
+    free = np.setdiff1d(np.arange(problem.size), np.asarray(fixed, np.int64))
+    base = np.clip(start, problem.low, problem.high)
+    last: dict[bytes, tuple[FloatArray, FloatArray]] = {}
+
+    def evaluate(part: FloatArray) -> tuple[FloatArray, FloatArray]:
+        key = part.tobytes()
+        if key not in last:
+            last.clear()
+            whole = base.copy()
+            whole[free] = part
+            last[key] = residuals(problem, whole)
+        return last[key]
+
+    def rows(part: FloatArray) -> FloatArray:
+        return evaluate(part)[0]
+
+    def slopes_of(part: FloatArray) -> FloatArray:
+        return np.asarray(evaluate(part)[1][:, free])
+
+    end = base.copy()
+    if free.size:
+        result = least_squares(
+            rows,
+            base[free],
+            jac=slopes_of,
+            bounds=(problem.low[free], problem.high[free]),
+            x_scale="jac",
+            xtol=1e-10,
+            ftol=1e-12,
+            gtol=1e-10,
+            max_nfev=_MOST_STEPS,
+        )
+        end[free] = result.x
+    left, slopes = residuals(problem, end)
+    return Optimum(end, float(left @ left), slopes)
+
+
+def find_optima(
+    problem: StiffnessProblem, *, starts: int, seed: int
+) -> tuple[Optimum, ...]:
+    """Search from many starts and keep what is distinct, the best first.
+
+    Args:
+        problem: what is sought.
+        starts: points of a Latin hypercube over the logarithms of the box.
+        seed: of the points.
+
+    Returns:
+        Distinct ends. Where states share nothing each is searched on its own, and a
+        rival is another end of one state beside the best of all others.
+    """
+    searched = [
+        _search(part, starts, seed + at)
+        for at, (part, _) in enumerate(states_apart(problem))
+    ]
+    if len(searched) == 1:
+        return searched[0]
+    best = [ends[0] for ends in searched]
+    rivals = [
+        _joined(problem, [*best[:at], rival, *best[at + 1 :]])
+        for at, ends in enumerate(searched)
+        for rival in ends[1:]
+    ]
+    return (_joined(problem, best), *(in_order(problem, rivals) if rivals else ()))
+
+
+def _search(problem: StiffnessProblem, starts: int, seed: int) -> tuple[Optimum, ...]:
+    """Search a problem as it is; see `find_optima`."""
+    found = [descend(problem, start) for start in _starts(problem, starts, seed)]
+    limit = min(found, key=lambda end: end.chi2).limit()
+    standing = [end for end in found if end.chi2 < limit]
+    for branch in _branches(problem, standing)[:_FOLLOWED]:
+        along = _open_ways(problem, branch, limit)
+        if along:
+            # Where chance starts end along what is open means nothing.
+            floor = min(end.chi2 for end in along) - _TIE * branch.noise()
+            found = [end for end in found if not _idle(end, branch, floor)] + along
+    return _distinct(in_order(problem, found))
+
+
+def in_order(problem: StiffnessProblem, ends: Sequence[Optimum]) -> list[Optimum]:
+    """Sort ends, the best first.
+
+    Differences of chi2 far below one are rounding and must not decide: of ends that
+    tie, the least determined leads, then the one nearest to the middle of the box.
+    """
+    best = min(ends, key=lambda end: end.chi2)
+    tie = best.chi2 + _TIE * best.noise()
+    middle = 0.5 * (problem.low + problem.high)
+
+    def rank(end: Optimum) -> tuple[float, int, float]:
+        away = float(np.abs(end.unknowns - middle).sum())
+        chi2 = best.chi2 if end.chi2 <= tie else end.chi2
+        return chi2, -int(np.count_nonzero(is_open(end))), round(away, 3)
+
+    return sorted(ends, key=rank)
+
+
+def is_open(end: Optimum) -> BoolArray:
+    """Tell which unknowns the measurement leaves open around an end."""
+    return np.asarray(np.diag(end.covariance()) * end.noise() >= LARGEST_LOG_SD**2)
+
+
+def _branches(problem: StiffnessProblem, ends: Sequence[Optimum]) -> list[Optimum]:
+    """Return one end of each branch that is open somewhere."""
+    kept: list[Optimum] = []
+    for one in in_order(problem, ends) if ends else []:
+        if is_open(one).any() and not any(_same_branch(one, other) for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _same_branch(one: Optimum, other: Optimum) -> bool:
+    """Tell whether two ends agree in all that both determine."""
+    determined = ~(is_open(one) | is_open(other))
+    return bool(np.all(np.abs(one.unknowns - other.unknowns)[determined] < _SAME))
+
+
+def _idle(end: Optimum, branch: Optimum, floor: float) -> bool:
+    """Tell whether an end is but another point of a branch, and no better."""
+    along = _same_branch(end, branch) and bool(np.any(is_open(end)))
+    return along and end.chi2 >= floor
+
+
+def _distinct(ends: Sequence[Optimum]) -> tuple[Optimum, ...]:
+    kept: list[Optimum] = []
+    for one in ends:
+        if not any(
+            np.all(np.abs(one.unknowns - other.unknowns) < _SAME) for other in kept
+        ):
+            kept.append(one)
+    return tuple(kept)
+
+
+def _open_ways(
+    problem: StiffnessProblem, branch: Optimum, limit: float
+) -> list[Optimum]:
+    """Return fits with each open unknown held all over the box, as far as they stand.
+
+    A descent along a valley stops wherever it begins, so that chance starts alone find
+    as much of it as rounding lets them.
+    """
+    ends = []
+    for at in np.flatnonzero(is_open(branch)):
+        share = (np.arange(_HELD) + 0.5) / _HELD
+        held = problem.low[at] + share * (problem.high[at] - problem.low[at])
+        centre = branch.unknowns[at]
+        for way in (held[held >= centre], held[held < centre][::-1]):
+            last = branch.unknowns
+            for value in way:
+                end = descend(problem, with_value(last, int(at), value), [int(at)])
+                if end.chi2 < limit:
+                    last = end.unknowns
+                    ends.append(end)
+    return ends
+
+
+def with_value(unknowns: FloatArray, at: int, value: float) -> FloatArray:
+    """Return unknowns of which one is replaced."""
+    moved = unknowns.copy()
+    moved[at] = value
+    return moved
+
+
+def _starts(problem: StiffnessProblem, count: int, seed: int) -> list[FloatArray]:
+    """Spread stiffness over the box; damping follows at light damping ratios."""
+    low, high = np.log(problem.model.box[0]), np.log(problem.model.box[1])
+    share = qmc.LatinHypercube(problem.size, seed=seed).random(count)
+    points = low + (high - low) * share
+    light = np.log(_DAMPING_START / np.sqrt(problem.model.shift))
+    by_name = {name: at for at, name in enumerate(problem.names)}
+    for at, name in enumerate(problem.names):
+        if problem.damping[at]:
+            partner = by_name.get(name.removesuffix("_damping") + "_stiffness")
+            level = points[:, partner] if partner is not None else 0.5 * (low + high)
+            points[:, at] = level + light
+    return list(points)

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""Which further measurement would identify a parameter that is open."""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.structures.identification.stiffness_problem import (
+    Optimum,
+    StiffnessProblem,
+    values_of,
+)
+from jointbench.analysis.structures.reduction.predict_response import (
+    damping_ratios,
+    modal_state,
+)
+
+# What a hammer test usually reaches: frequency 0.2 %, damping ratio 5 % of its value.
+_FREQUENCY_SD = 0.002
+_DAMPING_SD = 0.05
+# A measurement helps if it brings the standard deviation below this in ln.
+_HELPS = 0.5
+# Frequencies of two solutions differ if they do so by more than this, relative.
+_TELLS_APART = 0.003
+
+
+def what_to_measure(problem: StiffnessProblem, best: Optimum, at: int) -> str:
+    """Name the mode whose frequency or damping would determine a parameter best.
+
+    Args:
+        problem: what is sought.
+        best: solution.
+        at: number of the open parameter.
+
+    Returns:
+        One clause that says what to measure and how well that would do.
+    """
+    row = int(np.flatnonzero(np.any(problem.columns == at, axis=1))[0])
+    state = modal_state(problem.model, values_of(problem, best.unknowns, row).stiffness)
+    values = values_of(problem, best.unknowns, row)
+    frequency = np.sqrt(np.maximum(state.eigenvalue, 0.0)) / (2 * np.pi)
+    information = best.slopes.T @ best.slopes
+    options = []
+    for number in range(state.rigid, problem.model.modes):
+        slope = _frequency_slope(problem, row, number, best)
+        text = f"mode {number - state.rigid + 1} near {frequency[number]:.0f} Hz"
+        if problem.damping[at]:
+            slope = _damping_slope(problem, row, number, best)
+            text = f"the damping ratio of {text}"
+        else:
+            text = f"the frequency of {text}"
+        options.append((_sd_with(information, slope, at), text))
+    sd, text = min(options)
+    if sd < _HELPS:
+        return f"measure {text}: that would bring it to {100 * sd:.2g} %"
+    ratio = damping_ratios(state, values.damping)[state.rigid : problem.model.modes]
+    if problem.damping[at] and ratio.max() > 0:
+        return "measure FRFs with damping, at sensors on both sides of the joint"
+    return (
+        "no single mode tells; measure FRFs or mode shapes at sensors on both sides of "
+        f"the joint, up to {frequency[problem.model.modes - 1]:.0f} Hz"
+    )
+
+
+def what_separates(problem: StiffnessProblem, best: Optimum, rival: Optimum) -> str:
+    """Name the mode whose frequency differs most between two solutions.
+
+    Args:
+        problem: what is sought.
+        best: solution.
+        rival: another one that fits alike.
+
+    Returns:
+        One clause that says what to measure.
+    """
+    found = []
+    for row in range(len(problem.evidence)):
+        both = [
+            modal_state(problem.model, values_of(problem, one.unknowns, row).stiffness)
+            for one in (best, rival)
+        ]
+        rigid = max(state.rigid for state in both)
+        level = [state.eigenvalue[rigid : problem.model.modes] for state in both]
+        ratio = np.exp(0.5 * np.abs(np.log(level[0] / level[1]))) - 1.0
+        at = int(np.argmax(ratio))
+        frequency = [np.sqrt(one[at]) / (2 * np.pi) for one in level]
+        found.append((float(ratio[at]), at + 1, frequency))
+    ratio_of, number, (first, second) = max(found)
+    if ratio_of < _TELLS_APART:
+        return "no frequency separates them; measure FRFs or mode shapes on both sides"
+    return f"mode {number} separates them: {first:.0f} Hz or {second:.0f} Hz"
+
+
+def _sd_with(information: FloatArray, slope: FloatArray, at: int) -> float:
+    """Return the standard deviation in ln once one more row is known."""
+    whole = information + np.outer(slope, slope)
+    # Scaled, so that what nothing decides does not drown what is decided.
+    whole = whole + 1e-12 * np.eye(whole.shape[0])
+    return float(np.sqrt(np.linalg.inv(whole)[at, at]))
+
+
+def _frequency_slope(
+    problem: StiffnessProblem, row: int, number: int, best: Optimum
+) -> FloatArray:
+    values = values_of(problem, best.unknowns, row)
+    state = modal_state(problem.model, values.stiffness)
+    count = values.stiffness.size
+    share = values.stiffness * state.flex[:, number, number] / state.eigenvalue[number]
+    return _placed(problem, row, np.concatenate([0.5 * share, np.zeros(count)])) / (
+        _FREQUENCY_SD
+    )
+
+
+def _damping_slope(
+    problem: StiffnessProblem, row: int, number: int, best: Optimum
+) -> FloatArray:
+    values = values_of(problem, best.unknowns, row)
+    state = modal_state(problem.model, values.stiffness)
+    part = values.damping * state.flex[:, number, number]
+    whole = float(part.sum())
+    share = part / whole if whole > 0 else part
+    return _placed(problem, row, np.concatenate([np.zeros(part.size), share])) / (
+        _DAMPING_SD
+    )
+
+
+def _placed(problem: StiffnessProblem, row: int, slope: FloatArray) -> FloatArray:
+    whole = np.zeros(problem.size)
+    columns = problem.columns[row]
+    np.add.at(whole, columns[columns >= 0], slope[columns >= 0])
+    return whole

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: MIT
+"""What is sought from what: unknowns, their bounds, and how far they miss."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.identification.structure_evidence import (
+    StructureEvidence,
+    misfit,
+)
+from jointbench.analysis.structures.reduction.predict_response import JointValues
+from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
+
+# A search may leave the box of the reduction by this factor at the most.
+_BEYOND = 3.0
+# Damping is sought within these fractions of stiffness over frequency.
+_DAMPING_RANGE = (1e-7, 10.0)
+# A solution is out if its chi2 exceeds the best one's by three standard deviations.
+_SEPARATES = 9.0
+# Singular values below this mean a standard deviation of 1e6 in ln: not determined.
+_FLAT = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StiffnessProblem:
+    """What is sought from what.
+
+    The unknowns are logarithms of stiffness and damping. Each state has its own,
+    except those that states share.
+
+    Attributes:
+        model: the reduced structure.
+        evidence: measurements, one a state.
+        columns: place among the unknowns of every stiffness, then every damping, of
+            each state, shape (n_states, 2 n_parameters); -1 where it is known.
+        known: its logarithm where it is known, shape (n_states, 2 n_parameters).
+        names: of the unknowns.
+        damping: whether an unknown is a damping, shape (n_unknowns,).
+        low: bounds of the unknowns.
+        high: bounds of the unknowns.
+    """
+
+    model: ReducedModel
+    evidence: tuple[StructureEvidence, ...]
+    columns: IntArray
+    known: FloatArray
+    names: tuple[str, ...]
+    damping: FloatArray
+    low: FloatArray
+    high: FloatArray
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return len(self.names)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Optimum:
+    """An end of a search.
+
+    Attributes:
+        unknowns: logarithms, shape (n_unknowns,).
+        chi2: sum of squared differences over variances [-].
+        slopes: derivatives of the differences, shape (n_rows, n_unknowns).
+    """
+
+    unknowns: FloatArray
+    chi2: float
+    slopes: FloatArray
+
+    def covariance(self) -> FloatArray:
+        """Return the covariance of the logarithms: large where nothing decides."""
+        _, size, direction = np.linalg.svd(self.slopes, full_matrices=False)
+        floor = np.full(self.unknowns.size, _FLAT)
+        floor[: size.size] = np.maximum(size, _FLAT)
+        if direction.shape[0] < self.unknowns.size:
+            _, _, direction = np.linalg.svd(self.slopes, full_matrices=True)
+        return np.asarray((direction.T / floor**2) @ direction)
+
+    def noise(self) -> float:
+        """Return chi2 over its degrees of freedom, at least 1.
+
+        So much larger are the variances than those that were given.
+        """
+        freedom = self.slopes.shape[0] - self.unknowns.size
+        return max(1.0, self.chi2 / freedom) if freedom > 0 else 1.0
+
+    def limit(self) -> float:
+        """Return the chi2 below which a rival of this best solution stands."""
+        return self.chi2 + _SEPARATES * self.noise()
+
+
+def pose_problem(
+    model: ReducedModel,
+    evidence: Sequence[StructureEvidence],
+    *,
+    known: JointValues | None = None,
+    sought: Sequence[str] | None = None,
+    shared: Sequence[str] = (),
+) -> StiffnessProblem:
+    """Lay out the unknowns.
+
+    Args:
+        model: the reduced structure.
+        evidence: one for each state.
+        known: values of what is not sought.
+        sought: names ``"<joint>.<direction>"``, of which stiffness and, if the
+            evidence knows of it, damping are sought; default all.
+        shared: names of those that all states have in common.
+
+    Returns:
+        The problem.
+
+    Raises:
+        BadData: a name does not exist.
+    """
+    names = model.names
+    for name in (*(sought or ()), *shared):
+        if name not in names:
+            raise BadData(f"no joint direction {name!r}; there are {list(names)}")
+    count = len(names)
+    wanted = np.array([sought is None or name in sought for name in names])
+    columns = np.full((len(evidence), 2 * count), -1, np.int64)
+    labels: list[str] = []
+    place: dict[str, int] = {}
+    for row, one in enumerate(evidence):
+        for at in range(2 * count):
+            is_damping = at >= count
+            if not wanted[at % count] or (is_damping and not one.damped):
+                continue
+            label = f"{names[at % count]}_{'damping' if is_damping else 'stiffness'}"
+            if len(evidence) > 1 and names[at % count] not in shared:
+                label = f"{one.label}:{label}"
+            columns[row, at] = place.setdefault(label, len(place))
+    labels = list(place)
+    damping = np.array([label.endswith("_damping") for label in labels], float)
+    low, high = _bounds(model, damping)
+    return StiffnessProblem(
+        model,
+        tuple(evidence),
+        columns,
+        np.tile(_known_logs(known, count), (len(evidence), 1)),
+        tuple(labels),
+        damping,
+        low,
+        high,
+    )
+
+
+def _known_logs(known: JointValues | None, count: int) -> FloatArray:
+    if known is None:
+        # Undamped, as far as a logarithm can say it.
+        return np.concatenate([np.zeros(count), np.full(count, -np.inf)])
+    with np.errstate(divide="ignore"):
+        both = np.concatenate([known.stiffness, known.damping])
+        return np.asarray(np.log(both))
+
+
+def _bounds(model: ReducedModel, damping: FloatArray) -> tuple[FloatArray, FloatArray]:
+    low, high = np.log(model.box[0] / _BEYOND), np.log(model.box[1] * _BEYOND)
+    omega = np.sqrt(model.shift)
+    lower = np.where(damping > 0, low + np.log(_DAMPING_RANGE[0] / omega), low)
+    upper = np.where(damping > 0, high + np.log(_DAMPING_RANGE[1] / omega), high)
+    return lower, upper
+
+
+def values_of(problem: StiffnessProblem, unknowns: FloatArray, row: int) -> JointValues:
+    """Return the joint values of one state."""
+    columns = problem.columns[row]
+    logs = np.where(columns >= 0, unknowns[columns], problem.known[row])
+    both = np.exp(logs)
+    count = both.size // 2
+    return JointValues(both[:count], both[count:])
+
+
+def residuals(
+    problem: StiffnessProblem, unknowns: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return differences over standard deviations, and their derivatives."""
+    rows, slopes = [], []
+    for at, evidence in enumerate(problem.evidence):
+        values = values_of(problem, unknowns, at)
+        left, slope = misfit(problem.model, evidence, values)
+        whole = np.zeros((left.size, problem.size))
+        sought = problem.columns[at] >= 0
+        np.add.at(whole.T, problem.columns[at][sought], slope[:, sought].T)
+        rows.append(left)
+        slopes.append(whole)
+    return np.concatenate(rows), np.concatenate(slopes)
+
+
+def states_apart(
+    problem: StiffnessProblem,
+) -> tuple[tuple[StiffnessProblem, IntArray], ...]:
+    """Part a problem whose states share no unknown: each is a problem of its own.
+
+    Args:
+        problem: what is sought.
+
+    Returns:
+        Problems and the places of their unknowns among all; the whole one where states
+        share anything.
+    """
+    owners = [np.unique(row[row >= 0]) for row in problem.columns]
+    if len(owners) < 2 or sum(own.size for own in owners) > problem.size:
+        return ((problem, np.arange(problem.size)),)
+    parts = []
+    for at, own in enumerate(owners):
+        place = np.full(problem.size + 1, -1, np.int64)
+        place[own] = np.arange(own.size)
+        part = StiffnessProblem(
+            problem.model,
+            (problem.evidence[at],),
+            place[problem.columns[at]][None],
+            problem.known[at][None],
+            tuple(problem.names[k] for k in own),
+            problem.damping[own],
+            problem.low[own],
+            problem.high[own],
+        )
+        parts.append((part, own))
+    return tuple(parts)

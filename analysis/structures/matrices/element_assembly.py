@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""Stiffness and mass of a mesh of linear elastic solids."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray, require_positive
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.meshes.elements import shape_functions, volume_rule
+from jointbench.analysis.structures.meshes.mesh import Mesh
+
+Sparse = sparse.csr_array
+"""Sparse matrices, row by row."""
+
+# Elements that agree to this share of their size have one and the same matrix.
+_SAME_ELEMENT = 1e-9
+# A Jacobian below this share of its mean is no volume any more.
+_NO_VOLUME = 1e-6
+_CHUNK = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A linear elastic, isotropic solid.
+
+    Attributes:
+        youngs_modulus: [Pa].
+        poisson_ratio: [-].
+        density: [kg/m^3].
+        loss_factor: of structural damping [-].
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+    loss_factor: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check signs and bounds once."""
+        require_positive("youngs_modulus", self.youngs_modulus)
+        require_positive("density", self.density)
+        if not -1.0 < self.poisson_ratio < 0.5:
+            raise BadData(
+                f"poisson_ratio is {self.poisson_ratio:g}; it must lie between -1 and "
+                "0.5, both excluded"
+            )
+        if not 0.0 <= self.loss_factor < 1.0:
+            raise BadData(f"loss_factor is {self.loss_factor:g}; it must be in 0 to 1")
+
+
+def assemble(mesh: Mesh, material: Material) -> tuple[Sparse, Sparse]:
+    """Assemble stiffness and consistent mass.
+
+    Args:
+        mesh: of the body.
+        material: of all its elements.
+
+    Returns:
+        K [N/m] and M [kg], shape (3 n_nodes, 3 n_nodes); degrees of freedom run x, y,
+        z node by node.
+
+    Raises:
+        BadData: an element is turned inside out or has no volume.
+
+    Source:
+        Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), ch. 6 and 9.
+    """
+    form, kind_of = _distinct_elements(mesh)
+    stiffness, mass = _element_matrices(mesh, form, material)
+    n_nodes = mesh.cells.shape[1]
+    rows = np.repeat(mesh.cells, n_nodes, axis=1).ravel()
+    columns = np.tile(mesh.cells, (1, n_nodes)).ravel()
+    total = mesh.nodes.shape[0]
+    key, place = np.unique(rows * total + columns, return_inverse=True)
+    columns_of = (key % total).astype(np.int32)
+    starts = np.searchsorted(key, np.arange(total + 1) * total).astype(np.int32)
+    blocks = np.empty((key.size, 3, 3))
+    pairs = stiffness.reshape(-1, n_nodes, 3, n_nodes, 3)
+    for a in range(3):
+        for b in range(3):
+            weight = pairs[:, :, a, :, b][kind_of].ravel()
+            blocks[:, a, b] = np.bincount(place, weight, key.size)
+    scalar = np.bincount(place, mass[kind_of].ravel(), key.size)
+    diagonal = scalar[:, None, None] * np.eye(3)
+    shape = (3 * total, 3 * total)
+    k = sparse.bsr_array((blocks, columns_of, starts), shape=shape).tocsr()
+    m = sparse.bsr_array((diagonal, columns_of, starts), shape=shape).tocsr()
+    m.eliminate_zeros()
+    return k, m
+
+
+def _distinct_elements(mesh: Mesh) -> tuple[IntArray, IntArray]:
+    """Return one element of each form, and the form of every element."""
+    corners = mesh.nodes[mesh.cells]
+    relative = corners - corners[:, :1]
+    step = _SAME_ELEMENT * np.abs(relative).max()
+    rounded = np.round(relative.reshape(mesh.cells.shape[0], -1) / step)
+    _, first, inverse = np.unique(
+        rounded, axis=0, return_index=True, return_inverse=True
+    )
+    return first.astype(np.int64), inverse.ravel()
+
+
+def _element_matrices(
+    mesh: Mesh, chosen: IntArray, material: Material
+) -> tuple[FloatArray, FloatArray]:
+    """Return K and the scalar mass of chosen elements, chunk by chunk."""
+    parts = [
+        _chunk_matrices(mesh, chosen[at : at + _CHUNK], material)
+        for at in range(0, chosen.size, _CHUNK)
+    ]
+    stiffness, mass = zip(*parts, strict=True)
+    return np.concatenate(stiffness), np.concatenate(mass)
+
+
+def _chunk_matrices(
+    mesh: Mesh, chosen: IntArray, material: Material
+) -> tuple[FloatArray, FloatArray]:
+    point, weight = volume_rule(mesh.kind)
+    value, slope = shape_functions(mesh.kind, point)
+    corner = mesh.nodes[mesh.cells[chosen]]
+    jacobian = np.einsum("qia,eib->eqab", slope, corner)
+    volume = np.linalg.det(jacobian)
+    _require_volume(volume, chosen)
+    # One gradient for each point: slope by natural coordinates times inverse Jacobian.
+    gradient = np.linalg.solve(
+        jacobian, np.swapaxes(np.broadcast_to(slope, (chosen.size, *slope.shape)), 2, 3)
+    )
+    gradient = np.swapaxes(gradient, 2, 3)  # (elements, points, nodes, axes)
+    scaled = weight * volume
+    n_nodes = value.shape[1]
+    flat = gradient.reshape(*gradient.shape[:2], 3 * n_nodes)
+    product = np.swapaxes(flat * scaled[..., None], 1, 2) @ flat
+    mass = material.density * np.einsum("eq,qi,qj->eij", scaled, value, value)
+    return _isotropic(product, material), mass
+
+
+def _isotropic(product: FloatArray, material: Material) -> FloatArray:
+    """Turn integrals of gradient times gradient into the stiffness of each element."""
+    e, nu = material.youngs_modulus, material.poisson_ratio
+    first = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    shear = e / (2.0 * (1.0 + nu))
+    n_nodes = product.shape[1] // 3
+    blocks = product.reshape(-1, n_nodes, 3, n_nodes, 3)
+    crossed = np.swapaxes(blocks, 2, 4)
+    trace = np.einsum("eiaja->eij", blocks)
+    whole = first * blocks + shear * crossed
+    for axis in range(3):
+        whole[:, :, axis, :, axis] += shear * trace
+    return np.asarray(whole.reshape(product.shape))
+
+
+def _require_volume(volume: FloatArray, chosen: IntArray) -> None:
+    mean = np.abs(volume).mean(axis=1)
+    bad = np.flatnonzero(volume.min(axis=1) <= _NO_VOLUME * mean)
+    if bad.size:
+        at = int(bad[0])
+        raise BadData(
+            f"element {chosen[at]}: Jacobian {volume[at].min():.3g} m^3 at one of its "
+            "points, it must be above zero everywhere; the element is flat, inside out "
+            "or badly distorted: mesh again"
+        )

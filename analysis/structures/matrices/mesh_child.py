@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: MIT
+"""meshio in a process of its own: its parsers have no bound on time or memory.
+
+A line of a gmsh file that never ends kept one of them busy for minutes. What a child
+takes can be bounded by the system (not on Windows, where only its time is).
+"""
+
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.errors import FormatError, HostileFile
+from jointbench.acquisition.file_access.memory_room import VARIABLE, room
+from jointbench.acquisition.file_access.text_files import file_size, named, shown
+
+CPU = 10
+"""[s]"""
+_OURS = 150 * 10**6
+"""Of what the file may take, for this process [bytes]."""
+_WALL = 120.0
+"""Longest wait, on a machine that is busy with other work [s]."""
+_CODE = """
+import sys
+path, out, cpu, memory = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
+import meshio, numpy
+try:
+    import resource
+except ImportError:
+    pass
+else:
+    resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu))
+    resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
+found = meshio.read(path)
+cells = {f"{i} {b.type}": b.data for i, b in enumerate(found.cells)}
+numpy.savez(out, points=found.points, **cells)
+"""
+
+
+def read_with_meshio(path: Path) -> tuple[FloatArray, list[tuple[str, IntArray]]]:
+    """Return the nodes of a mesh file, shape (n, 3), and its cells, block by block.
+
+    Args:
+        path: of the file; meshio tells its format by the ending.
+
+    Returns:
+        Nodes in the unit of the file, and for each block the type of its elements and
+        their nodes, shape (n_elements, n_nodes).
+
+    Raises:
+        FormatError: meshio cannot read it.
+        HostileFile: that takes more time or memory than the file may.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "mesh.npz"
+        limits = str(CPU), str(room(file_size(path)) - _OURS)
+        words = [sys.executable, "-c", _CODE, str(path), str(out), *limits]
+        try:
+            done = subprocess.run(
+                words, capture_output=True, text=True, timeout=_WALL, check=False
+            )
+        except subprocess.TimeoutExpired as error:
+            raise _too_much(path) from error
+        told = (done.stderr.strip() or done.stdout.strip() or "nothing").splitlines()
+        if done.returncode < 0 or told[-1].startswith("MemoryError"):
+            raise _too_much(path)
+        if done.returncode or not out.exists():
+            raise FormatError(
+                f"{named(path)}: meshio cannot read it ({shown(told[-1])})"
+            )
+        with np.load(out, allow_pickle=False) as arrays:
+            blocks = [
+                (name.partition(" ")[2], np.asarray(arrays[name], np.int64))
+                for name in arrays.files
+                if name != "points"
+            ]
+            return np.asarray(arrays["points"], np.float64), blocks
+
+
+def _too_much(path: Path) -> HostileFile:
+    return HostileFile(
+        f"{named(path)} takes meshio more than {CPU} s or "
+        f"{room(file_size(path)) / 1e6:.0f} MB; thin the mesh, save it in a binary "
+        f"format, or allow more by {VARIABLE}"
+    )

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""Orthonormal bases, and the block Lanczos iteration that finds multiple modes too.
+
+A single-vector iteration misses copies of a multiple eigenvalue (the six rigid
+motions of a free body): ARPACK did, on our own plates.
+"""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.matrices.element_assembly import Sparse
+from jointbench.analysis.structures.reduction.sparse_factor import Solve
+
+# What is left of a direction after taking out the others, below which it is dropped.
+_DEPENDENT = 1e-6
+# Of each Ritz vector of the inverse, relative: its square is the eigenvalue's error.
+_CONVERGED = 1e-7
+_BLOCK = 8
+_MOST_STEPS = 80
+
+
+def orthonormalise(basis: FloatArray, mass: Sparse, new: FloatArray) -> FloatArray:
+    """Return the part of `new` outside of `basis`, orthonormal in M.
+
+    Args:
+        basis: orthonormal in M, shape (n, r).
+        mass: M.
+        new: directions, shape (n, k).
+
+    Returns:
+        Shape (n, at most k); directions that depend on others are dropped.
+    """
+    size = np.sqrt(np.einsum("nk,nk->k", new, mass @ new))
+    kept = new[:, size > 0] / size[size > 0]
+    limit = _DEPENDENT
+    for _ in range(2):
+        kept = kept - basis @ (basis.T @ (mass @ kept))
+        value, vector = np.linalg.eigh(kept.T @ (mass @ kept))
+        good = value > limit**2
+        kept = kept @ (vector[:, good] / np.sqrt(value[good]))
+        # The second pass only cleans up: what survived the first is of length one.
+        limit = 0.5
+    return np.asarray(kept)
+
+
+def largest_of_inverse(
+    solve: Solve, mass: Sparse, count: int, known: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Find the largest eigenvalues of A^-1 M.
+
+    Args:
+        solve: with A, symmetric positive definite.
+        mass: M, shape (n, n).
+        count: how many.
+        known: eigenvectors orthonormal in M that are not sought, shape (n, k).
+
+    Returns:
+        Eigenvalues, the largest first, shape (count,), and vectors orthonormal in M as
+        columns, shape (n, count).
+
+    Raises:
+        BadData: they do not converge.
+
+    Source:
+        Grimes, Lewis and Simon 1994, SIAM J. Matrix Anal. Appl. 15, 228-272.
+    """
+    full = mass.shape[0]
+    apart = np.zeros((full, 0)) if known is None else known
+    size = full - apart.shape[1]
+    start = np.random.default_rng(0).standard_normal((full, min(_BLOCK, size)))
+    new = orthonormalise(apart, mass, start)
+    space = np.zeros((full, 0))
+    images = np.zeros((full, 0))
+    for _ in range(_MOST_STEPS):
+        image = solve(mass @ new)
+        image = image - apart @ (apart.T @ (mass @ image))
+        space = np.concatenate([space, new], axis=1)
+        images = np.concatenate([images, image], axis=1)
+        if space.shape[1] >= min(count + _BLOCK, size):
+            value, vector = _ritz(space, images, mass, count)
+            left = images @ vector - (space @ vector) * value
+            error = np.sqrt(np.einsum("nk,nk->k", left, mass @ left))
+            if np.all(error <= _CONVERGED * value):
+                return value, np.asarray(space @ vector)
+        new = orthonormalise(np.concatenate([apart, space], axis=1), mass, image)
+        if not new.shape[1]:
+            break
+    if space.shape[1] == size:
+        value, vector = _ritz(space, images, mass, count)
+        return value, np.asarray(space @ vector)
+    raise BadData(
+        f"{count} modes do not converge; the matrices are badly scaled: check units"
+    )
+
+
+def _ritz(
+    space: FloatArray, images: FloatArray, mass: Sparse, count: int
+) -> tuple[FloatArray, FloatArray]:
+    small = images.T @ (mass @ space)
+    value, vector = np.linalg.eigh(0.5 * (small + small.T))
+    return value[::-1][:count], vector[:, ::-1][:, :count]

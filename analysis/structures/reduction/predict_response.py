@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: MIT
+"""What a jointed structure does: modes with damping, shapes at sensors, FRFs."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
+from jointbench.analysis.structures.reduction.full_modes import frequency_of
+from jointbench.analysis.structures.reduction.reduced_model import (
+    ReducedModel,
+    solve_reduced,
+)
+
+# Modes that damping couples at once; beyond them it is brought in by refinement.
+COUPLED = 60
+_REFINEMENTS = 4
+# A pole that swings less than this against its decay is a decay; the loss of the bodies
+# alone turns a decay by about its loss factor.
+_SWINGS = 0.02
+# A pole this small beside the largest is the zero of a motion that nothing holds.
+_NO_POLE = 1e-13
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointValues:
+    """Stiffness and damping of every joint and direction.
+
+    Attributes:
+        stiffness: totals [N/m], shape (n_parameters,).
+        damping: totals [N s/m], shape (n_parameters,).
+    """
+
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "stiffness", "damping")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModalState:
+    """All reduced modes of a structure at one set of joint values.
+
+    Attributes:
+        eigenvalue: [1/s^2], shape (n,); exactly zero for rigid motions.
+        shapes: columns, orthonormal, shape (r, n).
+        flex: phi_i' G_d phi_j of every direction, shape (n_parameters, n, n).
+        loss: phi_i' (eta K) phi_j [1/s^2], shape (n, n).
+        rigid: number of motions without strain, the first ones.
+    """
+
+    eigenvalue: FloatArray
+    shapes: FloatArray
+    flex: FloatArray
+    loss: FloatArray
+    rigid: int
+
+
+def modal_state(model: ReducedModel, stiffness: FloatArray) -> ModalState:
+    """Find all reduced modes at one set of stiffnesses [N/m], shape (n_parameters,)."""
+    found = solve_reduced(model, stiffness, model.size)
+    vector = found.shapes
+    flex = np.array([vector.T @ (spread @ vector) for spread in model.spread])
+    loss = vector.T @ (model.loss @ vector)
+    return ModalState(found.eigenvalue, vector, flex, loss, found.rigid)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PredictedModes:
+    """Elastic modes with damping.
+
+    Attributes:
+        natural_frequency: [Hz], shape (n_modes,).
+        damping_ratio: [-], shape (n_modes,).
+        shapes: response at the sensors, mass-normalised, shape (n_modes, n_sensors).
+        energy_share: part of the strain energy in each joint and direction [-], shape
+            (n_modes, n_parameters).
+    """
+
+    natural_frequency: FloatArray
+    damping_ratio: FloatArray
+    shapes: FloatArray
+    energy_share: FloatArray
+
+
+def predict_modes(
+    model: ReducedModel, values: JointValues, rows: FloatArray | None = None
+) -> PredictedModes:
+    """Predict the elastic modes that the reduced model was made for.
+
+    Args:
+        model: the reduced structure.
+        values: of its joints.
+        rows: of the sensors, of `readout`; none when left out.
+
+    Returns:
+        Frequencies of the undamped structure, and damping ratios to first order in
+        the damping: right as long as damping is light.
+
+    Source:
+        Ewins, Modal Testing (2000), sec. 2.4.
+    """
+    state = modal_state(model, values.stiffness)
+    elastic = np.arange(state.rigid, model.modes)
+    return PredictedModes(
+        natural_frequency=frequency_of(state.eigenvalue[elastic]),
+        damping_ratio=damping_ratios(state, values.damping)[elastic],
+        shapes=state.shapes[:, elastic].T
+        @ (np.zeros((0, model.size)) if rows is None else rows).T,
+        energy_share=energy_shares(state, values.stiffness)[elastic],
+    )
+
+
+def damping_ratios(state: ModalState, damping: FloatArray) -> FloatArray:
+    """Return the damping ratio of every mode to first order [-], shape (n,).
+
+    That of a rigid motion, which has no frequency, is zero.
+    """
+    omega = np.sqrt(_straining(state))
+    viscous = np.einsum("d,dii->i", damping, state.flex) / (2.0 * omega)
+    return np.asarray(viscous + np.diag(state.loss) / (2.0 * omega**2))
+
+
+def energy_shares(state: ModalState, stiffness: FloatArray) -> FloatArray:
+    """Return theta_d phi' G_d phi / lambda: d ln f^2 / d ln theta_d, shape (n, d)."""
+    level = _straining(state)
+    return np.asarray(np.einsum("d,dii->id", stiffness, state.flex) / level[:, None])
+
+
+def _straining(state: ModalState) -> FloatArray:
+    """Return eigenvalues to divide by: what strains nothing shares in nothing."""
+    return np.where(state.eigenvalue > 0, state.eigenvalue, np.inf)
+
+
+def predict_complex_modes(
+    model: ReducedModel, values: JointValues
+) -> tuple[FloatArray, FloatArray]:
+    """Predict modes of any damping from the quadratic eigenvalue problem.
+
+    Args:
+        model: the reduced structure.
+        values: of its joints.
+
+    Returns:
+        |pole| / 2 pi [Hz] and damping ratio [-] of oscillating elastic modes, by
+        frequency, as many as the model was made for at most.
+
+    Source:
+        Ewins, Modal Testing (2000), sec. 2.7.
+    """
+    state = modal_state(model, values.stiffness)
+    count = min(COUPLED, state.eigenvalue.size)
+    moved = np.s_[state.rigid : count]
+    # Unknowns: omega times displacement, which rigid motions do not need, and velocity.
+    omega = np.sqrt(state.eigenvalue[moved])
+    spring = np.zeros((count, omega.size), complex)
+    spring[moved] = np.diag(omega) + 1j * state.loss[moved, moved] / omega
+    matrix = np.zeros((omega.size + count,) * 2, complex)
+    matrix[: omega.size, omega.size + state.rigid :] = np.diag(omega)
+    matrix[omega.size :, : omega.size] = -spring
+    matrix[omega.size :, omega.size :] = -np.tensordot(
+        values.damping, state.flex[:, :count, :count], 1
+    )
+    pole = np.linalg.eigvals(matrix)
+    size = np.abs(pole)
+    swings = (pole.imag > _SWINGS * size) & (size > _NO_POLE * size.max())
+    pole = pole[swings & (pole.real <= 0)]
+    pole = pole[np.argsort(np.abs(pole))][: model.modes - state.rigid]
+    return np.abs(pole) / (2 * np.pi), -pole.real / np.abs(pole)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrfSlopes:
+    """FRFs and how they move with the joints.
+
+    Attributes:
+        response: receptance [m/N], shape (n_outputs, n_inputs, n_lines).
+        by_stiffness: derivatives by each stiffness [m/N per N/m], shape
+            (n_parameters, n_outputs, n_inputs, n_lines).
+        by_damping: derivatives by each damping [m/N per N s/m], same shape.
+    """
+
+    response: ComplexArray
+    by_stiffness: ComplexArray
+    by_damping: ComplexArray
+
+
+def predict_frf(
+    model: ReducedModel,
+    values: JointValues,
+    laplace: ComplexArray,
+    outputs: FloatArray,
+    inputs: FloatArray,
+) -> FrfSlopes:
+    """Predict receptances and their derivatives.
+
+    Args:
+        model: the reduced structure.
+        values: of its joints.
+        laplace: where: j omega, plus the decay rate that an exponential window added
+            [1/s], shape (n_lines,).
+        outputs: rows of `readout`, shape (n_outputs, r).
+        inputs: rows of `readout`, shape (n_inputs, r).
+
+    Returns:
+        Receptances; times s or s^2 for mobility or accelerance.
+
+    Source:
+        Z = K + s C + s^2 M: dH/dp = -H dZ/dp H.
+    """
+    state = modal_state(model, values.stiffness)
+    both = np.concatenate([outputs, inputs]) @ state.shapes
+    motion = _solve_lines(state, values.damping, laplace, both.T)
+    n_out = outputs.shape[0]
+    left, right = motion[:, :, :n_out], motion[:, :, n_out:]
+    response = np.einsum("or,lri->oil", both[:n_out], right)
+    stretched = np.einsum("drs,lsi->dlri", state.flex, right, optimize=True)
+    slope = -np.einsum("lro,dlri->doil", left, stretched, optimize=True)
+    return FrfSlopes(response, slope, slope * laplace)
+
+
+def _solve_lines(
+    state: ModalState, damping: FloatArray, laplace: ComplexArray, load: FloatArray
+) -> ComplexArray:
+    """Return Z^-1 load for every line, shape (n_lines, r, n_loads).
+
+    Low modes coupled and high ones each alone are a first answer, which the residual
+    of all modes together then refines; a line that it does not help is left.
+    """
+    viscous = np.tensordot(damping, state.flex, 1)
+    own = state.eigenvalue + laplace[:, None] ** 2
+    rough = _rough_inverse(state, viscous, laplace, own)
+    wanted = np.broadcast_to(load.astype(complex), (laplace.size, *load.shape))
+
+    def missing(answer: ComplexArray) -> ComplexArray:
+        coupled = laplace[:, None, None] * (viscous @ answer) + 1j * (
+            state.loss @ answer
+        )
+        return np.asarray(wanted - own[:, :, None] * answer - coupled)
+
+    motion = rough(wanted)
+    left = missing(motion)
+    for _ in range(_REFINEMENTS if state.eigenvalue.size > COUPLED else 0):
+        better = motion + rough(left)
+        remains = missing(better)
+        helps = np.linalg.norm(remains, axis=(1, 2)) < np.linalg.norm(left, axis=(1, 2))
+        motion = np.where(helps[:, None, None], better, motion)
+        left = np.where(helps[:, None, None], remains, left)
+    return motion
+
+
+def _rough_inverse(
+    state: ModalState, viscous: FloatArray, laplace: ComplexArray, own: ComplexArray
+) -> Callable[[ComplexArray], ComplexArray]:
+    """Return an inverse of Z that couples the low modes only."""
+    count = min(COUPLED, state.eigenvalue.size)
+    whole = (
+        laplace[:, None, None] * viscous[:count, :count]
+        + 1j * (state.loss[:count, :count])
+    )
+    inverse = np.linalg.inv(whole + own[:, :count, None] * np.eye(count))
+    alone = own[:, count:] + 1j * np.diag(state.loss)[count:]
+    alone = alone + laplace[:, None] * np.diag(viscous)[count:]
+
+    def solve(load: ComplexArray) -> ComplexArray:
+        high = load[:, count:] / alone[:, :, None]
+        return np.concatenate([inverse @ load[:, :count], high], axis=1)
+
+    return solve
+
+
+def response_to_force(
+    model: ReducedModel,
+    values: JointValues,
+    force: FloatArray,
+    sample_rate: float,
+    outputs: FloatArray,
+    inputs: FloatArray,
+) -> FloatArray:
+    """Predict the displacement of sensors under a measured force, from rest.
+
+    Args:
+        model: the reduced structure.
+        values: of its joints.
+        force: [N], shape (n_inputs, n_samples); it should end long before the record
+            does, or the record should hold the decay.
+        sample_rate: [Hz].
+        outputs: rows of `readout`.
+        inputs: rows of `readout`.
+
+    Returns:
+        Displacement [m], shape (n_outputs, n_samples). Rigid motions of a free
+        structure are left out: they leave the room.
+
+    Source:
+        Fourier transform of twice the record, the decay pressed down by an exponential
+        (Ewins, Modal Testing (2000), sec. 3.7), then lifted again.
+    """
+    count = force.shape[1]
+    padded = 2 * count
+    # Circular response of the second half is pressed down by exp(-decay T) = 1e-6.
+    decay = np.log(1e6) * sample_rate / padded
+    time = np.arange(padded) / sample_rate
+    press = np.exp(-decay * time)
+    spectrum = np.fft.rfft(force * press[:count], padded)
+    laplace = 2j * np.pi * np.fft.rfftfreq(padded, 1 / sample_rate) + decay
+    state = modal_state(model, values.stiffness)
+    elastic = np.arange(state.rigid, state.eigenvalue.size)
+    kept = ModalState(
+        state.eigenvalue[elastic],
+        state.shapes[:, elastic],
+        state.flex[:, elastic][:, :, elastic],
+        state.loss[np.ix_(elastic, elastic)],
+        0,
+    )
+    motion = _solve_lines(kept, values.damping, laplace, (inputs @ kept.shapes).T)
+    transfer = np.einsum("or,lri->oil", outputs @ kept.shapes, motion)
+    answer = np.fft.irfft(np.einsum("oil,il->ol", transfer, spectrum), padded)
+    return np.asarray(answer[:, :count] / press[:count])

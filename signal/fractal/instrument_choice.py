@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: MIT
+"""Chooses what the instrument did: the smallest model that the data support."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.least_squares import (
+    GlsFit,
+    Model,
+    by_own_weights,
+    fit_model,
+    settle,
+    weigh,
+)
+from jointbench.signal.fractal.self_affine import InstrumentModel, tip_radius
+
+ACCEPT_PROBABILITY = 0.01
+"""A model is accepted if a true one would fit worse at least this often [-]."""
+HOPELESS_PROBABILITY = 1e-6
+"""Where the richest model fits with a smaller chance, simpler ones need no trial."""
+ONE_MORE = 7.88
+"""Gain of chi2 by one more parameter that chance brings in half a percent [-], so that
+all tests together take a larger model by chance in 1 % at the most."""
+TWO_MORE = 11.4
+"""The same for two more parameters, in a third of a percent [-]."""
+CAST_DOUBT = {1: 1.5, 2: 5.0}
+"""Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
+limits cover more of the noise that cannot be proven, and widen more clean profiles."""
+EVEN = {1: 8.0, 2: 14.0}
+"""Gain by so many more parameters at which both models weigh alike in D [-]. With
+Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
+BLUNTEST_TIP = 100e-6
+"""Radius beyond which no stylus is [m]: twice that of the bluntest in use, as it is
+known within a factor of two only."""
+NOISE_START = 0.02
+"""Noise from which a tip is looked for, over the smallest value of S [-]."""
+SETTLED_WEIGHT = 0.999
+"""Weight of the larger model in D from which the smaller has no say [-]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Doubt:
+    """What a larger model that is not proven does to the power law of the chosen one.
+
+    Attributes:
+        shift: of the power law, shape (2,).
+        covariance: that it adds, shape (2, 2).
+    """
+
+    shift: FloatArray
+    covariance: FloatArray
+
+
+def choose_instrument(
+    problem: FractalProblem, *, rolls_off: bool
+) -> tuple[GlsFit, Doubt]:
+    """Take the smallest instrument model that no larger one clearly beats.
+
+    Returns:
+        The fit, and what a larger model that gains without proof does to its law.
+    """
+    kinds = InstrumentModel
+    plain = settle(problem, Model(kinds.NONE, rolls_off), problem.straight())
+    own = weigh(problem, plain.seen)
+    # Where the model is far off its weights never settle; all three share the last.
+    plain = fit_model(problem, plain.model, own, start=plain.parameters)
+    noisy = fit_model(problem, Model(kinds.NOISE, rolls_off), own)
+    both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
+    gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
+    if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
+        doubt = _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
+        return by_own_weights(problem, plain), doubt
+    best, doubt = _without_tip(problem, plain, noisy, both)
+    strict = problem.tolerance == 0 and problem.axes == 1 and not rolls_off
+    if strict and best.model.instrument.has_psf:
+        return _or_tip(problem, best, doubt)
+    return best, doubt
+
+
+def _without_tip(
+    problem: FractalProblem, plain: GlsFit, noisy: GlsFit, both: GlsFit
+) -> tuple[GlsFit, Doubt]:
+    """Take the smallest of the models with a Gaussian blur, a limit or noise."""
+    kinds, rolls_off = InstrumentModel, plain.model.rolls_off
+    richest = settle(problem, both.model, both.seen)
+    if richest.probability < HOPELESS_PROBABILITY:
+        return richest, no_doubt()
+    single = [
+        settle(problem, Model(kind, rolls_off), start.seen)
+        for kind, start in (
+            (kinds.BAND_LIMIT, plain),
+            (kinds.NOISE, noisy),
+            (kinds.PSF, richest),
+        )
+    ]
+    best, doubt = richest, no_doubt()
+    for fit in single:
+        small, rival = _with_rival(problem, fit, richest)
+        more = richest.parameters.size - fit.parameters.size
+        stands = small.chi2 - rival.chi2 < (ONE_MORE if more == 1 else TWO_MORE)
+        better = fit.likelihood_criterion < best.likelihood_criterion
+        accepted = fit.probability >= ACCEPT_PROBABILITY
+        if stands and accepted and (better or best is richest):
+            best, doubt = fit, _doubt(small, rival)
+    known = {kinds.NOISE: noisy, kinds.PSF_AND_NOISE: both}
+    if best.model.instrument in known:
+        doubt = _held_back(plain, known[best.model.instrument], best, doubt)
+    return best, doubt
+
+
+def _or_tip(
+    problem: FractalProblem, blurred: GlsFit, doubt: Doubt
+) -> tuple[GlsFit, Doubt]:
+    """Take the path of a round tip for the blur where that is likelier.
+
+    The path of a tip has creases, so that its spectrum falls by a power where that
+    behind a Gaussian point spread ends; both have as many parameters. A bend of the
+    spectrum looks alike, so a tip must hold with no more misfit than the form of its
+    path has, and be one that a stylus can have.
+    """
+    kinds = InstrumentModel
+    begin = [*blurred.parameters[:2], NOISE_START, blurred.seen.psf_width]
+    own = weigh(problem, blurred.seen)
+    glance = fit_model(
+        problem, Model(kinds.STYLUS_AND_NOISE), own, start=np.array(begin)
+    )
+    sizes = glance.parameters.size, blurred.parameters.size
+    likelier = glance.chi2 + 2 * sizes[0] < blurred.chi2 + 2 * sizes[1]
+    if not likelier:
+        return blurred, doubt
+    # Where the Gaussian is far off its weights say nothing of how well a tip fits.
+    own = weigh(problem, glance.seen)
+    glance = fit_model(problem, glance.model, own, start=glance.parameters)
+    if glance.probability < HOPELESS_PROBABILITY:
+        return blurred, doubt
+    large = settle(problem, glance.model, glance.seen)
+    fit = settle(problem, Model(kinds.STYLUS), glance.seen)
+    small, rival = _with_rival(problem, fit, large)
+    found = (large, no_doubt())
+    if small.chi2 - rival.chi2 < ONE_MORE and fit.probability >= ACCEPT_PROBABILITY:
+        found = (fit, _doubt(small, rival))
+    tip = found[0]
+    holds = tip.probability >= ACCEPT_PROBABILITY and _sharp_enough(problem, tip)
+    return found if holds else (blurred, doubt)
+
+
+def _sharp_enough(problem: FractalProblem, fit: GlsFit) -> bool:
+    """Return whether a stylus could have made the blur that was found."""
+    spacing = problem.estimate.spacing
+    return tip_radius(fit.seen) * spacing**2 < BLUNTEST_TIP
+
+
+def _with_rival(
+    problem: FractalProblem, small: GlsFit, large: GlsFit
+) -> tuple[GlsFit, GlsFit]:
+    """Fit a model and a larger one, both with the weights of the smaller."""
+    own = weigh(problem, small.seen)
+    return (
+        fit_model(problem, small.model, own, start=small.parameters),
+        fit_model(problem, large.model, own, start=large.parameters),
+    )
+
+
+def no_doubt() -> Doubt:
+    """Return what no larger model does."""
+    return Doubt(np.zeros(2), np.zeros((2, 2)))
+
+
+def _doubt(small: GlsFit, large: GlsFit) -> Doubt:
+    """Return what a larger model does to the power law where it gains at all.
+
+    A noise too small to be proven still moves D. The larger model holds in any case,
+    so its whole distance from the average counts as uncertainty, not only the share
+    that its weight would leave of it.
+
+    Source:
+        Weights by likelihood and the variance within the models: Burnham and Anderson,
+        Model Selection and Multimodel Inference (2002), eq. (4.9).
+    """
+    more = large.parameters.size - small.parameters.size
+    gain = small.chi2 - large.chi2
+    if gain < CAST_DOUBT[more]:
+        return no_doubt()
+    weight = _weight(small, large)
+    apart = large.parameters[:2] - small.parameters[:2]
+    widened = large.covariance[:2, :2] - small.covariance[:2, :2]
+    left = (1 - weight) * apart
+    return Doubt(weight * apart, weight * widened + np.outer(left, left))
+
+
+def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: Doubt) -> Doubt:
+    """Return the doubt of a model that is only just proven.
+
+    Without it D would leap where the gain passes its limit, and the few clean profiles
+    that chance takes there would rule the scatter of all.
+
+    Args:
+        plain: without instrument.
+        large: the model of `best` by the weights of `plain`.
+        best: the model that was taken.
+        doubt: what a still larger model does.
+    """
+    weight = _weight(plain, large)
+    # Where `plain` is far off its weights tell nothing of the larger model either.
+    if weight > SETTLED_WEIGHT or large.chi2 >= plain.chi2:
+        return doubt
+    back = (1 - weight) * (plain.parameters[:2] - best.parameters[:2])
+    return Doubt(doubt.shift + back, doubt.covariance + np.outer(back, back))
+
+
+def _weight(small: GlsFit, large: GlsFit) -> float:
+    """Return the weight of the larger of two models with the same weights of lags."""
+    more = large.parameters.size - small.parameters.size
+    excess = small.chi2 - large.chi2 - EVEN[more]
+    return float(1 / (1 + np.exp(-np.clip(excess, -100.0, 100.0) / 2)))

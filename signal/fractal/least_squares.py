@@ -1,0 +1,320 @@
+# SPDX-License-Identifier: MIT
+"""Fits a self-affine surface and its instrument by generalised least squares.
+
+Neighbouring lags share most of their pairs, so their errors are strongly correlated;
+weights from the full covariance reach the precision that the data allow. The
+covariance depends on the surface, so it is renewed with the fitted one.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import LinAlgError, cholesky, solve_triangular
+from scipy.stats import chi2 as chi2_distribution
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.fractal.bounded_search import Found, search
+from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.self_affine import InstrumentModel, SeenSurface
+
+EXPONENT_RANGE = (0.02, 1.98)
+"""Range of s = 4 - 2D the search may enter [-]."""
+NOISE_STARTS = (0.02, 0.6)
+"""Noise from which the search starts, over the smallest value of S [-]."""
+PSF_STARTS = (0.3, 1.5, 6.0)
+"""Point spreads from which the search starts [samples]."""
+NARROWEST_PSF = 1e-2
+"""Point spread below which nothing is blurred [samples]."""
+WIDEST_PSF = 30.0
+"""Point spread beyond which no instrument would be sampled so finely [samples]."""
+WIDEST_PSF_SHARE = 0.25
+"""The same as a share of the longest lag: beyond, nothing is left [-]."""
+CORNER_STARTS = (0.03, 0.5)
+"""Corners from which the search starts, over the longest lag [-]."""
+CORNER_RANGE = (0.5, 10.0)
+"""Corners searched, from so many samples to so many longest lags [-]."""
+JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
+"""Variance added on the diagonal, as a share of it [-]; the first that suffices."""
+SMALLEST_INFORMATION = 1e-6
+"""Singular value of the scaled Jacobian taken for smaller ones [-]."""
+RENEWALS = 2
+"""How often the covariance is renewed; it settles at once [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """What is fitted: the instrument, and whether the surface has a corner.
+
+    Attributes:
+        instrument: what the instrument does.
+        rolls_off: whether the surface stops to grow rougher at some lag.
+    """
+
+    instrument: InstrumentModel = InstrumentModel.NONE
+    rolls_off: bool = False
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GlsFit:
+    """One model fitted to the structure function at chosen lags.
+
+    Attributes:
+        model: what was fitted.
+        seen: the fitted surface and instrument; lengths in samples.
+        lag: lags of the fit [samples], shape (n_lags,).
+        predicted: fitted S [m^2], loss by levelling included, same shape.
+        parameters: s [-], ln S of the surface at the pivot, then, where the
+            model has them, 2 noise / smallest S [-], point spread [samples] and ln
+            corner.
+        covariance: of `parameters`.
+        gain: change of `parameters` with relative changes of S, shape
+            (n_parameters, n_lags).
+        pivot: [samples].
+        chi2: sum of squares of the whitened residuals [-].
+        log_determinant: of the covariance of S that weighed them.
+        dof: lags less parameters [-].
+    """
+
+    model: Model
+    seen: SeenSurface
+    lag: FloatArray
+    predicted: FloatArray
+    parameters: FloatArray
+    covariance: FloatArray
+    gain: FloatArray
+    pivot: float
+    chi2: float
+    log_determinant: float
+    dof: int
+
+    @property
+    def probability(self) -> float:
+        """Chance of a larger chi2 if the model holds [-]."""
+        return float(chi2_distribution.sf(self.chi2, self.dof))
+
+    @property
+    def likelihood_criterion(self) -> float:
+        """Akaike's criterion with each model's own scatter in the likelihood [-]."""
+        return self.chi2 + self.log_determinant + 2.0 * self.parameters.size
+
+    @property
+    def dimension(self) -> float:
+        """D of the profile [-]."""
+        return 2 - float(self.parameters[0]) / 2
+
+    @property
+    def dimension_sd(self) -> float:
+        """Standard deviation of D [-]."""
+        return float(np.sqrt(self.covariance[0, 0])) / 2
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Weights:
+    """How the lags are weighed.
+
+    Attributes:
+        reference: S that the residuals are taken relative to [m^2], shape (n_lags,).
+        root: lower Cholesky root of the covariance of S over `reference` [-].
+    """
+
+    reference: FloatArray
+    root: FloatArray
+
+    @property
+    def log_determinant(self) -> float:
+        """Logarithm of the determinant of the covariance of S."""
+        size = np.diag(self.root) * self.reference
+        return 2 * float(np.sum(np.log(size)))
+
+
+def weigh(
+    problem: FractalProblem, at: SeenSurface, *, scatter: FloatArray | None = None
+) -> Weights:
+    """Return the weights that belong to a surface and its instrument.
+
+    Args:
+        problem: the structure function to fit.
+        at: the surface and instrument.
+        scatter: covariance of S to take in place of the one at `at`, shape (n, n) [-].
+    """
+    reference = problem.predicted(at)
+    # A poor start may lose all to levelling; the values themselves then stand in.
+    reference = np.where(reference > 0, reference, problem.estimate.value)
+    own = problem.scatter(at) if scatter is None else scatter
+    return Weights(reference, lower_root(own + problem.misfit(at)))
+
+
+def fit_model(
+    problem: FractalProblem,
+    model: Model,
+    weights: Weights,
+    *,
+    start: FloatArray | None = None,
+) -> GlsFit:
+    """Fit one model with given weights.
+
+    Residuals are linear in S and the weights do not move with the parameters, so
+    they average to zero at the truth however skewed the spread of S.
+
+    Args:
+        problem: the structure function to fit.
+        model: the model.
+        weights: models are comparable by chi2 when they are fitted with the same.
+        start: parameters of an earlier fit of the model to start from; by default
+            the search starts from several places.
+
+    Returns:
+        The best of all starts.
+    """
+    lower, upper = _bounds(problem, model)
+
+    def residual(parameters: FloatArray) -> FloatArray:
+        """Return the whitened relative residuals."""
+        expected = problem.predicted(_unpack(problem, model, parameters))
+        gap = (problem.estimate.value - expected) / weights.reference
+        white: FloatArray = solve_triangular(weights.root, gap, lower=True)
+        return white
+
+    starts = _starts(problem, model) if start is None else [start]
+    found = [search(residual, begin, lower, upper) for begin in starts]
+    best = min(found, key=lambda one: one.squares)
+    return _result(problem, model, weights, best)
+
+
+def settle(problem: FractalProblem, model: Model, at: SeenSurface) -> GlsFit:
+    """Fit one model and renew the weights with the result until they settle.
+
+    Returns:
+        The fit, judged by its own weights: those of the last round may belong to
+        another surface where the model is far off and nothing settles.
+    """
+    result = fit_model(problem, model, weigh(problem, at))
+    for _ in range(RENEWALS):
+        weights = weigh(problem, result.seen)
+        result = fit_model(problem, model, weights, start=result.parameters)
+    return by_own_weights(problem, result)
+
+
+def by_own_weights(problem: FractalProblem, fit: GlsFit) -> GlsFit:
+    """Return a fit with chi2 and determinant of the covariance that belongs to it."""
+    own = weigh(problem, fit.seen)
+    gap = (problem.estimate.value - fit.predicted) / own.reference
+    white = solve_triangular(own.root, gap, lower=True)
+    return replace(fit, chi2=float(white @ white), log_determinant=own.log_determinant)
+
+
+def lower_root(covariance: FloatArray) -> FloatArray:
+    """Return the lower Cholesky root, with as little added variance as it takes.
+
+    On very smooth surfaces neighbouring lags tell the same to more digits than the
+    sums have; the added variance keeps their last digits out of the fit.
+    """
+    diagonal = np.diag(np.diag(covariance))
+    for jitter in JITTERS:
+        try:
+            return np.asarray(cholesky(covariance + jitter * diagonal, lower=True))
+        except LinAlgError:
+            continue
+    return np.asarray(np.sqrt(diagonal))
+
+
+def _result(
+    problem: FractalProblem, model: Model, weights: Weights, best: Found
+) -> GlsFit:
+    """Put the outcome of a search into a record."""
+    seen = _unpack(problem, model, best.parameters)
+    predicted = problem.predicted(seen)
+    covariance = _inverse(best.jacobian)
+    share = np.diag(predicted / weights.reference)
+    whitening = solve_triangular(weights.root, share, lower=True)
+    return GlsFit(
+        model=model,
+        seen=seen,
+        lag=problem.lag,
+        predicted=predicted,
+        parameters=best.parameters,
+        covariance=covariance,
+        gain=-covariance @ best.jacobian.T @ whitening,
+        pivot=problem.pivot,
+        chi2=best.squares,
+        log_determinant=weights.log_determinant,
+        dof=max(1, problem.lag.size - best.parameters.size),
+    )
+
+
+def _inverse(jacobian: FloatArray) -> FloatArray:
+    """Return the covariance of the parameters.
+
+    What the data do not tell gets a huge variance instead of a division by zero.
+    """
+    size = np.linalg.norm(jacobian, axis=0)
+    scale = np.where(size > 0, size, 1.0)
+    _, values, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
+    spread = directions.T / np.maximum(values, SMALLEST_INFORMATION)
+    covariance: FloatArray = spread @ spread.T / np.outer(scale, scale)
+    return covariance
+
+
+def _unpack(
+    problem: FractalProblem, model: Model, parameters: FloatArray
+) -> SeenSurface:
+    """Return the surface and instrument that a vector of parameters stands for."""
+    exponent, level, *rest = (float(value) for value in parameters)
+    instrument = model.instrument
+    noise = rest.pop(0) if instrument.has_noise else 0.0
+    return SeenSurface(
+        exponent=exponent,
+        amplitude=float(np.exp(level - exponent * np.log(problem.pivot))),
+        noise=0.5 * noise * float(problem.estimate.value.min()),
+        psf_width=rest.pop(0) if instrument.has_psf else 0.0,
+        axes=problem.axes,
+        band_limited=instrument is InstrumentModel.BAND_LIMIT,
+        corner=float(np.exp(rest.pop(0))) if model.rolls_off else np.inf,
+        quantum=problem.estimate.quantum,
+        traced=instrument.is_traced,
+    )
+
+
+def widest_psf(problem: FractalProblem) -> float:
+    """Return the widest point spread of the search [samples]."""
+    return max(1.0, min(WIDEST_PSF, WIDEST_PSF_SHARE * float(problem.lag[-1])))
+
+
+def _bounds(problem: FractalProblem, model: Model) -> tuple[FloatArray, FloatArray]:
+    """Return the lower and upper bounds of the parameters."""
+    values = np.log(problem.estimate.value)
+    bounds = [EXPONENT_RANGE, (float(values.min()) - 20, float(values.max()) + 20)]
+    if model.instrument.has_noise:
+        bounds.append((0.0, 2.0))
+    if model.instrument.has_psf:
+        bounds.append((NARROWEST_PSF, widest_psf(problem)))
+    if model.rolls_off:
+        longest = CORNER_RANGE[1] * float(problem.lag[-1])
+        bounds.append((float(np.log(CORNER_RANGE[0])), float(np.log(longest))))
+    lower, upper = np.array(bounds).T
+    return lower, upper
+
+
+def _starts(problem: FractalProblem, model: Model) -> list[FloatArray]:
+    """Return the points from which a search starts."""
+    line = problem.straight()
+    base = [line.exponent, np.log(line.surface(np.array(problem.pivot)))]
+    noises = [[n] for n in NOISE_STARTS] if model.instrument.has_noise else [[]]
+    widths = [[w] for w in PSF_STARTS] if model.instrument.has_psf else [[]]
+    if not model.rolls_off:
+        return [np.array([*base, *rest]) for rest in _crossed(noises, widths)]
+    starts = []
+    for corner in np.array(CORNER_STARTS) * problem.lag[-1]:
+        below = problem.straight(up_to=float(corner))
+        level = np.log(below.surface(np.array(problem.pivot)))
+        starts += [
+            np.array([below.exponent, level, *rest, np.log(corner)])
+            for rest in _crossed(noises, widths)
+        ]
+    return starts
+
+
+def _crossed(noises: list[list[float]], widths: list[list[float]]) -> list[list[float]]:
+    """Combine starts: every noise with the first width, every width with the first."""
+    with_noise = [[*noise, *widths[0]] for noise in noises]
+    return with_noise + [[*noises[0], *width] for width in widths[1:]]

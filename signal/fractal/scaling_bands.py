@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""Looks for a band of lags that scales where no model fits the whole range."""
+
+import numpy as np
+from scipy.stats import chi2
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.judgement import judge
+from jointbench.signal.fractal.least_squares import weigh
+from jointbench.signal.fractal.model_choice import Choice, choose_straight, spans_decade
+from jointbench.signal.fractal.self_affine import SeenSurface
+
+ROUGHLY_STRAIGHT = 0.1
+"""Largest departure of ln S from a line in a band [-]: a band found by search among
+many has to look straight as well."""
+HOPELESS_PROBABILITY = 1e-3
+"""A band that a line through ln S misses with a smaller chance is not fitted [-]."""
+EXPONENT_STEP = 0.1
+"""Exponents among which the covariance of a band is shared [-]: it moves slowly."""
+FEWEST_LAGS = 6
+"""Lags of a band that leave degrees of freedom for every model [-]."""
+
+
+def find_band(problem: FractalProblem) -> Choice | None:
+    """Return the widest straight band of a decade or more that shows a surface.
+
+    Args:
+        problem: the structure function at all lags of the fit, with the tolerance
+            that is to hold in the band.
+
+    Returns:
+        The accepted fit, or None where no decade is straight.
+    """
+    whole: dict[float, FloatArray] = {}
+    for keep in _windows(problem):
+        part = problem.within(keep)
+        line = part.straight()
+        exponent = EXPONENT_STEP * round(line.exponent / EXPONENT_STEP)
+        if exponent not in whole:
+            whole[exponent] = problem.scatter(SeenSurface(exponent, 1.0))
+        scatter = whole[exponent][np.ix_(keep, keep)]
+        if _bent(part) or _hopeless(part, scatter):
+            continue
+        quick = choose_straight(part, weigh(part, line, scatter=scatter))
+        if not (quick.accepted and judge(quick).scales):
+            continue
+        settled = choose_straight(part, weigh(part, quick.fit.seen))
+        if settled.accepted and judge(settled).scales:
+            return settled
+    return None
+
+
+def _bent(problem: FractalProblem) -> bool:
+    """Return whether ln S leaves the line through it by more than the eye allows."""
+    log_lag, value = np.log(problem.lag), np.log(problem.estimate.value)
+    line = np.polyval(np.polyfit(log_lag, value, 1), log_lag)
+    return bool(np.max(np.abs(value - line)) > ROUGHLY_STRAIGHT)
+
+
+def _hopeless(problem: FractalProblem, scatter: FloatArray) -> bool:
+    """Return whether a line through ln S misses it by far more than its scatter."""
+    covariance = scatter + problem.misfit(problem.straight())
+    design = np.stack([np.ones(problem.lag.size), np.log(problem.lag)], axis=1)
+    value = np.log(problem.estimate.value)
+    weighted = np.linalg.solve(covariance, design)
+    line = np.linalg.solve(design.T @ weighted, weighted.T @ value)
+    gap = value - design @ line
+    distance = float(gap @ np.linalg.solve(covariance, gap))
+    return bool(chi2.sf(distance, problem.lag.size - 2) < HOPELESS_PROBABILITY)
+
+
+def _windows(problem: FractalProblem) -> list[BoolArray]:
+    """Return all runs of lags that span a decade, the widest first."""
+    lag = problem.lag
+    ends = [
+        (first, last)
+        for first in range(lag.size)
+        for last in range(first + FEWEST_LAGS - 1, lag.size)
+        if spans_decade((float(lag[first]), float(lag[last])))
+    ]
+    ends.sort(key=lambda pair: -float(lag[pair[1]] / lag[pair[0]]))
+    index = np.arange(lag.size)
+    return [(index >= first) & (index <= last) for first, last in ends]

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: MIT
+"""Looks in the spectrum for a place where one power law takes over from another."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.self_affine import SeenSurface, tip_fall
+from jointbench.signal.surface.structure_constant import spectral_integral
+
+CLEAR_GAIN = 14.0
+"""Gain of chi2 by a bend that is clear, the best of all places taken [-]; one clean
+profile in 100 to 200 has it by chance."""
+SMALLEST_BEND = 0.25
+"""Change of slope that makes another law of it [-]: a change of D by an eighth."""
+LONGEST_SHARE = 0.25
+"""Longest lag of a bend over the longest of the fit [-]: beyond, a handful of ordinates
+would make the other law."""
+KNOTS = 24
+"""Places tried [-]."""
+SHARPEST_BLUR = 1.0
+"""Frequency times point spread beyond which the surface is not seen [rad]."""
+HIGHEST = 0.5 * np.pi
+"""Highest frequency of the test [rad/sample]: instruments rule beyond."""
+ALIASES = 20
+"""Images of the spectrum on each side that sampling folds in [-]."""
+FEWEST_BINS = 12
+
+
+@dataclass(frozen=True, slots=True)
+class Kink:
+    """A bend of the spectrum.
+
+    Attributes:
+        lag: at which it shows in S, about [samples].
+        slope_below: slope of ln S at shorter lags, about [-].
+        slope_above: at longer lags, about [-].
+    """
+
+    lag: float
+    slope_below: float
+    slope_above: float
+
+
+def find_kink(problem: FractalProblem, seen: SeenSurface) -> Kink | None:
+    """Return the clearest bend of a spectrum beside a fit, if any is clear.
+
+    Args:
+        problem: with a spectrum in its structure function; without one no bend is
+            found.
+        seen: the fitted surface with one power law, and its instrument.
+
+    Source:
+        Whittle, Ark. Mat. 2 (1953) 423: ordinates over their expectation are
+        independent and exponential. Their means enter by cube roots, see Wilson and
+        Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684.
+    """
+    spectrum = problem.estimate.spectrum
+    if spectrum is None or problem.lag.size == 0:
+        return None
+    keep = (spectrum.omega < HIGHEST) & (
+        spectrum.omega * seen.psf_width < SHARPEST_BLUR
+    )
+    if np.count_nonzero(keep) < FEWEST_BINS:
+        return None
+    omega, count = spectrum.omega[keep], spectrum.count[keep]
+    share = spectrum.power[keep] / expected_spectrum(omega, seen)
+    size = np.sqrt(count)
+    gap = size * (3 * (np.cbrt(share) - 1) + 1 / (3 * count))
+    line = np.stack([size, size * np.log(omega)], axis=1)
+    best, found = CLEAR_GAIN, None
+    straight = _left(line, gap)[0]
+    for knot in _knots(problem, omega):
+        hinge = size * np.maximum(0.0, np.log(omega / knot))
+        left, bend = _left(np.column_stack([line, hinge]), gap)
+        if straight - left > best and abs(bend[2]) > SMALLEST_BEND:
+            best = straight - left
+            below = seen.exponent - float(bend[1] + bend[2])
+            found = Kink(1 / knot, below, seen.exponent - float(bend[1]))
+    return found
+
+
+def expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
+    """Return the spectrum of height differences of a surface as it is seen.
+
+    Args:
+        omega: [rad/sample], between 0 and pi.
+        seen: surface without corner, and instrument.
+    """
+    images = 0 if seen.band_limited else ALIASES
+    waves = omega[:, None] + 2 * np.pi * np.arange(-images, images + 1)
+    power = np.abs(waves) ** (-1 - seen.exponent)
+    if seen.psf_width > 0 and seen.traced:
+        fall = tip_fall(seen.exponent)
+        power *= (1 + (waves * seen.psf_width) ** 2 / fall) ** -fall
+    elif seen.psf_width > 0:
+        power *= np.exp(-((waves * seen.psf_width) ** 2))
+    total = power.sum(axis=1)
+    if images and seen.psf_width == 0:  # images beyond, as an integral
+        rest = (2 * np.pi) ** (-1 - seen.exponent) * (images + 0.5) ** -seen.exponent
+        total += 2 * rest / seen.exponent
+    level = seen.amplitude / (4 * spectral_integral(seen.exponent))
+    white = (seen.noise + seen.quantum**2 / 12) / (2 * np.pi)
+    heights = level * total + white
+    differences: FloatArray = 4 * np.sin(omega / 2) ** 2 * heights
+    return differences
+
+
+def _knots(problem: FractalProblem, omega: FloatArray) -> FloatArray:
+    """Return the frequencies at which a bend is looked for, inside the fit's lags."""
+    low = max(1 / (LONGEST_SHARE * float(problem.lag[-1])), float(omega[3]))
+    return np.geomspace(low, float(omega[-4]), KNOTS)
+
+
+def _left(design: FloatArray, gap: FloatArray) -> tuple[float, FloatArray]:
+    """Return the squares that a linear fit leaves, and its coefficients."""
+    found: FloatArray = np.asarray(np.linalg.lstsq(design, gap, rcond=None)[0], float)
+    rest = gap - design @ found
+    return float(rest @ rest), found

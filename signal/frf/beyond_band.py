@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""What an FRF shows above the band that was fitted, and how hard it was excited there.
+
+The default band ends where the force has fallen by 20 dB. A structure may have its
+highest peaks beyond; with good coherence they can be fitted as well.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import median_filter, uniform_filter1d
+from scipy.signal import find_peaks
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.frf.frf import Frf
+from jointbench.signal.hits.hit_spectra import HitSpectra
+
+_ALIAS_FREE = 2.0 / 2.56
+"""Share of the lines that anti-alias filters of usual converters leave [-]."""
+_STANDS_OUT = 3.0
+"""Height over the valleys beside it from which a peak stands out [-]."""
+_SMOOTH = 9
+"""Lines over which the level is a median."""
+_WORTH_TELLING = 0.01
+"""Height over the highest peak of the band below which nobody misses a peak [-]."""
+_LEAST_COHERENCE = 0.8
+_AROUND, _APART = 50, 200
+"""Shares of the lines: the surroundings of a peak, and the distance of two of them."""
+_MOST = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Peak:
+    """One peak above the band.
+
+    Attributes:
+        frequency: [Hz].
+        height: over the highest line of the band [-].
+        coherence: mean over pairs there [-], or None for single hits.
+        force_drop: force spectrum below its highest [dB].
+    """
+
+    frequency: float
+    height: float
+    coherence: float | None
+    force_drop: float
+
+
+@dataclass(frozen=True, slots=True)
+class Beyond:
+    """What lies above a band.
+
+    Attributes:
+        begin: of the band [Hz].
+        end: of the band [Hz].
+        force_drop: of the force as recorded, at the end of the band [dB].
+        reach: up to here nothing is folded down [Hz].
+        peaks: the highest ones, by ascending frequency.
+    """
+
+    begin: float
+    end: float
+    force_drop: float
+    reach: float
+    peaks: tuple[Peak, ...]
+
+    def words(self) -> str:
+        """One sentence on what is there and how to reach it; empty for a whole band."""
+        if self.end >= self.reach:
+            return ""
+        end = (
+            f"the band ends at {_hertz(self.end)}, where the force as recorded is "
+            f"{max(0.0, -self.force_drop):.0f} dB down; above it"
+        )
+        if not self.peaks:
+            return f"{end} no peak stands out up to {_hertz(self.reach)}"
+        highest = max(self.peaks, key=lambda p: p.height)
+        top = min(self.reach, _round_up(1.05 * self.peaks[-1].frequency))
+        return (
+            f"{end} peaks stand out, the highest at {_hertz(highest.frequency)}, "
+            f"{highest.height:.2g} times as high as the highest within; to fit them as "
+            f"well: --band {self.begin:.3g}:{top:g}"
+        )
+
+
+def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Beyond:
+    """Look for peaks above a band.
+
+    Args:
+        frf: of all lines.
+        band: lowest and highest line that was fitted [Hz].
+        spectra: of the accepted hits, as recorded.
+
+    Returns:
+        Up to five peaks, those three times as high as the valleys beside them, with a
+        coherence above 0.8 where there is one.
+    """
+    frequency = frf.frequency
+    level = np.sqrt(np.mean(np.abs(frf.response) ** 2, axis=(0, 1)))
+    reach = _ALIAS_FREE * float(frequency[-1])
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    drop = np.interp(frequency, spectra.frequency, _force_drop(spectra))
+    coherence = None if frf.coherence is None else frf.coherence.mean(axis=(0, 1))
+    highest = float(level[inside].max())
+    peaks = [
+        Peak(
+            frequency=float(frequency[i]),
+            height=float(level[i]) / highest,
+            coherence=None if coherence is None else float(coherence[i]),
+            force_drop=float(drop[i]),
+        )
+        for i in _standing_out(level)
+        if band[1] < frequency[i] <= reach
+        and level[i] >= _WORTH_TELLING * highest
+        and (coherence is None or coherence[i] >= _LEAST_COHERENCE)
+    ]
+    tallest = sorted(peaks, key=lambda p: -p.height)[:_MOST]
+    return Beyond(
+        begin=band[0],
+        end=band[1],
+        force_drop=float(np.interp(band[1], frequency, drop)),
+        reach=reach,
+        peaks=tuple(sorted(tallest, key=lambda p: p.frequency)),
+    )
+
+
+def _force_drop(spectra: HitSpectra) -> FloatArray:
+    """Return the force spectrum over its highest [dB], smoothed, shape (n_lines,)."""
+    power = np.mean(np.abs(spectra.force) ** 2, axis=0)
+    smooth = uniform_filter1d(power, max(3, power.size // _AROUND), mode="nearest")
+    floor = np.finfo(float).tiny
+    return np.asarray(
+        10.0 * np.log10(np.maximum(smooth, floor) / max(smooth.max(), floor))
+    )
+
+
+def _standing_out(level: FloatArray) -> Sequence[int]:
+    """Return the lines of peaks that stand out of what is around them.
+
+    Noise of a single hit is rough from line to line; the median of a few is not.
+    """
+    smooth = median_filter(level, _SMOOTH, mode="nearest")
+    floor = max(float(smooth.max()), 1.0) * np.finfo(float).eps
+    found, _ = find_peaks(
+        np.log(np.maximum(smooth, floor)),
+        prominence=np.log(_STANDS_OUT),
+        distance=max(1, level.size // _APART),
+    )
+    return [
+        max(0, i - _SMOOTH) + int(np.argmax(level[max(0, i - _SMOOTH) : i + _SMOOTH]))
+        for i in map(int, found)
+    ]
+
+
+def _round_up(frequency: float) -> float:
+    """Return the next number of two digits [Hz]."""
+    step = 10.0 ** (np.floor(np.log10(frequency)) - 1)
+    return float(np.ceil(frequency / step) * step)
+
+
+def _hertz(frequency: float) -> str:
+    return f"{frequency:.0f} Hz" if frequency >= 100.0 else f"{frequency:.3g} Hz"

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""Which hit takes the coherence away: each is left out in turn, none transformed anew.
+
+Coherence is |S_xf|^2 / (S_ff S_xx); the sums without a hit are those of all less its
+own, so that leaving out each of n hits costs as much as one average.
+
+Source:
+    Bendat and Piersol, Random Data (2010), sec. 5.2 (ordinary coherence).
+"""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.frf.frf import excited_band_of
+from jointbench.signal.hits.hit_spectra import HitSpectra
+
+_LEAST = 1e-24  # of the largest power, below which a line holds none
+
+
+def typical_coherence(
+    coherence: FloatArray, frequency: FloatArray, band: tuple[float, float]
+) -> float | None:
+    """Return the coherence over a band, each output weighed alike [-].
+
+    The dips at antiresonances, where there is nothing but noise, are left aside: the
+    median over lines is taken of each output.
+
+    Args:
+        coherence: shape (n_outputs, n_lines).
+        frequency: of the lines [Hz].
+        band: lowest and highest frequency [Hz].
+
+    Returns:
+        None where no line is inside.
+    """
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    lines = coherence[:, inside]
+    return float(np.median(lines, axis=1).mean()) if lines.size else None
+
+
+def coherence_without(spectra: HitSpectra) -> FloatArray:
+    """Return the coherence of the other hits for each hit left out in turn.
+
+    Args:
+        spectra: of at least three hits at one point, their responses in one order.
+
+    Returns:
+        Typical coherence over the band that the others excite [-], shape (n_hits,); 0
+        where they excite none.
+    """
+    force, response = spectra.force, spectra.response
+    own_force = np.abs(force) ** 2
+    all_force = own_force.sum(axis=0)
+    all_response = np.sum(np.abs(response) ** 2, axis=0)
+    all_cross = np.sum(response * force[:, None, :].conj(), axis=0)
+    found = []
+    for f, x, power in zip(force, response, own_force, strict=True):
+        others = np.maximum(all_force - power, 0.0)
+        answers = np.maximum(all_response - np.abs(x) ** 2, 0.0)
+        cross = all_cross - x * f.conj()
+        product = answers * np.maximum(others, _LEAST * others.max())
+        safe = np.where(product > 0.0, product, 1.0)
+        coherence = np.minimum(np.abs(cross) ** 2 / safe, 1.0)
+        band = excited_band_of(others, spectra.frequency)
+        found.append(typical_coherence(coherence, spectra.frequency, band) or 0.0)
+    return np.array(found)

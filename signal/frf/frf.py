@@ -1,0 +1,297 @@
+# SPDX-License-Identifier: MIT
+"""Frequency response functions: the record, and the average over hammer hits."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from jointbench.acquisition.basics.arrays import (
+    ComplexArray,
+    FloatArray,
+    freeze,
+    require_ascending,
+    require_finite,
+    require_shape,
+)
+from jointbench.acquisition.basics.errors import ShapeError
+from jointbench.acquisition.records.recordings import (
+    Provenance,
+    Quantity,
+    Recording,
+    Step,
+    step,
+)
+from jointbench.signal.frf.estimators import Estimator, bias_bound, estimate_pair
+from jointbench.signal.frf.innovation_noise import innovation_noise
+from jointbench.signal.hits.campaign_level import compare_levels
+from jointbench.signal.hits.find_hits import accepted_hits, find_hits
+from jointbench.signal.hits.hit_spectra import (
+    HitSpectra,
+    hit_spectra,
+    pair_up,
+    require_alive,
+)
+from jointbench.signal.hits.hit_verdicts import HitLimits
+from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
+
+# The hammer excites up to where its force spectrum has fallen by this much.
+_FORCE_DROP_DB = 20.0
+# Anti-alias filters of the usual converters leave this share of the sample rate.
+_ALIAS_FREE = 1.0 / 2.56
+
+
+class FrfKind(StrEnum):
+    """Which response a force is answered by."""
+
+    RECEPTANCE = "receptance"
+    MOBILITY = "mobility"
+    ACCELERANCE = "accelerance"
+
+    @property
+    def derivatives(self) -> int:
+        """How many times the displacement is differentiated: 0, 1 or 2."""
+        return {"receptance": 0, "mobility": 1, "accelerance": 2}[self.value]
+
+
+KIND_OF_RESPONSE = {
+    Quantity.DISPLACEMENT: FrfKind.RECEPTANCE,
+    Quantity.VELOCITY: FrfKind.MOBILITY,
+    Quantity.ACCELERATION: FrfKind.ACCELERANCE,
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Frf:
+    """Frequency response functions of one structure.
+
+    Attributes:
+        frequency: line frequencies [Hz], shape (n_lines,), ascending.
+        response: complex FRF [m/N, m/(N s) or m/(N s^2)], shape
+            (n_outputs, n_inputs, n_lines).
+        kind: receptance, mobility or accelerance.
+        coherence: ordinary coherence [-], same shape, or None for single hits.
+        variance: E|error|^2 of the average [unit of response squared], same shape, or
+            None if unknown.
+        added_decay_rate: of the exponential window [1/s]: the FRF was measured at
+            s = j omega + added_decay_rate.
+        outputs: labels ``"channel@point"``, one a row.
+        inputs: hit points, one a column.
+        averages: smallest number of hits behind a column; 0 if unknown.
+        provenance: how it came about.
+        usable_band: (lowest, highest) frequency that was really excited [Hz], or None.
+        innovation_noise: variance that the noise seen by the Kalman stage explains
+            [unit of response squared], same shape, or None: good for weights only.
+    """
+
+    frequency: FloatArray
+    response: ComplexArray
+    kind: FrfKind
+    coherence: FloatArray | None = None
+    variance: FloatArray | None = None
+    added_decay_rate: float = 0.0
+    outputs: tuple[str, ...] = ()
+    inputs: tuple[str, ...] = ()
+    averages: int = 0
+    provenance: Provenance = field(default=())
+    usable_band: tuple[float, float] | None = None
+    innovation_noise: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        """Check shapes once and make the arrays read-only."""
+        require_ascending("frequency", self.frequency)
+        require_finite("frequency", self.frequency)
+        require_shape("response", self.response, (None, None, self.frequency.size))
+        require_finite("response", self.response)
+        for name in ("coherence", "variance", "innovation_noise"):
+            array = getattr(self, name)
+            if array is not None:
+                require_shape(name, array, self.response.shape)
+        n_outputs, n_inputs, _ = self.response.shape
+        for name, labels, size in (
+            ("outputs", self.outputs, n_outputs),
+            ("inputs", self.inputs, n_inputs),
+        ):
+            if not labels:
+                numbered = tuple(str(i + 1) for i in range(size))
+                object.__setattr__(self, name, numbered)
+            elif len(labels) != size:
+                raise ShapeError(f"{len(labels)} labels for {size} {name}")
+        freeze(
+            self,
+            "frequency",
+            "response",
+            "coherence",
+            "variance",
+            "innovation_noise",
+        )
+
+
+def estimate_frf(
+    recordings: Sequence[Recording] | Recording,
+    *,
+    window: HammerWindow | None = None,
+    estimator: Estimator = Estimator.H1,
+) -> Frf:
+    """Estimate the FRF from hammer hits.
+
+    Hits may come one a file or many a stream; those at different points become
+    different inputs. Recordings without hits are searched with default criteria.
+
+    Args:
+        recordings: force and responses, all at one sample rate.
+        window: windows for all hits, or None to choose them (see `choose_window`).
+        estimator: H1 trusts the force and is low where it is noisy; H2 trusts the
+            response and is high where that is noisy; Hv lies between them.
+
+    Returns:
+        The average over the accepted hits, with coherence and variance from the scatter
+        between hits where there are at least two for every column. The estimator, its
+        bias in words and how far H1 and H2 are apart are in the provenance.
+
+    Raises:
+        NoHitFound: no accepted hit.
+        SamplingError: the sample rates differ.
+        ChannelMissing: a dead response, responses of different quantities, or a pair
+            of output and input that was never measured together.
+
+    Source:
+        Bendat and Piersol, Random Data (2010), sec. 6.1 and 9.2 (H1, its variance).
+    """
+    if isinstance(recordings, Recording):
+        recordings = (recordings,)
+    judged = compare_levels(
+        [r if r.hits else find_hits(r) for r in recordings],
+        HitLimits(),
+        [not r.hits for r in recordings],
+    )
+    for recording in judged:
+        for hit in accepted_hits(recording):
+            require_alive(recording, hit)
+    if window is None:
+        window = join_windows([choose_window(r) for r in judged if accepted_hits(r)])
+    return average_spectra(
+        hit_spectra(judged, window),
+        window,
+        estimator=estimator,
+        inherited=_inherited(judged),
+    )
+
+
+def average_spectra(
+    spectra: HitSpectra,
+    window: HammerWindow,
+    *,
+    estimator: Estimator = Estimator.H1,
+    inherited: Provenance = (),
+) -> Frf:
+    """Estimate the FRF from hits that are transformed already; see `estimate_frf`.
+
+    Args:
+        spectra: of the accepted hits.
+        window: that was applied to each of them.
+        estimator: H1, H2 or Hv.
+        inherited: steps that the recordings went through.
+
+    Raises:
+        ChannelMissing: a pair of output and input that was never measured together.
+    """
+    outputs, inputs, pairs = pair_up(spectra)
+    averaged = [
+        estimate_pair(
+            spectra.force[pair.hits], spectra.response[pair.hits, pair.rows], estimator
+        )
+        for pair in pairs
+    ]
+    shape = (len(outputs), len(inputs), spectra.frequency.size)
+    averages = min(pair.hits.size for pair in pairs)
+    coherence = _stack([a.coherence for a in averaged], shape, averages)
+    done = _record(spectra, window, averages, estimator, coherence)
+    decay = window.decay_rate or 0.0
+    noise = innovation_noise(spectra, outputs, pairs, inherited, decay)
+    return Frf(
+        frequency=spectra.frequency,
+        response=np.array([a.response for a in averaged]).reshape(shape),
+        kind=KIND_OF_RESPONSE[spectra.quantity],
+        coherence=coherence,
+        variance=_stack([a.variance for a in averaged], shape, averages),
+        added_decay_rate=decay,
+        outputs=outputs,
+        inputs=inputs,
+        averages=averages,
+        provenance=(*inherited, done),
+        usable_band=excited_band(spectra),
+        innovation_noise=None if noise is None else noise.reshape(shape),
+    )
+
+
+def excited_band(spectra: HitSpectra) -> tuple[float, float]:
+    """Return where the hammer put force in: within 20 dB of its low end, unaliased.
+
+    Args:
+        spectra: of the accepted hits.
+
+    Returns:
+        First line above DC and the last line before the force has fallen for good
+        over a fiftieth of the band [Hz].
+    """
+    power = np.mean(np.abs(spectra.force) ** 2, axis=0)
+    return excited_band_of(power, spectra.frequency)
+
+
+def excited_band_of(power: FloatArray, frequency: FloatArray) -> tuple[float, float]:
+    """Return the band in which a force has power; see `excited_band`.
+
+    Args:
+        power: of the force, in any unit, shape (n_lines,).
+        frequency: of the lines [Hz].
+    """
+    lines = max(3, power.size // 50)
+    smooth = uniform_filter1d(power, lines, mode="nearest")
+    strong = smooth > smooth[: power.size // 4 + 1].max() * 10 ** (-_FORCE_DROP_DB / 10)
+    first = int(np.argmax(strong))
+    fallen = np.flatnonzero(~strong[first:])
+    last = first + int(fallen[0]) - 1 if fallen.size else power.size - 1
+    highest = min(frequency[last], 2.0 * frequency[-1] * _ALIAS_FREE)
+    return float(frequency[max(first, 1)]), float(highest)
+
+
+def _stack(
+    rows: Sequence[FloatArray], shape: tuple[int, int, int], averages: int
+) -> FloatArray | None:
+    """Return the rows as one array, or None where a single hit shows no scatter."""
+    return np.array(rows).reshape(shape) if averages > 1 else None
+
+
+def _inherited(recordings: Sequence[Recording]) -> Provenance:
+    """Return the steps of all recordings, each once."""
+    return tuple(dict.fromkeys(s for r in recordings for s in r.provenance))
+
+
+def _record(
+    spectra: HitSpectra,
+    window: HammerWindow,
+    averages: int,
+    estimator: Estimator,
+    coherence: FloatArray | None,
+) -> Step:
+    bound: dict[str, float] = {}
+    if coherence is not None:
+        low, high = excited_band(spectra)
+        inside = (spectra.frequency >= low) & (spectra.frequency <= high)
+        apart = bias_bound(coherence[:, :, inside], averages)
+        bound["h1_below_h2_median"] = float(np.median(apart))
+    return step(
+        "estimate_frf",
+        estimator=estimator.value,
+        bias=estimator.bias,
+        block=spectra.block,
+        block_reason=spectra.block_reason,
+        averages=averages,
+        force_width=window.force_width or 0.0,
+        decay_rate=window.decay_rate or 0.0,
+        window_reason=window.reason,
+        **bound,
+    )

@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: MIT
+"""Linearity: does the FRF depend on how hard the structure is hit?
+
+The FRF of every hit is set against the level of that hit, line by line:
+H(f) = mean(f) + slope(f) log2(level). A linear structure has no slope but that of
+noise, so the slopes of all lines together are an F test.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.stats
+from scipy.ndimage import uniform_filter1d
+
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    freeze,
+)
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.signal.frf.frf import excited_band
+from jointbench.signal.hits.hit_spectra import HitSpectra, Pair, pair_up
+
+_LEAST_HITS = 3
+# Hits whose levels differ by less than this factor cannot show a dependence.
+_LEAST_SPAN = 1.2
+_CHANCE = 0.01
+# The scatter of a few hits is itself noisy; it is averaged over this many lines.
+_SMOOTH_LINES = 41
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Linearity:
+    """How the FRF changes with the level of the hits.
+
+    Attributes:
+        change: of the FRF for a doubling of the force, rms over pairs, as a share of
+            the rms of the FRF on that line [-], shape (n_lines,).
+        frequency: [Hz], of the excited band, shape (n_lines,).
+        change_per_doubling: the same over the whole band, that of noise taken off [-].
+        f_value: power of the slopes over what the scatter of the hits explains [-].
+        significance: chance that a linear structure shows this much [-].
+        levels: lowest and highest rms force spectrum in the band [N s].
+        hits: behind it.
+    """
+
+    change: FloatArray
+    frequency: FloatArray
+    change_per_doubling: float
+    f_value: float
+    significance: float
+    levels: tuple[float, float]
+    hits: int
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "change", "frequency")
+
+    @property
+    def nonlinear(self) -> bool:
+        """True where chance is below 1 % that a linear structure looks like this."""
+        return self.significance < _CHANCE
+
+    @property
+    def words(self) -> str:
+        """One plain sentence."""
+        low, high = self.levels
+        span = f"from {low:.3g} to {high:.3g} N s ({self.hits} hits)"
+        share = 100.0 * self.change_per_doubling
+        if self.nonlinear:
+            return (
+                f"not linear {span}: the FRF changes by {share:.2g} % for a doubling "
+                f"of the force (F {self.f_value:.3g}, chance {self.significance:.1g})"
+            )
+        return (
+            f"no dependence on level {span}: a doubling of the force changes the FRF "
+            f"by {share:.2g} %, noise by chance does as much or more in "
+            f"{100.0 * self.significance:.2g} % of cases"
+        )
+
+
+def check_linearity(spectra: HitSpectra) -> Linearity:
+    """Test whether the FRF depends on the level of the hits.
+
+    Args:
+        spectra: of accepted hits, at least three at one point, on different levels.
+
+    Returns:
+        The change with level and its significance. What drifts with time along with
+        the level looks the same: hit softly and hard in turn.
+
+    Raises:
+        BadData: fewer than three hits at every point, or all at one level.
+
+    Source:
+        Seber and Lee, Linear Regression Analysis (2003), sec. 4.3 (F test); ISO
+        7626-5:2019 asks for the check.
+    """
+    low, high = excited_band(spectra)
+    inside = (spectra.frequency >= low) & (spectra.frequency <= high)
+    impulse = _levels(spectra, inside)
+    outputs, inputs, pairs = pair_up(spectra)
+    groups = [
+        p for p in pairs if _spread(impulse[p.hits]) and p.hits.size >= _LEAST_HITS
+    ]
+    if not groups:
+        raise BadData(
+            f"linearity needs {_LEAST_HITS} accepted hits at one point whose levels "
+            f"differ by a factor of {_LEAST_SPAN} or more; of {len(outputs)} x "
+            f"{len(inputs)} pairs none has them: hit softly and hard in turn"
+        )
+    fits = [_regress(spectra, pair, impulse[pair.hits], inside) for pair in groups]
+    slope_power = np.sum([f.slope_power for f in fits], axis=0)
+    noise_power = np.sum([f.noise_power for f in fits], axis=0)
+    level = np.sum([f.level for f in fits], axis=0)
+    f_value, significance = _test(fits)
+    used = np.concatenate([impulse[p.hits] for p in groups])
+    excess = float(np.sum(slope_power - noise_power) / np.sum(level))
+    return Linearity(
+        change=np.sqrt(slope_power / level),
+        frequency=spectra.frequency[inside],
+        change_per_doubling=float(np.sqrt(max(0.0, excess))),
+        f_value=f_value,
+        significance=significance,
+        levels=(float(used.min()), float(used.max())),
+        hits=int(np.unique(np.concatenate([p.hits for p in groups])).size),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Fit:
+    """The regression of one pair, line by line.
+
+    Attributes:
+        slope_power: |slope|^2, shape (n_lines,).
+        noise_power: what noise alone would give, shape (n_lines,).
+        level: |mean FRF|^2, shape (n_lines,).
+        residual: shape (n_hits, n_lines).
+    """
+
+    slope_power: FloatArray
+    noise_power: FloatArray
+    level: FloatArray
+    residual: ComplexArray
+
+
+def _regress(
+    spectra: HitSpectra, pair: Pair, impulse: FloatArray, inside: BoolArray
+) -> _Fit:
+    force = spectra.force[pair.hits][:, inside]
+    response = spectra.response[pair.hits, pair.rows][:, inside]
+    frf, weight = response / force, np.abs(force) ** 2
+    # Weighted by |F|^2: the noise of a hit's FRF is the response's over its force.
+    total = weight.sum(axis=0)
+    level = np.log2(impulse)[:, None]
+    centred = level - (weight * level).sum(axis=0) / total
+    mean = (weight * frf).sum(axis=0) / total
+    lever = (weight * centred**2).sum(axis=0)
+    slope = (weight * centred * frf).sum(axis=0) / lever
+    residual = (frf - mean - centred * slope) * np.sqrt(weight)
+    noise = np.sum(np.abs(residual) ** 2, axis=0) / (pair.hits.size - 2)
+    return _Fit(np.abs(slope) ** 2, noise / lever, np.abs(mean) ** 2, residual)
+
+
+def _test(fits: Sequence[_Fit]) -> tuple[float, float]:
+    """Return F and its chance, pooled; neighbouring lines may share one error."""
+    numerator = sum(float(np.sum(f.slope_power / _pooled(f))) for f in fits)
+    lines = sum(f.level.size for f in fits)
+    length = max(_correlation_length(f.residual) for f in fits)
+    freedom = 2.0 * lines / length
+    hits = sum(f.level.size * (f.residual.shape[0] - 2) for f in fits)
+    f_value = numerator / lines
+    chance = scipy.stats.f.sf(f_value, freedom, 2.0 * hits / length)
+    return f_value, float(chance)
+
+
+def _pooled(fit: _Fit) -> FloatArray:
+    """Return the variance of the slopes, smoothed: that of one line is itself noisy."""
+    smooth = uniform_filter1d(fit.noise_power, _SMOOTH_LINES, mode="nearest")
+    return np.asarray(np.where(smooth > 0.0, smooth, np.inf))
+
+
+def _correlation_length(residual: ComplexArray) -> float:
+    """Return how many neighbouring lines carry one independent error, 1 or more."""
+    power = float(np.sum(np.abs(residual) ** 2))
+    if residual.shape[1] < 3 or power == 0.0:
+        return 1.0
+    shared = np.sum(residual[:, 1:] * residual[:, :-1].conj()).real / power
+    share = min(max(float(shared), 0.0), 0.99)
+    return (1.0 + share) / (1.0 - share)
+
+
+def _levels(spectra: HitSpectra, inside: BoolArray) -> FloatArray:
+    """Return the rms force spectrum of each hit over the band [N s]."""
+    return np.asarray(np.sqrt(np.mean(np.abs(spectra.force[:, inside]) ** 2, axis=1)))
+
+
+def _spread(levels: FloatArray) -> bool:
+    return bool(levels.max() >= _LEAST_SPAN * levels.min())

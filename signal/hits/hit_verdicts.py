@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: MIT
+"""Whether a hammer hit may enter an average: one verdict, one number, one reason.
+
+The order of the questions is the order in which an answer spoils the others: an
+overloaded signal says nothing true, a double hit has holes in its force spectrum, a
+late one is cut short, a weak one is only noisy.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.acquisition.records.recordings import Recording, Verdict
+
+# The median absolute deviation of normal noise is this fraction of its sd.
+_MAD_OF_NORMAL = 0.6745
+# A crest of noise this many sd high stands out of no other.
+_NOISE_CREST = 6.0
+
+
+@dataclass(frozen=True, slots=True)
+class HitLimits:
+    """The limits behind the verdicts.
+
+    Attributes:
+        overload_fraction: share of a channel's range that counts as overload [-].
+        flat_samples: equal consecutive extreme samples that count as clipping.
+        double_ratio: second force peak over the main one [-]; more where the noise of
+            the force would reach it.
+        weak_ratio: peak force over the median peak of the recording [-].
+        weak_force: smallest useful peak force [N], or None.
+        ladder_ratio: peak force over the softest repeated level of a campaign of
+            several levels [-]: a step of its ladder, struck once, may lie below.
+    """
+
+    overload_fraction: float = 0.98
+    flat_samples: int = 3
+    double_ratio: float = 0.05
+    weak_ratio: float = 1.0 / 3.0
+    weak_force: float | None = None
+    ladder_ratio: float = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """What `judge` found of one hit; the fields are those of `Hit`."""
+
+    peak_force: float
+    verdict: Verdict
+    measure: float
+    reason: str
+
+
+def judge(
+    recording: Recording,
+    force: FloatArray,
+    bounds: Sequence[tuple[int, int, int]],
+    *,
+    limits: HitLimits,
+    shortest: int,
+) -> tuple[Judged, ...]:
+    """Judge every hit of a recording.
+
+    Args:
+        recording: all channels.
+        force: the force without its offset [N], shape (n_samples,).
+        bounds: (start, trigger, stop) of each hit, sample indices.
+        limits: see `HitLimits`.
+        shortest: least number of samples from trigger to stop.
+
+    Returns:
+        One verdict a hit, in the same order.
+    """
+    peaks = [float(force[trigger:stop].max()) for _, trigger, stop in bounds]
+    usual = float(np.median(peaks))
+    return tuple(
+        _overload(recording, bound, limits, peak)
+        or _double(recording, force, bound, limits, peak)
+        or _late(recording, bound, shortest, peak)
+        or _weak(usual, limits, peak)
+        or _good(recording, force, bound, peak)
+        for bound, peak in zip(bounds, peaks, strict=True)
+    )
+
+
+def second_peak(force: FloatArray, trigger: int) -> tuple[float, int]:
+    """Measure the second pulse of a hit.
+
+    A second contact is a rise of the force after it has fallen. A ringing transducer
+    or filter rises as well, but it swings as far below zero beside each crest, and a
+    hammer cannot pull: that swing is taken off. The main peak may be either pulse.
+
+    Args:
+        force: segment of one hit without offset [N], shape (n,).
+        trigger: index of the trigger in it.
+
+    Returns:
+        The second peak as a fraction of the main one [-], and how many samples after
+        (or, negative, before) the main peak it stands.
+    """
+    main = trigger + int(np.argmax(force[trigger:]))
+    width = max(4, _pulse_samples(force, main))
+    after, where_after = _largest_rise(force[main:], width)
+    before, where_before = _largest_rise(force[trigger : main + 1][::-1], width)
+    if before > after:
+        return float(before / force[main]), -where_before
+    return float(after / force[main]), where_after
+
+
+def longest_flat_top(samples: FloatArray) -> int:
+    """Count the samples of the longest clipped crest or trough.
+
+    Only runs that stand at the very extreme count, and only if the signal leaves them
+    by more than two of its smallest steps: a smooth crest read by a coarse converter
+    is flat too, but leaves by one step.
+
+    Args:
+        samples: one channel, shape (n,).
+
+    Returns:
+        The length of the run, 1 where nothing is clipped.
+    """
+    largest = float(np.abs(samples).max())
+    if largest == 0.0:
+        return 1
+    levels = np.unique(samples)
+    resolution = float(np.diff(levels).min()) if levels.size > 1 else 0.0
+    runs = [
+        _run_at(sign * samples, resolution)
+        for sign in (1.0, -1.0)
+        if float((sign * samples).max()) > 0.3 * largest
+    ]
+    return max(runs, default=1)
+
+
+def noise_level(samples: FloatArray) -> float:
+    """Estimate the sd of the noise under sparse pulses, same unit as `samples`."""
+    centred = samples - np.median(samples)
+    return float(np.median(np.abs(centred))) / _MAD_OF_NORMAL
+
+
+def _run_at(samples: FloatArray, resolution: float) -> int:
+    """Return the longest steeply left run of samples at the maximum."""
+    top = float(samples.max())
+    at_top = np.concatenate(([False], samples >= top - 1e-9 * abs(top), [False]))
+    edges = np.flatnonzero(np.diff(at_top.astype(np.int8)))
+    longest = 1
+    for first, past in zip(edges[::2], edges[1::2], strict=True):
+        sides = [samples[i] for i in (first - 1, past) if 0 <= i < samples.size]
+        if sides and top - min(sides) > 2.0 * resolution:
+            longest = max(longest, int(past - first))
+    return longest
+
+
+def _pulse_samples(force: FloatArray, main: int) -> int:
+    """Return the length of the pulse around `main` above a tenth of its peak."""
+    low = force < 0.1 * force[main]
+    before = np.flatnonzero(low[:main])
+    after = np.flatnonzero(low[main:])
+    first = int(before[-1]) if before.size else 0
+    past = main + int(after[0]) if after.size else force.size
+    return past - first
+
+
+def _largest_rise(force: FloatArray, width: int) -> tuple[float, int]:
+    """Return the largest rise after a fall from ``force[0]``, and where it peaks."""
+    valley = np.clip(np.minimum.accumulate(force), 0.0, None)
+    rise = force - valley
+    crests = np.flatnonzero((rise[1:-1] > 0.0) & _is_crest(force)) + 1
+    # Small crests of noise need no closer look.
+    crests = crests[rise[crests] > 0.005 * force[0]]
+    best, where = 0.0, 0
+    for crest in crests:
+        beside = force[max(0, crest - 2 * width) : crest + 2 * width + 1]
+        net = float(rise[crest] + min(0.0, float(beside.min())))
+        if net > best:
+            best, where = net, int(crest)
+    return best, where
+
+
+def _is_crest(force: FloatArray) -> BoolArray:
+    crest: BoolArray = (force[1:-1] >= force[:-2]) & (force[1:-1] > force[2:])
+    return crest
+
+
+def _overload(
+    recording: Recording, bound: tuple[int, int, int], limits: HitLimits, peak: float
+) -> Judged | None:
+    start, _, stop = bound
+    segment = recording.samples[:, start:stop]
+    for channel, samples in zip(recording.channels, segment, strict=True):
+        largest = float(np.abs(samples).max())
+        if channel.range is not None:
+            share = largest / channel.range
+            if share >= limits.overload_fraction:
+                return Judged(
+                    peak,
+                    Verdict.OVERLOAD,
+                    share,
+                    f"channel {channel.name!r} reaches {100 * share:.1f} % of its "
+                    f"range {channel.range:g} (limit "
+                    f"{100 * limits.overload_fraction:g} %)",
+                )
+        flat = longest_flat_top(samples)
+        if flat >= limits.flat_samples:
+            return Judged(
+                peak,
+                Verdict.OVERLOAD,
+                float(flat),
+                f"channel {channel.name!r} is clipped: {flat} equal consecutive "
+                f"samples at its extreme {largest:.4g} (limit {limits.flat_samples})",
+            )
+    return None
+
+
+def _double(
+    recording: Recording,
+    force: FloatArray,
+    bound: tuple[int, int, int],
+    limits: HitLimits,
+    peak: float,
+) -> Judged | None:
+    start, trigger, stop = bound
+    ratio, samples = second_peak(force[start:stop], trigger - start)
+    limit = max(limits.double_ratio, _NOISE_CREST * noise_level(force) / peak)
+    if ratio < limit:
+        return None
+    between = 1e3 * samples / recording.sample_rate
+    return Judged(
+        peak,
+        Verdict.DOUBLE,
+        ratio,
+        f"second force peak of {100 * ratio:.1f} % of the main one, "
+        f"{abs(between):.2f} ms {'after' if samples > 0 else 'before'} it "
+        f"(limit {100 * limit:.3g} %)",
+    )
+
+
+def _late(
+    recording: Recording, bound: tuple[int, int, int], shortest: int, peak: float
+) -> Judged | None:
+    _, trigger, stop = bound
+    if stop - trigger >= shortest:
+        return None
+    length = (stop - trigger) / recording.sample_rate
+    return Judged(
+        peak,
+        Verdict.LATE,
+        length,
+        f"only {length:.4g} s follow the trigger, a block needs "
+        f"{shortest / recording.sample_rate:.4g} s",
+    )
+
+
+def _weak(usual: float, limits: HitLimits, peak: float) -> Judged | None:
+    ratio = peak / usual
+    if ratio < limits.weak_ratio:
+        return Judged(
+            peak,
+            Verdict.WEAK,
+            ratio,
+            f"peak force {peak:.4g} N is {100 * ratio:.1f} % of the median peak "
+            f"{usual:.4g} N (limit {100 * limits.weak_ratio:.0f} %)",
+        )
+    if limits.weak_force is not None and peak < limits.weak_force:
+        return Judged(
+            peak,
+            Verdict.WEAK,
+            peak / limits.weak_force,
+            f"peak force {peak:.4g} N is below the limit {limits.weak_force:g} N",
+        )
+    return None
+
+
+def _good(
+    recording: Recording, force: FloatArray, bound: tuple[int, int, int], peak: float
+) -> Judged:
+    start, trigger, stop = bound
+    ratio, _ = second_peak(force[start:stop], trigger - start)
+    return Judged(
+        peak,
+        Verdict.OK,
+        ratio,
+        f"single clean pulse of {peak:.4g} N (second peak {100 * ratio:.2f} %)",
+    )

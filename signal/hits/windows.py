@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: MIT
+"""Windows for hammer hits: one for the force, and one for a response that rings on.
+
+The force window keeps the pulse and drops the noise after it. What comes before the
+pulse is not its effect: it is noise, or the structure still ringing from the last hit,
+and is dropped from all channels but for the few samples into which anti-alias filters
+smear the pulse. The exponential window
+is used only where the response has not decayed at the end of its block; force and
+response are both multiplied by it, so that what is measured is exactly H(s + decay
+rate): a pole moves by the decay rate, and moving it back removes the damping added.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.records.recordings import (
+    Hit,
+    Quantity,
+    Recording,
+    response_rows,
+)
+from jointbench.signal.hits.find_hits import accepted_hits
+
+# The pulse ends where the force falls below this share of its peak.
+_PULSE_END = 0.05
+# Pulse lengths kept at full weight: filter ringing belongs to the force.
+_PULSES_KEPT = 10
+_SAMPLES_KEPT = 64
+# Samples kept before the trigger, or this share of the pulse if that is longer.
+_LEAD_SAMPLES = 16
+_LEAD_PULSES = 0.25
+# A response that ends above this share of its start has not decayed.
+_DECAYED = 0.03
+# What an exponential window leaves of the response at the end of the block.
+_LEFT_AT_END = 0.005
+
+
+@dataclass(frozen=True, slots=True)
+class HammerWindow:
+    """Windows of one measurement.
+
+    Attributes:
+        force_width: time after the trigger in which the force is kept whole [s], then
+            tapered to zero over half as long; None for no force window.
+        decay_rate: rate of the exponential window on all channels [1/s], or None.
+        lead: all channels are set to zero up to this long before the trigger [s]; None
+            keeps everything.
+        reason: why these were chosen.
+    """
+
+    force_width: float | None = None
+    decay_rate: float | None = None
+    lead: float | None = None
+    reason: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class WindowRequest:
+    """What was asked of the windows; None chooses by the hits, 0 leaves one out.
+
+    Attributes:
+        force_width: time after the trigger in which the force is kept whole [s].
+        decay_rate: rate of the exponential window on all channels [1/s].
+        lead: time kept before the trigger [s].
+    """
+
+    force_width: float | None = None
+    decay_rate: float | None = None
+    lead: float | None = None
+
+
+def requested_window(
+    recordings: Sequence[Recording], request: WindowRequest
+) -> HammerWindow:
+    """Return the one window of several recordings, with what was asked for put in.
+
+    Args:
+        recordings: with hits found; those without an accepted hit have no say.
+        request: what is not left to the hits.
+    """
+    chosen = join_windows([choose_window(r) for r in recordings if accepted_hits(r)])
+    given = {
+        name: value or None
+        for name in ("force_width", "decay_rate", "lead")
+        if (value := getattr(request, name)) is not None
+    }
+    if not given:
+        return chosen
+    words = ", ".join(f"{name} by request" for name in given)
+    return replace(chosen, **given, reason=f"{words}; {chosen.reason}")
+
+
+def choose_window(recording: Recording) -> HammerWindow:
+    """Choose the windows from the accepted hits of a recording.
+
+    Args:
+        recording: with hits found.
+
+    Returns:
+        A force window of ten pulse lengths, and an exponential window only if a
+        response still rings at the end of the shortest block.
+    """
+    hits = accepted_hits(recording)
+    if not hits:
+        return HammerWindow(reason="no accepted hit")
+    pulse = max(_pulse_length(recording, hit) for hit in hits)
+    width = max(_PULSES_KEPT * pulse, _SAMPLES_KEPT) / recording.sample_rate
+    lead = max(_LEAD_SAMPLES, round(_LEAD_PULSES * pulse)) / recording.sample_rate
+    length = min(hit.stop - hit.start for hit in hits)
+    left = max(left_at_end(recording, hit, length) for hit in hits)
+    why = (
+        f"pulse of {1e3 * pulse / recording.sample_rate:.3g} ms; response ends at "
+        f"{100 * left:.2g} % of its start (limit {100 * _DECAYED:g} %)"
+    )
+    if left <= _DECAYED:
+        return HammerWindow(width, None, lead, why + ", no exponential window")
+    rate = float(np.log(left / _LEFT_AT_END)) * recording.sample_rate / length
+    return HammerWindow(
+        width, rate, lead, f"{why}, exponential window of {rate:.4g} 1/s"
+    )
+
+
+def join_windows(windows: Sequence[HammerWindow]) -> HammerWindow:
+    """Return the one window that serves several recordings: the widest, the fastest."""
+    widths = [w.force_width for w in windows if w.force_width is not None]
+    rates = [w.decay_rate for w in windows if w.decay_rate is not None]
+    reasons = dict.fromkeys(w.reason for w in windows if w.reason)
+    leads = [w.lead for w in windows if w.lead is not None]
+    return HammerWindow(
+        max(widths, default=None),
+        max(rates, default=None),
+        max(leads, default=None),
+        " | ".join(reasons),
+    )
+
+
+def apply_window(
+    window: HammerWindow,
+    force: FloatArray,
+    response: FloatArray,
+    *,
+    trigger: int,
+    sample_rate: float,
+) -> tuple[FloatArray, FloatArray]:
+    """Remove offsets from one hit's segment and window it.
+
+    Args:
+        window: what to apply.
+        force: [N], shape (n,).
+        response: SI units, shape (n_responses, n).
+        trigger: index of the trigger in the segment.
+        sample_rate: [Hz].
+
+    Returns:
+        Force without its pre-trigger mean and response without its mean over the
+        segment (which concerns line 0 only), both windowed; new arrays.
+    """
+    force = force - quiet_mean(force, trigger)
+    response = response - response.mean(axis=1, keepdims=True)
+    time = (np.arange(force.size) - trigger) / sample_rate
+    if window.lead is not None:
+        ours = time >= -window.lead
+        force, response = force * ours, response * ours
+    if window.force_width is not None:
+        force = force * _keep_then_taper(time, window.force_width)
+    if window.decay_rate is not None:
+        decay = np.exp(-window.decay_rate * time)
+        force, response = force * decay, response * decay
+    return force, response
+
+
+def quiet_mean(force: FloatArray, trigger: int) -> float:
+    """Return the mean force before the pulse [N]; the last quarter may ring already."""
+    quiet = force[: max(1, (3 * trigger) // 4)]
+    return float(quiet.mean())
+
+
+def _keep_then_taper(time: FloatArray, width: float) -> FloatArray:
+    """Return 1 up to `width`, then half a cosine down to 0 at 1.5 `width`."""
+    beyond = np.clip((time - width) / (0.5 * width), 0.0, 1.0)
+    window: FloatArray = 0.5 * (1.0 + np.cos(np.pi * beyond))
+    return window
+
+
+def _pulse_length(recording: Recording, hit: Hit) -> int:
+    """Return the samples from the trigger to the end of the pulse."""
+    force = recording.samples[recording.row(Quantity.FORCE), hit.start : hit.stop]
+    trigger = hit.trigger - hit.start
+    force = force - quiet_mean(force, trigger)
+    peak = trigger + int(np.argmax(force[trigger:]))
+    low = np.flatnonzero(force[peak:] < _PULSE_END * force[peak])
+    return peak + (int(low[0]) if low.size else 0) - trigger + 1
+
+
+def left_at_end(recording: Recording, hit: Hit, length: int | None = None) -> float:
+    """Return the rms of the last tenth over that of the first, largest response.
+
+    A last tenth as loud as the middle is a noise floor, not a ringing structure:
+    it counts as decayed unless it is half as loud as the start.
+
+    Args:
+        recording: of the hit.
+        hit: its segment.
+        length: of the block in samples, None for the whole segment.
+    """
+    stop = hit.stop if length is None else min(hit.start + length, hit.stop)
+    rows = list(response_rows(recording))
+    response = recording.samples[rows, hit.trigger : stop]
+    response = response - response.mean(axis=1, keepdims=True)
+    tenth = max(1, response.shape[1] // 10)
+    start, middle, end = (
+        np.sqrt(np.mean(response[:, first : first + tenth] ** 2, axis=1))
+        for first in (0, 4 * tenth, response.shape[1] - tenth)
+    )
+    start = np.where(start > 0.0, start, 1.0)
+    floor = (end > 0.9 * middle) & (end < 0.5 * start)
+    return float(np.max(np.where(floor, 0.0, end / start)))

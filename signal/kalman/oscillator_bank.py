@@ -1,0 +1,298 @@
+# SPDX-License-Identifier: MIT
+"""A bank of oscillators: tracks a response through samples that are missing.
+
+Each oscillator has the frequency and damping of a mode and is driven by white noise. As
+a filter it would bias damping (a third of it at low signal to noise), so it is used for
+what nothing else can do: to say what a channel would have read while it was out. All
+samples that were good stay as they were recorded.
+
+Source:
+    Harvey, Forecasting, Structural Time Series Models and the Kalman Filter (1989),
+    sec. 2.3.4 and 3.4.7 (missing observations); Rauch, Tung and Striebel (1965).
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import scipy.fft
+import scipy.optimize
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
+from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.acquisition.records.recordings import Recording, response_rows, step
+from jointbench.signal.kalman.process_models import StateModel
+
+# Samples that stand still in a row: never fewer are a drop-out, and so many count as
+# one before it is known how often a quiet channel repeats itself by its coarse steps.
+_LEAST_STILL, _MANY_STILL = 3, 8
+# Chance that a channel repeats itself so often anywhere in a record and is in order.
+_BY_CHANCE = 1e-6
+# Pieces of a record, of which the one that repeats itself most sets the standard.
+_SHARES = 16
+# A channel moves where at least this share of its samples differ from the one before.
+_MOVING = 0.5
+# A share of samples beyond which there is nothing left to track.
+_MOST_LOST = 0.3
+_LEAST_NOISE = 1e-9
+# Pieces of the spectrum that are looked at for noise, and how many hold it alone.
+_PIECES, _QUIET = 400, 0.1
+# Half-power half-widths either side of a resonance that tell how strong it is.
+_HALF_WIDTHS = 3.0
+# A gap is seen with this many decays of the slowest oscillator on either side.
+_DECAYS = 2.0
+_MOST_AROUND = 4000
+
+
+def bank_model(
+    samples: FloatArray,
+    frequency: FloatArray,
+    damping_ratio: FloatArray,
+    sample_rate: float,
+) -> tuple[StateModel, float]:
+    """Fit the strength of each oscillator to the spectrum of a response.
+
+    Args:
+        samples: shape (n_samples,).
+        frequency: of the oscillators [Hz], shape (n,).
+        damping_ratio: [-], shape (n,).
+        sample_rate: [Hz].
+
+    Returns:
+        The bank in units of the measurement noise, and that noise's variance [sample
+        unit squared].
+    """
+    turn = 2.0 * np.pi * frequency / sample_rate
+    decay = np.exp(-damping_ratio * turn)
+    size = 2 * frequency.size
+    transition = np.zeros((size, size))
+    for i, (angle, left) in enumerate(zip(turn, decay, strict=True)):
+        cosine, sine = left * np.cos(angle), left * np.sin(angle)
+        transition[2 * i : 2 * i + 2, 2 * i : 2 * i + 2] = [
+            [cosine, sine],
+            [-sine, cosine],
+        ]
+    power, noise = _strengths(samples, turn, decay)
+    push = np.repeat(power / noise, 2)
+    start = np.diag(push / (1.0 - np.repeat(decay, 2) ** 2))
+    observation = np.tile([1.0, 0.0], frequency.size)
+    return StateModel(transition, np.diag(push), observation, start), noise
+
+
+def find_dropouts(recording: Recording) -> BoolArray:
+    """Find where a channel stood still although it moves elsewhere.
+
+    Args:
+        recording: any channels; a force that rests at zero is none that moves.
+
+    Returns:
+        True for lost samples, shape (n_channels, n_samples).
+    """
+    lost = np.zeros(recording.samples.shape, bool)
+    for row in response_rows(recording):
+        samples = recording.samples[row]
+        still = np.diff(samples) == 0.0
+        if np.mean(~still) < _MOVING:
+            continue
+        runs, least = _runs(still), _least_still(still)
+        for first, last in runs:
+            if last - first >= least:
+                # The first of equal samples may be the last good one; zero is not.
+                begin = first if samples[first] == 0.0 else first + 1
+                lost[row, begin : last + 1] = True
+    return lost
+
+
+def _runs(still: BoolArray) -> IntArray:
+    """Return first and one past the last of each run of True, shape (n, 2)."""
+    edges = np.flatnonzero(np.diff(np.r_[0, still.view(np.int8), 0]))
+    return np.asarray(edges.reshape(-1, 2), np.int64)
+
+
+def _least_still(still: BoolArray) -> int:
+    """Return how many repeats in a row the steps of the converter do not explain.
+
+    A quiet channel that moves by a few steps repeats itself by chance, with the share p
+    of its samples; n samples then hold a run of m with a chance of at most n p^m.
+    """
+    single = still.copy()
+    for first, last in _runs(still):
+        if last - first >= _MANY_STILL:
+            single[first:last] = False
+    share = max(float(piece.mean()) for piece in np.array_split(single, _SHARES))
+    if share == 0.0:
+        return _LEAST_STILL
+    needed = np.log(_BY_CHANCE / still.size) / np.log(share)
+    return max(_LEAST_STILL, int(np.ceil(needed)))
+
+
+def repair_dropouts(
+    recording: Recording,
+    frequency: Sequence[float] | FloatArray,
+    damping_ratio: Sequence[float] | FloatArray,
+    *,
+    lost: BoolArray | None = None,
+) -> Recording:
+    """Fill lost samples with what a bank of oscillators makes of the good ones.
+
+    Args:
+        recording: any; forces are left alone.
+        frequency: of the modes that the responses ring with [Hz], shape (n,).
+        damping_ratio: of the modes [-], shape (n,).
+        lost: True for lost samples, shape (n_channels, n_samples); None to find them.
+
+    Returns:
+        The recording with the same good samples, and a step that says how many were
+        filled in each channel.
+
+    Raises:
+        BadData: a channel has lost more than 30 % of its samples.
+        UsageError: frequencies that do not lie between 0 and half the sample rate.
+    """
+    own, ratio = (
+        np.asarray(frequency, np.float64),
+        np.asarray(damping_ratio, np.float64),
+    )
+    _require_inside(own, ratio, recording.sample_rate)
+    missing = find_dropouts(recording) if lost is None else lost
+    samples, filled = recording.samples.copy(), {}
+    for row in response_rows(recording):
+        count = int(np.count_nonzero(missing[row]))
+        if count == 0:
+            continue
+        name = recording.channels[row].name
+        if count > _MOST_LOST * samples.shape[1]:
+            raise BadData(
+                f"recording {recording.name!r}: channel {name!r} has lost {count} of "
+                f"{samples.shape[1]} samples; measure again"
+            )
+        guess = track(samples[row], missing[row], own, ratio, recording.sample_rate)
+        samples[row, missing[row]] = guess[missing[row]]
+        filled[f"filled_{name}"] = count
+    if not filled:
+        return recording
+    done = step("repair_dropouts", oscillators=own.size, **filled)
+    return replace(recording, samples=samples, provenance=(*recording.provenance, done))
+
+
+def track(
+    samples: FloatArray,
+    lost: BoolArray,
+    frequency: FloatArray,
+    damping_ratio: FloatArray,
+    sample_rate: float,
+) -> FloatArray:
+    """Return what the bank makes of a response, lost samples included.
+
+    Args:
+        samples: shape (n_samples,); what stands at lost samples is not looked at.
+        lost: shape (n_samples,).
+        frequency: of the oscillators [Hz], shape (n,).
+        damping_ratio: of the oscillators [-], shape (n,).
+        sample_rate: [Hz].
+
+    Returns:
+        Smoothed response around the lost samples, as recorded elsewhere, shape
+        (n_samples,).
+    """
+    known = np.where(lost, 0.0, samples)
+    model, _ = bank_model(known, frequency, damping_ratio, sample_rate)
+    # What lies further off than a few decays has no say in a gap.
+    slowest = float(np.min(damping_ratio * frequency)) * 2.0 * np.pi / sample_rate
+    around = int(min(_MOST_AROUND, np.ceil(_DECAYS / max(slowest, 1e-12))))
+    result = samples.copy()
+    for first, last in _stretches(lost, around):
+        states = smooth_with_gaps(model, known[first:last], lost[first:last])
+        result[first:last] = states @ model.observation
+    return result
+
+
+def _stretches(lost: BoolArray, around: int) -> list[tuple[int, int]]:
+    """Return stretches of samples around the gaps, joined where they overlap."""
+    joined: list[tuple[int, int]] = []
+    for i in np.flatnonzero(lost):
+        first, last = max(0, int(i) - around), min(lost.size, int(i) + around + 1)
+        if joined and first <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], last)
+        else:
+            joined.append((first, last))
+    return joined
+
+
+def smooth_with_gaps(
+    model: StateModel, samples: FloatArray, lost: BoolArray
+) -> FloatArray:
+    """Run filter and smoother over samples of which some are lost.
+
+    Args:
+        model: measurement noise 1.
+        samples: shape (n_samples,).
+        lost: samples to predict only, shape (n_samples,).
+
+    Returns:
+        Smoothed states, shape (n_samples, n).
+    """
+    transition, observation = model.transition, model.observation
+    n_samples, n = samples.size, observation.size
+    states, spread = np.zeros((n_samples, n)), np.zeros((n_samples, n, n))
+    ahead = np.zeros((n_samples, n, n))
+    state, covariance, eye = np.zeros(n), model.start, np.eye(n)
+    for i in range(n_samples):
+        state = transition @ state
+        covariance = transition @ covariance @ transition.T + model.process
+        ahead[i] = covariance
+        if not lost[i]:
+            crossed = covariance @ observation
+            gain = crossed / (observation @ crossed + 1.0)
+            state = state + gain * (samples[i] - observation @ state)
+            kept = eye - np.outer(gain, observation)
+            covariance = kept @ covariance @ kept.T + np.outer(gain, gain)
+        states[i], spread[i] = state, covariance
+    back = np.linalg.solve(ahead[1:], transition @ spread[:-1]).transpose(0, 2, 1)
+    for i in range(n_samples - 2, -1, -1):
+        states[i] += back[i] @ (states[i + 1] - transition @ states[i])
+    return states
+
+
+def _require_inside(
+    frequency: FloatArray, damping_ratio: FloatArray, sample_rate: float
+) -> None:
+    inside = (frequency > 0.0) & (frequency < 0.5 * sample_rate)
+    if (
+        frequency.size == 0
+        or damping_ratio.shape != frequency.shape
+        or not inside.all()
+    ):
+        raise UsageError(
+            f"{frequency.size} frequencies and {damping_ratio.size} damping ratios for "
+            f"the oscillators; give as many of each, 0 to {0.5 * sample_rate:g} Hz"
+        )
+
+
+def _strengths(
+    samples: FloatArray, turn: FloatArray, decay: FloatArray
+) -> tuple[FloatArray, float]:
+    """Fit the power of each oscillator's push, and white noise, to the periodogram.
+
+    Only what stands around each resonance tells its push: a ring that was struck does
+    not fall off like one that is pushed at random, and its skirts would be taken for
+    noise, or for a neighbour. The quietest tenth of the band tells the noise.
+    """
+    spectrum = np.abs(scipy.fft.rfft(samples)) ** 2 / samples.size
+    angle = 2.0 * np.pi * np.arange(spectrum.size) / samples.size
+    pieces = np.array_split(spectrum[1:], min(_PIECES, spectrum.size - 1))
+    total = float(np.mean(samples**2)) + np.finfo(float).tiny
+    quiet = float(np.quantile([piece.mean() for piece in pieces], _QUIET))
+    noise = max(quiet, _LEAST_NOISE * total)
+    reach = np.maximum(_HALF_WIDTHS * -np.log(decay), 2.0 * angle[1])
+    level, design = np.empty(turn.size), np.empty((turn.size, turn.size))
+    for i, (own, width) in enumerate(zip(turn, reach, strict=True)):
+        around = np.abs(angle - own) <= width
+        z = np.exp(1j * angle[around])
+        level[i] = spectrum[around].mean()
+        for j, root in enumerate(decay * np.exp(1j * turn)):
+            both = np.abs(z - root) ** -2 + np.abs(z - root.conjugate()) ** -2
+            design[i, j] = 0.5 * both.mean()
+    level = np.maximum(level, np.finfo(float).tiny)
+    found = scipy.optimize.nnls(design / level[:, None], np.ones(turn.size))[0]
+    return np.maximum(found, _LEAST_NOISE * noise), noise

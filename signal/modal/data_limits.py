@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""What cannot be in the data, however they are fitted: length, rate, decay, time scale.
+
+Every function returns plain sentences for the person at the bench, none where all is
+well. A block of T seconds tells frequencies 1/T apart; what has not decayed within it
+hides its damping; nothing lies above half the sample rate.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.records.recordings import Quantity, Recording
+from jointbench.signal.hits.find_hits import accepted_hits
+from jointbench.signal.hits.windows import left_at_end
+from jointbench.signal.modal.modal_model import ModalModel
+
+SHORTEST_PULSE, LONGEST_PULSE = 10e-6, 50e-3
+"""Half-height duration of a hammer's force pulse [s]: a steel tip on a needle hammer to
+a sledge with the softest tip. Real tips on a 0.1 to 1 kg hammer give 0.1 to 5 ms."""
+_QUIET = 0.02
+"""Median force over its peak below which a record is made of pulses [-]."""
+_FEW_LINES = 200
+"""Lines in the band below which resolution limits what can be found."""
+_RESOLVED = 2.0
+"""Lines by which two modes must be apart to be told apart."""
+_PERIODS = 3.0
+"""Periods of a mode that a block must hold."""
+_RINGS_ON = 0.3
+"""Share of its start at which a response rings on when its block ends [-]."""
+_DECAYED = 0.03
+_TIME_CONSTANTS = 0.5
+"""Time constants of a mode that a block must hold for its damping."""
+_ALIAS_FREE = 1.0 / 2.56
+
+
+def time_scale_words(recordings: Sequence[Recording]) -> tuple[str, ...]:
+    """Say where the force pulses are no hammer's: the unit of time is probably wrong.
+
+    Args:
+        recordings: with or without judged hits.
+
+    Returns:
+        One sentence on the first such recording; none where all pulses may be a
+        hammer's, or the force is no pulse.
+    """
+    strange = [
+        (recording, duration)
+        for recording in recordings
+        if (duration := pulse_duration(recording)) is not None
+        and not SHORTEST_PULSE <= duration <= LONGEST_PULSE
+    ]
+    if not strange:
+        return ()
+    recording, duration = strange[0]
+    unit, other = ("s", "ms") if duration > LONGEST_PULSE else ("ms", "s")
+    more = f" (and {len(strange) - 1} more)" if len(strange) > 1 else ""
+    return (
+        f"recording {recording.name!r}{more}: the force pulse lasts "
+        f"{1e3 * duration:.3g} ms at half its height, a hammer's lasts "
+        f"{1e3 * SHORTEST_PULSE:g} to {1e3 * LONGEST_PULSE:g} ms; is its time in "
+        f"{other}, not {unit}? At {recording.sample_rate:.6g} Hz sample rate all "
+        f"frequencies are off by as much; import it again with 'time:{other}'",
+    )
+
+
+def pulse_duration(recording: Recording) -> float | None:
+    """Return how long the largest force pulse exceeds half its height [s].
+
+    None without one force channel, or where the force is no pulse.
+    """
+    rows = recording.rows(Quantity.FORCE)
+    width = _pulse_width(recording.samples[rows[0]]) if len(rows) == 1 else None
+    return None if width is None else width / recording.sample_rate
+
+
+def block_words(
+    recordings: Sequence[Recording], lines: int | None = None
+) -> tuple[str, ...]:
+    """Say what the length of the blocks and the decay in them keep from being found.
+
+    Args:
+        recordings: with judged hits.
+        lines: in the band that was fitted, None where there was no fit.
+    """
+    length = block_length(recordings)
+    if length is None:
+        return ()
+    words = []
+    count = lines if lines is not None else _FEW_LINES - 1
+    if count < _FEW_LINES:
+        known = "" if lines is None else f" ({lines} lines in the band)"
+        words.append(
+            f"a block of {_seconds(length)} has lines {1.0 / length:.3g} Hz "
+            f"apart{known}: modes closer than {_RESOLVED / length:.3g} Hz to each "
+            f"other and modes below {_PERIODS / length:.3g} Hz cannot be found in it; "
+            "record longer after each hit"
+        )
+    left = max(left_at_end(r, h) for r in recordings for h in accepted_hits(r))
+    if left > _RINGS_ON:
+        words.append(
+            f"the response is still at {100 * left:.0f} % of its start when the block "
+            f"of {_seconds(length)} ends: damping, and modes that overlap, are "
+            f"uncertain; record {_decay_time(left, length)}"
+        )
+    return tuple(words)
+
+
+def asked_words(
+    recordings: Sequence[Recording], band: tuple[float, float] | None
+) -> tuple[str, ...]:
+    """Say which part of a band that was asked for cannot be in the data.
+
+    Args:
+        recordings: with judged hits.
+        band: lowest and highest frequency asked for [Hz], or None.
+    """
+    length = block_length(recordings)
+    if band is None or length is None:
+        return ()
+    rate = recordings[0].sample_rate
+    words = []
+    if band[0] < _PERIODS / length and band[0] > 0.0:
+        words.append(
+            f"the band begins at {band[0]:g} Hz, but a block of {_seconds(length)} "
+            f"holds {_PERIODS:g} periods only from {_PERIODS / length:.3g} Hz on"
+        )
+    if band[1] > 0.5 * rate:
+        words.append(
+            f"the band ends at {band[1]:g} Hz, but at {rate:g} Hz sample rate nothing "
+            f"above {0.5 * rate:g} Hz is in the record; sample faster"
+        )
+    elif band[1] > _ALIAS_FREE * rate:
+        words.append(
+            f"the band ends at {band[1]:g} Hz; above {_ALIAS_FREE * rate:g} Hz (sample "
+            f"rate / 2.56) the anti-alias filters of usual converters act, and what "
+            "stands there may be folded down from above"
+        )
+    return tuple(words)
+
+
+def mode_words(recordings: Sequence[Recording], model: ModalModel) -> tuple[str, ...]:
+    """Say which modes found the blocks are too short for.
+
+    Args:
+        recordings: with judged hits.
+        model: the modes.
+    """
+    length = block_length(recordings)
+    if length is None:
+        return ()
+    frequency, ratio = model.natural_frequency, model.damping_ratio
+    slow = np.flatnonzero(frequency * length < _PERIODS) + 1
+    ringing = np.flatnonzero(2.0 * np.pi * frequency * ratio * length < _TIME_CONSTANTS)
+    words = []
+    if slow.size:
+        words.append(
+            f"{_modes(slow)}: fewer than {_PERIODS:g} periods in a block of "
+            f"{_seconds(length)}"
+        )
+    if ringing.size:
+        words.append(
+            f"{_modes(ringing + 1)}: hardly decays within {_seconds(length)}, so its "
+            "damping is not in the data"
+        )
+    return tuple(words)
+
+
+def block_length(recordings: Sequence[Recording]) -> float | None:
+    """Return the shortest time from trigger to end of an accepted hit [s], or None."""
+    return min(
+        (
+            (hit.stop - hit.trigger) / recording.sample_rate
+            for recording in recordings
+            for hit in accepted_hits(recording)
+        ),
+        default=None,
+    )
+
+
+def _pulse_width(samples: FloatArray) -> float | None:
+    """Return the samples for which the largest pulse exceeds half its peak."""
+    force = samples - np.median(samples)
+    at = int(np.argmax(force))
+    peak = float(force[at])
+    if peak <= 0.0 or float(np.median(np.abs(force))) > _QUIET * peak:
+        return None
+    low = np.flatnonzero(force < 0.5 * peak)
+    before, after = low[low < at], low[low > at]
+    if before.size == 0 or after.size == 0:
+        return None
+    return _crossing(force, int(after[0]), -1, peak) - _crossing(
+        force, int(before[-1]), 1, peak
+    )
+
+
+def _crossing(force: FloatArray, outside: int, inwards: int, peak: float) -> float:
+    """Return where the force passes half the peak, between two samples."""
+    low, high = force[outside], force[outside + inwards]
+    return outside + inwards * float((0.5 * peak - low) / (high - low))
+
+
+def _decay_time(left: float, length: float) -> str:
+    needed = np.log(_DECAYED) / np.log(left) if left < 1.0 else np.inf
+    if needed > 10.0:
+        return "more than ten times as long"
+    return f"about {_seconds(needed * length)}"
+
+
+def _seconds(time: float) -> str:
+    return f"{time:.3g} s" if time >= 0.1 else f"{1e3 * time:.3g} ms"
+
+
+def _modes(numbers: IntArray) -> str:
+    return f"mode{'s' * (numbers.size > 1)} {', '.join(map(str, numbers.tolist()))}"

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""How far each line of an FRF can be trusted: noise, and what no model explains.
+
+Where hits were averaged, their scatter tells the noise. Where only the FRF is given,
+its roughness does: from line to line a structure is smooth and noise is not. Neither
+sees that the structure is not quite what the model says; that is judged by what a fit
+leaves over.
+"""
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+
+# |x|^2 of complex normal noise has this median, as a share of its mean.
+_MEDIAN_OF_POWER = float(np.log(2.0))
+# Lines over which noise is taken to be alike: few where resonances stand in the way.
+_ROUGHNESS_LINES = 41
+_RESIDUAL_LINES = 164
+_LEVEL_LINES = 11
+_MISFIT_LINES = 41
+# No FRF is known better than this share of its own level: converters, cables.
+_BEST = 1e-7
+
+
+def line_noise(
+    response: ComplexArray,
+    scatter: FloatArray | None,
+    residual: ComplexArray | None = None,
+) -> FloatArray:
+    """Return the noise variance of every line.
+
+    Args:
+        response: FRF, shape (n_frf, n_lines).
+        scatter: variance from the scatter between hits, same shape, or None.
+        residual: what a fit left over, same shape, if there was one: the response is
+            rough where it resonates, the residual only where it is noisy.
+
+    Returns:
+        E|error|^2, same shape, positive everywhere.
+    """
+    if scatter is not None:
+        noise = scatter
+    elif residual is None:
+        noise = roughness(response)
+    else:
+        noise = roughness(residual, alike=_RESIDUAL_LINES)
+    floor = (_BEST**2) * local_level(response)
+    smallest = float(floor.max()) * 1e-12 or 1.0
+    return np.asarray(np.maximum(noise, np.maximum(floor, smallest)))
+
+
+def roughness(response: ComplexArray, *, alike: int = _ROUGHNESS_LINES) -> FloatArray:
+    """Estimate the noise variance from second differences along the lines.
+
+    A median over a block of lines passes over resonances, which are narrow.
+
+    Args:
+        response: FRF, shape (n_frf, n_lines).
+        alike: lines over which the noise is taken to be the same.
+
+    Returns:
+        E|error|^2, same shape.
+    """
+    difference = response[:, :-2] - 2.0 * response[:, 1:-1] + response[:, 2:]
+    power = np.abs(difference) ** 2 / (6.0 * _MEDIAN_OF_POWER)
+    blocks = max(1, power.shape[1] // alike)
+    pieces = np.array_split(power, blocks, axis=1)
+    middle = np.array([np.median(piece, axis=1) for piece in pieces])
+    centre = np.cumsum([p.shape[1] for p in pieces]) - 0.5 * pieces[0].shape[1] + 1.0
+    line = np.arange(response.shape[1])
+    return np.array([np.interp(line, centre, row) for row in middle.T])
+
+
+def local_level(response: ComplexArray) -> FloatArray:
+    """Return |response|^2 averaged over a few lines, same shape."""
+    return np.asarray(
+        uniform_filter1d(np.abs(response) ** 2, _LEVEL_LINES, axis=1, mode="nearest")
+    )
+
+
+def local_misfit(residual: ComplexArray) -> FloatArray:
+    """Return |residual|^2 averaged over the lines around, same shape."""
+    return np.asarray(
+        uniform_filter1d(np.abs(residual) ** 2, _MISFIT_LINES, axis=1, mode="nearest")
+    )
+
+
+def model_error(
+    residual: ComplexArray, noise: FloatArray, response: ComplexArray
+) -> float:
+    """Estimate the relative error of the model itself.
+
+    Args:
+        residual: what a fit left over, shape (n_frf, n_lines).
+        noise: variance of the lines, same shape.
+        response: the FRF, same shape.
+
+    Returns:
+        Rms model error as a share of the local level of the FRF [-]; 0 where noise
+        explains the residual.
+    """
+    excess = np.abs(residual) ** 2 / _MEDIAN_OF_POWER - noise
+    share = float(np.median(excess / local_level(response)))
+    return float(np.sqrt(max(0.0, share)))

@@ -1,0 +1,321 @@
+# SPDX-License-Identifier: MIT
+"""Poles by least squares on a right matrix fraction, all orders in one go (LSCF).
+
+The FRF is written as H = B(z) A(z)^-1 with z on the unit circle: A has one column an
+input (poly-reference), B one row an output. Eliminating B leaves one small Hermitian
+matrix, made of Toeplitz blocks that an FFT fills; its Cholesky factor nests, so that
+every order is a leading block of the largest.
+
+Two choices matter:
+
+- a band that begins next to zero can be laid on half the circle with real
+  coefficients, as in the textbook, or around nearly the whole circle with complex ones.
+  The first knows the mirror image of a low mode, whose flank else costs that mode some
+  damping; the second has one pole a mode instead of two, and conditions a band far from
+  zero as well as one that starts there;
+- the constant coefficient of A is the identity, not the highest. The poles made of
+  noise then fall outside the circle, and what is left inside is nearly all structure
+  (Cauberghe, Applied frequency-domain system identification, 2004, ch. 4).
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy.fft
+import scipy.linalg
+from numpy.typing import NDArray
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.signal.modal.matrix_roots import inverse_roots
+
+# Share of the circle left open between the ends of the band.
+_GAP = 0.05
+# A band that begins below this share of its end begins next to zero.
+_NEXT_TO_ZERO = 0.1
+# Lines this close to whole multiples of their pitch are taken to be such.
+_WHOLE = 1e-9
+# Keeps the normal equations definite where clean data leave them singular.
+_RIDGE = 1e-14
+# Spectra transformed in one go: fast, and small beside the FRF itself.
+_SERIES_AT_ONCE = 128
+Progress = Callable[[str, float], None]
+"""Called with what is being done, and the share of it that is done [-]."""
+_TINY = float(np.finfo(float).tiny)
+Coefficients = NDArray[np.inexact[Any]]
+"""Real on half the circle, complex on the whole."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OrderPoles:
+    """Poles of one order inside the band, by ascending frequency.
+
+    Attributes:
+        order: degree of the polynomial; times the number of inputs = poles found,
+            mirror images among them where these are fitted along.
+        pole: [rad/s], shape (n_poles,), those with positive damping only.
+        shape: response at each pole, unit length, shape (n_poles, n_outputs).
+    """
+
+    order: int
+    pole: ComplexArray
+    shape: ComplexArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Reduced:
+    """Normal equations of the largest order, before B is eliminated.
+
+    Attributes:
+        factor: lower Cholesky factor of R, shape (n + 1, n + 1).
+        cross: factor^-1 S for each output, shape (n + 1, n_outputs, (n + 1) n_inputs).
+        square: sum of T over outputs, shape ((n + 1) n_inputs,) * 2.
+        n_inputs: columns of A.
+    """
+
+    factor: Coefficients
+    cross: Coefficients
+    square: Coefficients
+    n_inputs: int
+
+
+@dataclass(frozen=True, slots=True)
+class _Circle:
+    """The map between frequency and the unit circle, z = exp((s - j centre) period).
+
+    Half of it, with centre zero, is the band's own and half its mirror image's.
+    """
+
+    centre: float
+    period: float
+    half: bool
+
+    @classmethod
+    def around(cls, frequency: FloatArray, half: bool | None) -> "_Circle":
+        """Lay a band around the circle but for a small gap, at an FFT's pitch."""
+        low, high = 2.0 * np.pi * frequency[[0, -1]]
+        pitch = (high - low) / (frequency.size - 1)
+        if half is None:
+            half = bool(low < _NEXT_TO_ZERO * high)
+        lines = 2.0 * high / pitch if half else float(frequency.size)
+        points = scipy.fft.next_fast_len(math.ceil(lines * (1.0 + _GAP)), real=half)
+        period = 2.0 * np.pi / (points * pitch)
+        return cls(0.0 if half else 0.5 * (low + high), period, half)
+
+    def angle(self, frequency: FloatArray) -> FloatArray:
+        """Return the angle of z at frequencies [Hz]."""
+        return (2.0 * np.pi * frequency - self.centre) * self.period
+
+    def pole(self, root: ComplexArray) -> ComplexArray:
+        """Return the pole [rad/s] of a root of A."""
+        return np.asarray(np.log(root) / self.period + 1j * self.centre)
+
+    def moments(
+        self, frequency: FloatArray, series: NDArray[Any], order: int
+    ) -> Coefficients:
+        """Return sum over lines of series times z^k, k = -order..order, one row each.
+
+        Half the circle takes the real part: half the sum with the mirror image. Evenly
+        spaced lines take one FFT; others the sum itself.
+        """
+        angle, lags = self.angle(frequency), np.arange(-order, order + 1)
+        pitch = np.diff(angle)
+        if np.ptp(pitch) > 1e-9 * pitch[0] * angle.size:
+            sums = series @ np.exp(1j * np.outer(angle, lags))
+            return np.asarray(sums.real if self.half else sums)
+        points = round(2.0 * np.pi / float(pitch.mean()))
+        first = angle[0] / float(pitch.mean())
+        if self.half and abs(first - round(first)) < _WHOLE:
+            padded = np.zeros((series.shape[0], points // 2 + 1), series.dtype)
+            padded[:, round(first) : round(first) + angle.size] = series
+            sums = 0.5 * points * scipy.fft.irfft(padded, points, axis=1)
+            return np.asarray(sums[:, lags % points] + 0.5 * padded[:, :1].real)
+        sums = points * scipy.fft.ifft(series, points, axis=1)[:, lags % points]
+        sums = sums * np.exp(1j * angle[0] * lags)
+        return np.asarray(sums.real if self.half else sums)
+
+
+def fit_poles(
+    frequency: FloatArray,
+    response: ComplexArray,
+    orders: Sequence[int],
+    *,
+    weight: FloatArray | None = None,
+    scalar: bool = False,
+    mirrored: bool | None = None,
+    added_decay_rate: float = 0.0,
+    progress: Progress | None = None,
+) -> tuple[OrderPoles, ...]:
+    """Fit poles of several orders at once.
+
+    Args:
+        frequency: lines of the band [Hz], shape (n_lines,).
+        response: FRF on them, any kind, shape (n_outputs, n_inputs, n_lines).
+        orders: degrees, each at least 1; ascending.
+        weight: of each line [-], shape (n_lines,), or None for all alike (see
+            `line_weights`).
+        scalar: one denominator for all FRFs, each an output of its own: for many
+            inputs, or inputs that were not measured together. Close modes then share
+            the order with all others, and shapes have n_outputs n_inputs components.
+        mirrored: whether the mirror images of the poles, at negative frequencies, are
+            fitted along: real coefficients on half the circle. None does so where the
+            band begins below a tenth of its end.
+        added_decay_rate: of the exponential window [1/s], taken off the poles.
+        progress: told what is done, and the share of it; None for nobody.
+
+    Returns:
+        For each order the poles inside the band with positive damping.
+
+    Source:
+        Peeters, Van der Auweraer, Guillaume and Leuridan, Shock and Vibration 11
+        (2004) 395, eq. (9) to (19).
+    """
+    if scalar:
+        response = response.reshape(-1, 1, frequency.size)
+    circle = _Circle.around(frequency, mirrored)
+    largest = max(orders)
+    scale = np.array([[[np.linalg.norm(r)]] for r in response])
+    scale /= math.sqrt(response[0].size)
+    line_weight = np.ones_like(frequency) if weight is None else weight
+    reduced = _normal_equations(
+        circle,
+        frequency,
+        response,
+        np.where(scale > 0.0, scale, 1.0),
+        line_weight,
+        largest,
+        progress,
+    )
+    band = (float(frequency[0]), float(frequency[-1]))
+    found, inverse = [], None
+    for order, matrix in _nested(reduced, orders):
+        denominator = _denominator(matrix, reduced.n_inputs)
+        inverse = inverse_roots(denominator.astype(complex), inverse)
+        finite = np.where(np.abs(inverse) > _TINY, inverse, _TINY)
+        roots = np.asarray(1.0 / finite, np.complex128)
+        kept = _modes_among(circle.pole(roots) + added_decay_rate, band)
+        shape = _shapes(reduced, denominator, roots[kept]) * scale.ravel()
+        pole = circle.pole(roots[kept]) + added_decay_rate
+        found.append(OrderPoles(order, pole, _unit(shape)))
+        if progress is not None:
+            progress("finding poles", (order / largest) ** 2)
+    return tuple(found)
+
+
+def _modes_among(pole: ComplexArray, band: tuple[float, float]) -> IntArray:
+    """Return which poles can be modes, by ascending frequency."""
+    frequency = pole.imag / (2.0 * np.pi)
+    kept = (pole.real < 0.0) & (frequency >= band[0]) & (frequency <= band[1])
+    kept &= np.abs(pole) <= 2.0 * np.pi * band[1]
+    chosen = np.flatnonzero(kept)
+    return np.asarray(chosen[np.argsort(frequency[chosen])])
+
+
+def _unit(shape: ComplexArray) -> ComplexArray:
+    """Return shapes of unit length, one a row."""
+    length = np.linalg.norm(shape, axis=1, keepdims=True)
+    return np.asarray(shape / np.where(length > 0, length, 1.0))
+
+
+def _normal_equations(
+    circle: _Circle,
+    frequency: FloatArray,
+    response: ComplexArray,
+    scale: FloatArray,
+    weight: FloatArray,
+    order: int,
+    progress: Progress | None,
+) -> _Reduced:
+    """Fill R, S and T, a few outputs at a time, and eliminate R."""
+    n_outputs, n_inputs, n_lines = response.shape
+    size = order + 1
+    plain = circle.moments(frequency, weight[None], order)
+    factor = np.asarray(np.linalg.cholesky(_regular(_blocks(plain, size)[0])))
+    inner = np.zeros((n_inputs, n_inputs, n_lines), complex)
+    cross = np.empty((size, n_outputs, size * n_inputs), factor.dtype)
+    chunk = max(1, _SERIES_AT_ONCE // n_inputs)
+    for first in range(0, n_outputs, chunk):
+        part = response[first : first + chunk] / scale[first : first + chunk]
+        inner += np.einsum("oil,ojl->ijl", part.conj(), part)
+        series = (part * weight).reshape(-1, n_lines)
+        moments = circle.moments(frequency, series, order)
+        blocks = _blocks(-moments, size)
+        blocks = blocks.reshape(-1, n_inputs, size, size).transpose(2, 0, 3, 1)
+        solved = scipy.linalg.solve_triangular(
+            factor, blocks.reshape(size, -1), lower=True
+        )
+        cross[:, first : first + chunk] = solved.reshape(size, -1, size * n_inputs)
+        if progress is not None:
+            progress("adding up FRFs", min(1.0, (first + chunk) / n_outputs))
+    moments = circle.moments(frequency, (inner * weight).reshape(-1, n_lines), order)
+    square = _blocks(moments, size)
+    square = square.reshape(n_inputs, n_inputs, size, size).transpose(2, 0, 3, 1)
+    return _Reduced(
+        factor, cross, square.reshape(size * n_inputs, size * n_inputs), n_inputs
+    )
+
+
+def _blocks(moments: Coefficients, size: int) -> Coefficients:
+    """Return Toeplitz blocks with entry (a, b) = moment of z^(b - a), one a row."""
+    place = np.arange(size)
+    return np.asarray(moments[:, size - 1 + place - place[:, None]])
+
+
+def _regular(matrix: Coefficients) -> Coefficients:
+    """Return the matrix with a ridge far below anything that was measured."""
+    ridge = _RIDGE * np.trace(matrix).real
+    return np.asarray(matrix + ridge * np.eye(matrix.shape[0]))
+
+
+def _nested(
+    reduced: _Reduced, orders: Sequence[int]
+) -> Iterator[tuple[int, Coefficients]]:
+    """Yield each order with its reduced matrix, growing by one row of B a step."""
+    wanted = set(orders)
+    eliminated = np.zeros_like(reduced.square)
+    for row in range(max(orders) + 1):
+        rows = reduced.cross[row]
+        eliminated += rows.conj().T @ rows
+        if row in wanted:
+            size = (row + 1) * reduced.n_inputs
+            yield row, (reduced.square - eliminated)[:size, :size]
+
+
+def _denominator(matrix: Coefficients, n_inputs: int) -> Coefficients:
+    """Return A with identity as its constant, shape (order + 1, n_inputs, n_inputs)."""
+    known = matrix[n_inputs:, :n_inputs]
+    rest = _solved(_regular(matrix[n_inputs:, n_inputs:]), -known)
+    stacked = np.concatenate((np.eye(n_inputs), rest))
+    return np.asarray(stacked.reshape(-1, n_inputs, n_inputs))
+
+
+def _solved(matrix: Coefficients, right: Coefficients) -> Coefficients:
+    """Solve a system that is positive definite, but for rounding on exact data."""
+    posv: Any = scipy.linalg.get_lapack_funcs("posv", (matrix, right))
+    found, failed = posv(matrix, right, lower=True)[1:]
+    if failed:
+        found = scipy.linalg.solve(matrix, right, assume_a="her")
+    return np.asarray(found)
+
+
+def _shapes(
+    reduced: _Reduced, denominator: Coefficients, roots: ComplexArray
+) -> ComplexArray:
+    """Return B(z) v for each root z, where A(z) v = 0; shape (n_roots, n_outputs)."""
+    size, n_inputs, _ = denominator.shape
+    n_outputs = reduced.cross.shape[1]
+    if roots.size == 0 or n_outputs == 1:
+        return np.ones((roots.size, n_outputs), complex)
+    powers = np.vander(roots, size, increasing=True)
+    at_roots = (powers @ denominator.reshape(size, -1)).reshape(-1, n_inputs, n_inputs)
+    null = np.linalg.svd(at_roots)[2][:, -1].conj()
+    moved = reduced.cross[:size, :, : size * n_inputs] @ denominator.reshape(
+        -1, n_inputs
+    )
+    numerator = -scipy.linalg.solve_triangular(
+        reduced.factor[:size, :size].conj().T, moved.reshape(size, -1), lower=False
+    )
+    residues = (powers @ numerator).reshape(-1, n_outputs, n_inputs)
+    return np.asarray(np.einsum("roi,ri->ro", residues, null))

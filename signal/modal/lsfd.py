@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: MIT
+"""Residues of known poles by weighted linear least squares (LSFD), and their FRF.
+
+The model, with s = j omega + added decay rate and q = 0, 1, 2 for receptance, mobility
+and accelerance, is
+
+    H(s) = s^q [ sum_r R_r / (s - p_r) + conj(R_r) / (s - conj(p_r))
+                 + lower / s^2 + lower' / s + upper + upper' s + ... s^6 ]
+
+so that residues are always those of receptance, whatever was measured, and the window's
+damping never enters them. The residual terms have real coefficients: mass below the
+band, stiffness above it, and how that stiffness softens and is damped towards the modes
+above. Two terms only, as the textbooks have it, let strong modes beyond the band bias
+the damping of those within.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
+from jointbench.signal.frf.frf import Frf
+
+# Powers of s of the residual terms, beside the derivative of the FRF's kind.
+_RESIDUAL_POWERS = (-2, -1, 0, 1, 2, 3, 4, 5, 6)
+_RIDGE = 1e-13
+# Up to here the products of columns cost more than they save.
+_FEW_FRFS = 8
+# Products of columns are formed for this many lines at a time, to stay in the cache.
+_LINES_AT_ONCE = 512
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrfLines:
+    """The lines of an FRF that are being fitted.
+
+    Attributes:
+        laplace: s of each line [rad/s], shape (n_lines,).
+        response: FRF, one row for each pair of output and input, shape
+            (n_frf, n_lines).
+        derivatives: q of the FRF's kind.
+    """
+
+    laplace: ComplexArray
+    response: ComplexArray
+    derivatives: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LinearFit:
+    """Residues and residual terms of every FRF, and how well they are known.
+
+    Attributes:
+        coefficients: Re and Im of each residue, pole by pole, then the residual terms,
+            shape (n_frf, 2 n_modes + 9); residual terms on orthonormal columns.
+        synthesis: the fitted FRF, shape (n_frf, n_lines).
+        significance: chi-squared lost if a mode were left out, summed over FRFs,
+            shape (n_modes,).
+    """
+
+    coefficients: FloatArray
+    synthesis: ComplexArray
+    significance: FloatArray
+
+    def of_modes(self, n_modes: int) -> "LinearFit":
+        """Return the same fit with only its first poles counted as modes."""
+        return replace(self, significance=self.significance[:n_modes])
+
+    def residues(self) -> ComplexArray:
+        """Return receptance residues, shape (n_modes, n_frf)."""
+        modal = self.coefficients[:, : 2 * self.significance.size]
+        return np.asarray((modal[:, ::2] + 1j * modal[:, 1::2]).T)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ResidualTerms:
+    """What lies below and above the band, as seen in it.
+
+    Attributes:
+        lower: of the receptance, lower / s^2 [1/kg]: one over the mass that modes
+            below the band, or a free body, put in; shape (n_frf,).
+        upper: of the receptance [m/N]: the compliance of the modes above, shape
+            (n_frf,).
+    """
+
+    lower: FloatArray
+    upper: FloatArray
+
+
+def residual_terms(lines: FrfLines, fit: LinearFit) -> ResidualTerms:
+    """Return the lower and upper residual of every FRF.
+
+    Args:
+        lines: what was fitted.
+        fit: of `fit_residues`.
+
+    Returns:
+        The two classical terms; the further powers of s that the fit carries beside
+        them are left out.
+    """
+    n_modal = 2 * fit.significance.size
+    s = lines.laplace
+    used = _residual_terms(s, s**lines.derivatives)
+    parts = fit.coefficients[:, n_modal:] @ used.T
+    scale = np.abs(s[s.size // 2])
+    powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
+    # The fit has these columns made orthogonal to each other: taken apart again here.
+    columns = stacked(powers * (s**lines.derivatives)[:, None])
+    size = np.linalg.norm(columns, axis=0)
+    terms = np.linalg.lstsq(columns / size, stacked(parts.T), rcond=None)[0].T / size
+    lower = terms[:, _RESIDUAL_POWERS.index(-2)] * scale**2
+    return ResidualTerms(lower, terms[:, _RESIDUAL_POWERS.index(0)])
+
+
+def measured_width(lines: FrfLines, pole: ComplexArray) -> FloatArray:
+    """Return half the half-power width of each peak as measured [rad/s].
+
+    The exponential window's decay rate is part of it.
+    """
+    return np.asarray(np.abs(pole.real - lines.laplace[0].real))
+
+
+def lines_of(frf: Frf, keep: BoolArray) -> FrfLines:
+    """Take the kept lines of an FRF.
+
+    Args:
+        frf: any kind.
+        keep: True for the lines to fit, shape (n_lines,).
+
+    Returns:
+        The lines with one row a pair of output and input, inputs varying fastest.
+    """
+    laplace = np.asarray(2j * np.pi * frf.frequency[keep] + frf.added_decay_rate)
+    response = frf.response[:, :, keep].reshape(-1, laplace.size)
+    return FrfLines(laplace, response, frf.kind.derivatives)
+
+
+def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+    """Return the model's columns: two for each pole, then the residual terms.
+
+    Args:
+        lines: what is fitted.
+        pole: [rad/s], shape (n_modes,).
+
+    Returns:
+        Shape (n_lines, 2 n_modes + 9).
+    """
+    s = lines.laplace
+    own, mirrored = (1.0 / (s[:, None] - p) for p in (pole, pole.conj()))
+    columns = np.empty((s.size, modal_size(pole)), complex)
+    columns[:, 0 : 2 * pole.size : 2] = own + mirrored
+    columns[:, 1 : 2 * pole.size : 2] = 1j * (own - mirrored)
+    power = s**lines.derivatives
+    columns[:, : 2 * pole.size] *= power[:, None]
+    columns[:, 2 * pole.size :] = _residual_terms(s, power)
+    return columns
+
+
+def _residual_terms(s: ComplexArray, power: ComplexArray) -> ComplexArray:
+    """Return columns that span the residual terms, orthonormal over the lines.
+
+    Powers of s as they stand are nearly one another's multiples.
+    """
+    scale = np.abs(s[s.size // 2])
+    terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
+    rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
+    return unstacked(np.linalg.qr(rows)[0])
+
+
+def modal_size(pole: ComplexArray) -> int:
+    """Return how many columns `modal_basis` has for these poles."""
+    return 2 * pole.size + len(_RESIDUAL_POWERS)
+
+
+def stacked(values: ComplexArray) -> FloatArray:
+    """Return real and imaginary parts one below the other, as real rows."""
+    return np.concatenate((values.real, values.imag))
+
+
+def unstacked(rows: FloatArray) -> ComplexArray:
+    """Undo `stacked`."""
+    half = rows.shape[0] // 2
+    return np.asarray(rows[:half] + 1j * rows[half:])
+
+
+def fit_residues(
+    lines: FrfLines,
+    pole: ComplexArray,
+    variance: FloatArray,
+    *,
+    real_modes: bool = False,
+) -> LinearFit:
+    """Fit residues and residual terms to every FRF.
+
+    Args:
+        lines: what is fitted.
+        pole: [rad/s], shape (n_modes,).
+        variance: E|error|^2 of each line, shape (n_frf, n_lines).
+        real_modes: residues purely imaginary, as those of a proportionally damped
+            structure are: half the unknowns, and a bias where damping is not so.
+
+    Returns:
+        The fit, its synthesis on the same lines, and the weight of each mode in it.
+
+    Source:
+        Heylen, Lammens and Sas, Modal Analysis Theory and Testing (1997), A.3.3.
+    """
+    basis = modal_basis(lines, pole)
+    weight = 2.0 / variance
+    used = np.ones(basis.shape[1], bool)
+    if real_modes:
+        used[: 2 * pole.size : 2] = False
+    some = np.ascontiguousarray(basis[:, used])
+    solved = inverses(gram_matrices(some, weight))
+    right = correlations(some, weight * lines.response)
+    n_frf, size = variance.shape[0], basis.shape[1]
+    coefficients, inverse = (
+        np.zeros((n_frf, size)),
+        np.tile(np.eye(size), (n_frf, 1, 1)),
+    )
+    coefficients[:, used] = (solved @ right[:, :, None])[:, :, 0]
+    inverse[np.ix_(np.arange(n_frf), used, used)] = solved
+    significance = _wald(coefficients, inverse, pole.size)
+    return LinearFit(coefficients, coefficients @ basis.T, significance)
+
+
+def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
+    """Return Re(columns^H diag(weight) columns) for all rows of weights.
+
+    With many rows, each product of two columns serves them all.
+
+    Args:
+        columns: shape (n_lines, n).
+        weight: shape (n_frf, n_lines).
+
+    Returns:
+        Shape (n_frf, n, n).
+    """
+    if weight.shape[0] <= _FEW_FRFS:
+        rows = stacked(columns)
+        scaled = (rows * np.sqrt(np.tile(w, 2))[:, None] for w in weight)
+        return np.array([part.T @ part for part in scaled])
+    size = columns.shape[1]
+    upper = np.triu_indices(size)
+    packed = np.zeros((weight.shape[0], upper[0].size))
+    for first in range(0, columns.shape[0], _LINES_AT_ONCE):
+        part = np.ascontiguousarray(columns[first : first + _LINES_AT_ONCE].T)
+        real, imag = part.real.copy(), part.imag.copy()
+        pairs = [real[i] * real[i:] + imag[i] * imag[i:] for i in range(size)]
+        packed += weight[:, first : first + part.shape[1]] @ np.vstack(pairs).T
+    gram = np.empty((weight.shape[0], size, size))
+    gram[:, upper[0], upper[1]] = gram[:, upper[1], upper[0]] = packed
+    return gram
+
+
+def correlations(columns: ComplexArray, values: ComplexArray) -> FloatArray:
+    """Return Re(columns^H values) row by row, shape (n_frf, n)."""
+    return np.asarray((values @ columns.conj()).real)
+
+
+def inverses(gram: FloatArray) -> FloatArray:
+    """Invert Gram matrices after scaling them to a unit diagonal.
+
+    Args:
+        gram: symmetric, shape (..., n, n).
+
+    Returns:
+        Same shape.
+    """
+    # Rounding can leave the square of next to nothing below zero.
+    diagonal = np.sqrt(np.maximum(np.einsum("...ii->...i", gram), 0.0))
+    scale = 1.0 / np.where(diagonal > 0.0, diagonal, 1.0)
+    outer = scale[..., :, None] * scale[..., None, :]
+    return np.asarray(
+        np.linalg.inv(gram * outer + _RIDGE * np.eye(gram.shape[-1])) * outer
+    )
+
+
+def _wald(coefficients: FloatArray, inverse: FloatArray, n_modes: int) -> FloatArray:
+    """Return the chi-squared of each residue against zero, summed over FRFs."""
+    pairs = coefficients[:, : 2 * n_modes].reshape(coefficients.shape[0], n_modes, 2)
+    index = np.arange(2 * n_modes).reshape(n_modes, 2)
+    blocks = inverse[:, index[:, :, None], index[:, None, :]]
+    solved = np.linalg.solve(blocks, pairs[..., None])[..., 0]
+    return np.asarray(np.sum(pairs * solved, axis=(0, 2)))

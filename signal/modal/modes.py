@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: MIT
+"""Modes of a structure from its FRF: the whole way, from lines to a modal model."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
+from jointbench.acquisition.basics.errors import NoModeFound, UsageError
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.records.recordings import Step, step
+from jointbench.signal.frf.band import choose_band
+from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.line_weights import weights_of
+from jointbench.signal.kalman.process_models import StageGain
+from jointbench.signal.kalman.smoothing import stage_gain_of
+from jointbench.signal.modal.lscf import Progress, fit_poles
+from jointbench.signal.modal.lsfd import FrfLines, lines_of
+from jointbench.signal.modal.manual_selection import Choices, overrule
+from jointbench.signal.modal.modal_model import ModalModel, build_model
+from jointbench.signal.modal.mode_selection import FittedModes, fit_modes
+from jointbench.signal.modal.stabilisation import (
+    Stabilisation,
+    StabilityLimits,
+    candidates,
+    stabilise,
+)
+
+_LOWEST_ORDER = 2
+_HIGHEST_ORDER = 100
+_ORDERS_TRIED = 50
+# An order needs at least this many lines for each coefficient it adds.
+_LINES_PER_ORDER = 6
+# Beyond these an order that is asked for cannot be meant: noise, or hours.
+_LARGEST_ORDER = 200
+_LEAST_LINES_PER_ORDER = 2
+
+
+@dataclass(frozen=True, slots=True)
+class ModalSettings:
+    """How modes are looked for.
+
+    Attributes:
+        band: lowest and highest frequency [Hz], or None for the automatic choice.
+        highest_order: of the fit, 2 or more, or None for 100 over the number of inputs.
+        stability: when a pole counts as stable.
+        refine: whether poles are refined by nonlinear least squares.
+        choices: poles kept or dropped by hand.
+    """
+
+    band: tuple[float, float] | None = None
+    highest_order: int | None = None
+    stability: StabilityLimits = field(default_factory=StabilityLimits)
+    refine: bool = True
+    choices: Choices = field(default_factory=Choices)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModalResult:
+    """What `identify_modes` found and how far it goes.
+
+    Attributes:
+        model: the modes.
+        stabilisation: poles of all orders.
+        synthesis: FRF of the model on the lines of the band.
+        synthesis_error: rms over all pairs of what the synthesis misses, as a share of
+            the rms of the FRF on that line [-], shape (n_lines,).
+        settings: as asked for.
+        band: lowest and highest line that was fitted [Hz].
+        stage_gain: what the Kalman stage did at each mode, or None without one.
+    """
+
+    model: ModalModel
+    stabilisation: Stabilisation
+    synthesis: Frf
+    synthesis_error: FloatArray
+    settings: ModalSettings
+    band: tuple[float, float]
+    stage_gain: StageGain | None = None
+
+    def __post_init__(self) -> None:
+        """Make the error read-only."""
+        freeze(self, "synthesis_error")
+
+
+@one_thread()
+def identify_modes(
+    frf: Frf,
+    settings: ModalSettings | None = None,
+    *,
+    progress: Progress | None = None,
+) -> ModalResult:
+    """Identify the modes of an FRF without being told where they are.
+
+    Poles of all orders (LSCF), those that keep still (stabilisation), those that the
+    FRF needs (selection), refined by nonlinear least squares, then residues (LSFD).
+
+    Standard uncertainties are linearised at the optimum from the line variances, times
+    the factor by which the residual around each mode exceeds them (noise is the least
+    of it on real hits: leakage and small local modes dominate, and they are correlated
+    from line to line). A jackknife over hits was not chosen: the hits of one session
+    share those errors, so it calls them exact. A pole that could not be refined gets
+    the scatter over orders on top.
+
+    Args:
+        frf: any kind, any number of outputs and inputs.
+        settings: see `ModalSettings`; None for the defaults.
+        progress: told what is done, and the share of it; None for nobody.
+
+    Returns:
+        The modal model with the evidence for it.
+
+    Raises:
+        NoModeFound: no pole is stable and needed, or a response is zero throughout.
+        BadData: the band holds too few lines.
+        UsageError: the highest order asked for is out of range.
+    """
+    settings = settings or ModalSettings()
+    _require_alive(frf)
+    keep, reason = choose_band(frf, settings.band)
+    table, weighed = _stabilisation(frf, keep, settings, progress)
+    found = candidates(table, settings.stability)
+    found = overrule(found, table, settings.choices)
+    lines = lines_of(frf, keep)
+    start = np.array([c.pole for c in found], complex)
+    fitted = fit_modes(
+        lines,
+        start,
+        _scatter(frf, keep),
+        held=np.array([c.by_hand for c in found], bool),
+        refine=settings.refine,
+        progress=progress,
+    )
+    if fitted.chosen.size == 0:
+        raise NoModeFound(
+            f"none of {start.size} stable poles rises above the noise, orders "
+            f"{table.orders[0]} to {table.orders[-1]}, {reason}; give another band or "
+            "more hits"
+        )
+    done = _record(reason, weighed, table, start.size, fitted, settings.choices)
+    model = build_model(frf, fitted, found, (*frf.provenance, done))
+    return ModalResult(
+        model=model,
+        stabilisation=table,
+        synthesis=_synthesis(frf, keep, fitted),
+        synthesis_error=_missed(lines, fitted),
+        settings=settings,
+        band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
+        stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
+    )
+
+
+def _stabilisation(
+    frf: Frf, keep: BoolArray, settings: ModalSettings, progress: Progress | None
+) -> tuple[Stabilisation, str]:
+    """Return the poles of all orders, and what their lines were weighed by."""
+    orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
+    weight, source = weights_of(frf, keep)
+    poles = fit_poles(
+        frf.frequency[keep],
+        frf.response[:, :, keep],
+        orders,
+        weight=weight,
+        # One pole a mode draws the clearer table; refinement knows mirror images.
+        mirrored=False,
+        added_decay_rate=frf.added_decay_rate,
+        progress=progress,
+    )
+    return stabilise(poles, settings.stability), source
+
+
+def orders_to_try(
+    settings: ModalSettings, n_lines: int, n_inputs: int
+) -> tuple[int, ...]:
+    """Return the orders of the fit, about fifty at most.
+
+    Args:
+        settings: `highest_order` is taken as it is where given.
+        n_lines: lines in the band.
+        n_inputs: each order has as many poles as there are inputs.
+
+    Returns:
+        Ascending orders.
+
+    Raises:
+        UsageError: the highest order asked for is below 2, or beyond 200 or one pole
+            for every two lines.
+    """
+    highest = settings.highest_order
+    if highest is None:
+        fitting = n_lines // (_LINES_PER_ORDER * n_inputs)
+        highest = max(_LOWEST_ORDER + 4, min(round(_HIGHEST_ORDER / n_inputs), fitting))
+    else:
+        carried = n_lines // (_LEAST_LINES_PER_ORDER * n_inputs)
+        limit = max(_LOWEST_ORDER, min(_LARGEST_ORDER, carried))
+        if not _LOWEST_ORDER <= highest <= limit:
+            raise UsageError(
+                f"order is {highest}; give {_LOWEST_ORDER} to {limit} ({n_lines} lines "
+                f"in the band, {n_inputs} input{'s' * (n_inputs > 1)}), or none"
+            )
+    pitch = max(1, -(-(highest - _LOWEST_ORDER) // _ORDERS_TRIED))
+    return tuple(range(highest, _LOWEST_ORDER - 1, -pitch))[::-1]
+
+
+def _require_alive(frf: Frf) -> None:
+    """Raise `NoModeFound` that names the responses that are zero on every line."""
+    dead = ~np.any(frf.response, axis=2)
+    if dead.any():
+        names = sorted({frf.outputs[row] for row in np.flatnonzero(dead.any(axis=1))})
+        raise NoModeFound(
+            f"the FRF of {', '.join(map(repr, names))} is zero on every line: a dead "
+            "channel; check its cable and measure again, or leave it out"
+        )
+
+
+def _record(
+    band: str,
+    weights: str,
+    table: Stabilisation,
+    candidates_found: int,
+    fitted: FittedModes,
+    choices: Choices,
+) -> Step:
+    return step(
+        "identify_modes",
+        band=band,
+        line_weights=weights,
+        highest_order=int(table.orders[-1]),
+        candidates=candidates_found,
+        modes=fitted.chosen.size,
+        model_error=fitted.model_error,
+        unrefined=int(np.count_nonzero(~fitted.poles.converged)),
+        beyond_band=fitted.poles.beyond.size,
+        kept_by_hand=", ".join(f"{f:g} Hz" for f in choices.keep) or "none",
+        dropped_by_hand=", ".join(f"{f:g} Hz" for f in choices.drop) or "none",
+    )
+
+
+def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:
+    """Return the variance of the kept lines, one row a pair, or None."""
+    if frf.variance is None:
+        return None
+    kept = frf.variance[:, :, keep]
+    return kept.reshape(-1, kept.shape[2])
+
+
+def _synthesis(frf: Frf, keep: BoolArray, fitted: FittedModes) -> Frf:
+    """Return the FRF of the model on the kept lines."""
+    shape = (len(frf.outputs), len(frf.inputs), -1)
+    return replace(
+        frf,
+        frequency=frf.frequency[keep],
+        response=fitted.fit.synthesis.reshape(shape),
+        coherence=None,
+        innovation_noise=None,
+        variance=fitted.variance.reshape(shape),
+        provenance=(*frf.provenance, step("synthesis")),
+    )
+
+
+def _missed(lines: FrfLines, fitted: FittedModes) -> FloatArray:
+    """Return the rms of the residual over the rms of the FRF, line by line."""
+    missed = np.sum(np.abs(lines.response - fitted.fit.synthesis) ** 2, axis=0)
+    measured = np.sum(np.abs(lines.response) ** 2, axis=0)
+    return np.asarray(np.sqrt(missed / np.where(measured > 0.0, measured, 1.0)))

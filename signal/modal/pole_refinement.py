@@ -1,0 +1,317 @@
+# SPDX-License-Identifier: MIT
+"""Poles refined by nonlinear least squares (variable projection), with covariance.
+
+LSCF minimises an equation error, which biases damping where noise is strong. From its
+poles a few Gauss-Newton steps on the output error remove that: residues and residual
+terms are solved for inside every step, so that only the poles are searched (Golub and
+Pereyra; Kaufman's Jacobian). With per-line variances this is maximum likelihood.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
+from jointbench.signal.modal.fit_residuals import misfit_around
+from jointbench.signal.modal.lsfd import (
+    FrfLines,
+    correlations,
+    gram_matrices,
+    inverses,
+    measured_width,
+    modal_basis,
+    modal_size,
+)
+
+# Stop when no pole moves by more than this share of its own half-power width.
+_SMALL_STEP = 1e-4
+# A pole that leaves its start by this many half-power half-widths is lost, not refined.
+_LEASH = 1.0
+_LEASH_DAMPING = 10.0
+# A band that begins below this share of its end begins at zero.
+_NEXT_TO_ZERO = 0.1
+# Damping of the step beyond which it is the pole that is wrong, not the step.
+_PATIENCE = 1.0
+_STUCK = 1e6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Linearised:
+    """Poles and residues around the optimum, to first order.
+
+    Attributes:
+        poles: covariance of (Re p, Im p) of all poles, shape (2 n_modes, 2 n_modes).
+        residue_noise: covariance of (Re R, Im R) of all residues of an FRF while the
+            poles stand still, shape (n_frf, 2 n_modes, 2 n_modes).
+        residue_slope: their change with (Re p, Im p), same shape.
+    """
+
+    poles: FloatArray
+    residue_noise: FloatArray
+    residue_slope: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RefinedPoles:
+    """Poles at the least-squares optimum.
+
+    Attributes:
+        pole: [rad/s], shape (n_modes,).
+        covariance: of (Re p, Im p) of each pole [rad^2/s^2] if the variances handed in
+            are right, shape (n_modes, 2, 2).
+        inflation: residual around each pole over those variances, correlation between
+            lines included; about 1 where they are right, less where they are too
+            large; shape (n_modes,).
+        converged: False for a pole that ran away and was put back where it started,
+            and for all if the steps ran out; shape (n_modes,).
+        linearised: how residues follow, those of computational poles last.
+        beyond: computational poles where they came to rest [rad/s], shape (n,).
+        residual: what is left of the FRF, shape (n_frf, n_lines).
+    """
+
+    pole: ComplexArray
+    covariance: FloatArray
+    inflation: FloatArray
+    converged: BoolArray
+    linearised: Linearised
+    beyond: ComplexArray
+    residual: ComplexArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Point:
+    """Cost and normal equations at one set of poles.
+
+    Residues follow the poles: `residue_noise` is their covariance at fixed poles, shape
+    (n_frf, 2 n_modes, 2 n_modes), `residue_slope` their change with (Re p, Im p).
+    """
+
+    cost: float
+    gram: FloatArray
+    gradient: FloatArray
+    residual: ComplexArray
+    residue_noise: FloatArray
+    residue_slope: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Prior:
+    """Where LSCF put the poles, and how much that weighs.
+
+    Modes that overlap closely can trade damping for residue at no cost in misfit; only
+    the start then tells them apart: it is taken to be right within a half-power
+    half-width, beyond which a pole counts as another one. Wherever the lines resolve a
+    pole, that is worth nothing beside them. The first `n_modes` are modes, the others
+    computational poles beyond the band.
+    """
+
+    start: ComplexArray
+    weight: FloatArray
+    n_modes: int
+
+    def cost(self, pole: ComplexArray) -> float:
+        """Return the weighted squared distance from the start."""
+        return float(self.weight @ np.abs(pole - self.start) ** 2)
+
+
+def refine_poles(
+    lines: FrfLines,
+    start: ComplexArray,
+    variance: FloatArray,
+    *,
+    beyond: ComplexArray | None = None,
+    doubt: FloatArray | None = None,
+    begin: ComplexArray | None = None,
+    steps: int = 30,
+) -> RefinedPoles:
+    """Refine poles by Levenberg-Marquardt on the output error.
+
+    Args:
+        lines: what is fitted.
+        start: poles that the answer may not leave [rad/s], shape (n_modes,).
+        variance: E|error|^2 of each line, shape (n_frf, n_lines).
+        beyond: computational poles outside the band, fitted along wherever they go
+            as long as they stay outside [rad/s], shape (n,), or None.
+        doubt: inflation met in an earlier fit, shape (n_modes,): the start weighs that
+            much more against lines that were wrong by as much; None for 1.
+        begin: where the search begins, if an earlier one came close; None for `start`.
+        steps: most evaluations; 0 keeps the start and only tells its covariance.
+
+    Returns:
+        Refined poles; those that ran away stand where they started.
+
+    Source:
+        Golub and Pereyra, Inverse Problems 19 (2003) R1; Kaufman, BIT 15 (1975) 49.
+    """
+    n_modes = start.size
+    extra = np.empty(0, complex) if beyond is None else beyond
+    reach = _LEASH * measured_width(lines, start)
+    reach = np.append(reach, np.full(extra.size, np.ptp(lines.laplace.imag)))
+    weight = (1.0 / reach) ** 2
+    weight[:n_modes] *= 1.0 if doubt is None else doubt
+    prior = _Prior(np.append(start, extra), weight, n_modes)
+    pole = np.append(start if begin is None else begin, extra)
+    pole, here, converged = _search(lines, prior, pole, variance, steps)
+    joint = _joint_covariance(here, prior)
+    own = pole[:n_modes]
+    return RefinedPoles(
+        own,
+        _own_blocks(joint)[:n_modes],
+        misfit_around(lines, own, here.residual, variance),
+        converged[:n_modes],
+        Linearised(joint, here.residue_noise, here.residue_slope),
+        pole[n_modes:],
+        here.residual,
+    )
+
+
+def _search(
+    lines: FrfLines,
+    prior: _Prior,
+    pole: ComplexArray,
+    variance: FloatArray,
+    steps: int,
+) -> tuple[ComplexArray, _Point, BoolArray]:
+    """Return the poles at the optimum, what is known there, and which converged."""
+    free, damping = np.ones(pole.size, bool), 1e-3
+    here, settled = _evaluate(lines, pole, variance), False
+    for _ in range(steps):
+        trial = pole + np.where(free, _step(here, prior, pole, free, damping), 0.0)
+        lost = _lost(lines, trial, prior)
+        if lost.any() and damping > _PATIENCE:
+            pole, free = np.where(lost, prior.start, pole), free & ~lost
+            here, damping = _evaluate(lines, pole, variance), 1e-3
+            continue
+        there = None if lost.any() else _evaluate(lines, trial, variance)
+        if there is None or there.cost + prior.cost(trial) > here.cost + prior.cost(
+            pole
+        ):
+            damping *= 10.0
+            settled = damping > _STUCK
+        else:
+            moved = np.abs(trial - pole) / measured_width(lines, pole)
+            pole, here, damping = trial, there, max(damping / 10.0, 1e-9)
+            settled = bool(np.all(moved[: prior.n_modes] < _SMALL_STEP))
+        if settled:
+            break
+    return pole, here, free & settled
+
+
+def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Point:
+    """Project the residues out and return cost, gradient and Gauss-Newton matrix.
+
+    The slopes with respect to a pole are the same two columns for every FRF, turned and
+    scaled by its residue, so that one weighted product of fixed columns serves an FRF.
+    """
+    n_linear, n_poles = modal_size(pole), 2 * pole.size
+    columns = np.hstack((modal_basis(lines, pole), _pole_slopes(lines, pole)))
+    weight = 2.0 / variance
+    products = gram_matrices(columns, weight)
+    inverse = inverses(products[:, :n_linear, :n_linear])
+    right = correlations(columns[:, :n_linear], weight * lines.response)
+    solved = (inverse @ right[:, :, None])[:, :, 0]
+    residual = lines.response - solved @ columns[:, :n_linear].T
+    turn = _turns(solved[:, :n_poles])
+    overlap = products[:, :n_linear, n_linear:] @ turn
+    gram = _transposed(turn) @ products[:, n_linear:, n_linear:] @ turn
+    gram -= _transposed(overlap) @ inverse @ overlap
+    # The error is orthogonal to the linear columns: the projection drops out.
+    slope = correlations(columns[:, n_linear:], weight * residual)
+    return _Point(
+        cost=float(np.sum(weight * np.abs(residual) ** 2)),
+        gram=np.sum(gram, axis=0),
+        gradient=np.einsum("fij,fi->j", turn, slope),
+        residual=residual,
+        residue_noise=inverse[:, :n_poles, :n_poles],
+        residue_slope=-(inverse[:, :n_poles] @ overlap),
+    )
+
+
+def _transposed(matrices: FloatArray) -> FloatArray:
+    return matrices.transpose(0, 2, 1)
+
+
+def _pole_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+    """Return d/dp of the two columns of each pole, shape (n_lines, 2 n_modes)."""
+    s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
+    own, mirrored = power / (s - pole) ** 2, power / (s - pole.conj()) ** 2
+    slopes = np.empty((own.shape[0], 2 * pole.size), complex)
+    slopes[:, ::2] = own + mirrored
+    slopes[:, 1::2] = 1j * (own - mirrored)
+    return slopes
+
+
+def _turns(residue: FloatArray) -> FloatArray:
+    """Return for each FRF the block-diagonal matrix that makes slopes of (Re p, Im p).
+
+    With R = a + j b: d/d Re p is a times the first column plus b times the second,
+    d/d Im p is a times the second minus b times the first.
+    """
+    n_frf, size = residue.shape
+    turn, even = np.zeros((n_frf, size, size)), np.arange(0, size, 2)
+    turn[:, even, even] = turn[:, even + 1, even + 1] = residue[:, ::2]
+    turn[:, even + 1, even] = residue[:, 1::2]
+    turn[:, even, even + 1] = -residue[:, 1::2]
+    return turn
+
+
+def _step(
+    here: _Point, prior: _Prior, pole: ComplexArray, free: BoolArray, damping: float
+) -> ComplexArray:
+    """Return the Levenberg-Marquardt step of the free poles."""
+    movable, weight = np.repeat(free, 2), np.repeat(prior.weight, 2)
+    gram = here.gram + np.diag(weight)
+    gram = np.where(np.outer(movable, movable), gram, 0.0)
+    gram += np.diag(damping * np.diag(gram) + ~movable)
+    away = (prior.start - pole).view(np.float64)
+    force = np.where(movable, here.gradient + weight * away, 0.0)
+    change = inverses(gram) @ force
+    return np.asarray(change.view(np.complex128))
+
+
+def _lost(lines: FrfLines, pole: ComplexArray, prior: _Prior) -> BoolArray:
+    """Tell which poles are no longer damped, or no longer those they started as.
+
+    A computational pole is lost where it has come to stand within the band.
+    """
+    start = prior.start
+    ratio = pole.real / start.real
+    before, now = measured_width(lines, start), measured_width(lines, pole)
+    astray: BoolArray = np.abs((pole - start).imag) > _LEASH * np.maximum(before, now)
+    astray |= (ratio < 1.0 / _LEASH_DAMPING) | (ratio > _LEASH_DAMPING)
+    inside = ~unresolved(lines, pole) | (pole.real >= 0.0) | (pole.imag <= 0.0)
+    return np.asarray(np.where(np.arange(pole.size) < prior.n_modes, astray, inside))
+
+
+def unresolved(lines: FrfLines, pole: ComplexArray) -> BoolArray:
+    """Tell which poles do not have their peak within the band.
+
+    Beyond it, or within less than a half-power half-width of its edge, where one flank
+    is all that was measured: nothing tells such a pole from what lies beyond.
+
+    Args:
+        lines: what is fitted.
+        pole: [rad/s], shape (n,).
+
+    Returns:
+        Shape (n,).
+    """
+    low, high = lines.laplace.imag[[0, -1]]
+    width = measured_width(lines, pole)
+    # Below a band that begins next to zero there is nothing.
+    floor = low + width if low > _NEXT_TO_ZERO * high else 0.0 * width
+    return np.asarray((pole.imag < floor) | (pole.imag > high - width))
+
+
+def _joint_covariance(here: _Point, prior: _Prior) -> FloatArray:
+    """Return the covariance of all (Re p, Im p), the start counted as it was."""
+    inverse = inverses(here.gram + np.diag(np.repeat(prior.weight, 2)))
+    # Rounding can leave a variance of exact data below zero.
+    np.fill_diagonal(inverse, np.maximum(np.diag(inverse), 0.0))
+    return inverse
+
+
+def _own_blocks(joint: FloatArray) -> FloatArray:
+    """Return the 2 x 2 block of each pole, shape (n_modes, 2, 2)."""
+    index = np.arange(joint.shape[0]).reshape(-1, 2)
+    return np.asarray(joint[index[:, :, None], index[:, None, :]])

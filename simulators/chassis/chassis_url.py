@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""The simulated chassis by its URL, ``sim:plates?seed=3&faults=drop@90000:0.5``."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from urllib.parse import parse_qsl, urlsplit
+
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.simulators.chassis.faults import parse_faults
+from jointbench.simulators.chassis.server import ChassisSetup
+from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
+from jointbench.simulators.plates.calibration_mass import CalibrationMass
+from jointbench.simulators.plates.plates_bench import PlatesBench
+
+_KEYS = (
+    "seed, speed, level, interval, fates, faults, modules, top_rate, trigger, port; "
+    "sim:mass also has mass, hammer, response"
+)
+
+
+def is_plates_url(url: str) -> bool:
+    """Tell whether a URL names a chassis, with the plates or the mass before it."""
+    parts = urlsplit(url)
+    return parts.scheme == "sim" and parts.path in ("plates", "mass")
+
+
+def chassis_from_url(url: str) -> ChassisSetup:
+    """Read a set-up.
+
+    Args:
+        url: ``sim:plates``, or ``sim:mass`` for a mass to calibrate on, and, as a
+            query, any of: ``seed``; ``speed``, seconds of
+            signal per second or ``max``; ``level``, usual peak force [N];
+            ``interval``, between strokes of the hand's own accord [s]; ``fates`` of
+            the strokes in turn, for example ``good,double*2,weak``; ``faults`` as
+            `parse_faults` reads them; ``modules``; ``top_rate`` [Hz]; ``trigger``, 0
+            for modules without an analogue trigger; ``port``. The mass has ``mass``
+            [kg], and ``hammer`` and ``response``, true sensitivity over the usual one.
+
+    Raises:
+        UsageError: an unknown key, or a value that does not read so.
+    """
+    values = dict(parse_qsl(urlsplit(url).query, keep_blank_values=True))
+
+    def take(key: str, default: str, read: Callable[[str], float]) -> float:
+        text = values.pop(key, default)
+        try:
+            return read(text)
+        except ValueError:
+            raise UsageError(f"{key} is {text!r} in {url!r}; give a number") from None
+
+    seed = int(take("seed", "1", int))
+    interval = values.pop("interval", "")
+    hand = SimulatedOperator(
+        seed=seed,
+        level=take("level", "150", float),
+        interval=_positive(interval) if interval else None,
+        fates=_fates(values.pop("fates", "good")),
+    )
+    speed = values.pop("speed", "max")
+    bench = PlatesBench(hand=hand, seed=seed)
+    if urlsplit(url).path == "mass":
+        bench = _mass_bench(bench, take)
+    setup = ChassisSetup(
+        bench=bench,
+        speed=math.inf if speed == "max" else _positive(speed),
+        modules=int(take("modules", "1", int)),
+        top_rate=take("top_rate", "51200", float),
+        analogue_trigger=bool(take("trigger", "1", int)),
+        faults=parse_faults(values.pop("faults", "")),
+        port=int(take("port", "0", int)),
+    )
+    if values:
+        raise UsageError(
+            f"unknown key {next(iter(values))!r} in {url!r}; known: {_KEYS}"
+        )
+    return setup
+
+
+def _mass_bench(
+    bench: PlatesBench, take: Callable[[str, str, Callable[[str], float]], float]
+) -> PlatesBench:
+    hammer, response = take("hammer", "1", _positive), take("response", "1", _positive)
+    first, *others = bench.sensors
+    return replace(
+        bench,
+        design=CalibrationMass(mass=take("mass", "4.5", float)),
+        sensors=(
+            replace(first, sensitivity=hammer * first.sensitivity),
+            *(replace(s, sensitivity=response * s.sensitivity) for s in others),
+        ),
+    )
+
+
+def _fates(text: str) -> tuple[Fate, ...]:
+    fates: list[Fate] = []
+    for word in text.split(","):
+        name, _, count = word.strip().partition("*")
+        try:
+            fates += [Fate(name)] * int(count or 1)
+        except ValueError:
+            known = ", ".join(fate.value for fate in Fate)
+            raise UsageError(
+                f"fate {word!r} must be one of {known}, as in good*3,double"
+            ) from None
+    return tuple(fates)
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not value > 0:
+        raise UsageError(f"{text!r} must be a number above zero")
+    return value

@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: MIT
+"""How well a hidden effect can be seen, and told from its rivals, at best.
+
+Numerically differenced responses of the simulators' own plant, projected. The
+held-out records are all records, since every group is held out in turn.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import scipy.linalg
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.simulators.hidden.campaign_design import CampaignDesign
+from jointbench.simulators.hidden.campaign_response import sketch_responses
+from jointbench.simulators.hidden.effect_draws import FAMILIES, Scales, specimen_scales
+from jointbench.simulators.hidden.hidden_effects import HiddenEffect
+from jointbench.simulators.margins.base_refit import (
+    BaseFit,
+    BaseView,
+    base_view,
+    project,
+    refit_base,
+)
+from jointbench.simulators.margins.rival_effects import rival_effects
+from jointbench.simulators.margins.rival_refit import (
+    best_shape,
+    refit_rival,
+    sized_twin,
+)
+from jointbench.simulators.margins.settled_margin import settled_shares
+
+_REFITTED = 4  # rivals, the most alike by the grid
+_ALIKE = 0.7  # correlation below which a rival is not worth a refit
+
+
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """What an ideal analyst could make of one effect.
+
+    Attributes:
+        rho: norm of the weighted change that the base cannot follow, over the square
+            root of the number of parameters [-]; below 1 nobody sees it.
+        correlation: of that change with the best rival's [-].
+        rival: name and site of the best rival.
+        margin: rho^2 (1 - correlation^2) [-].
+    """
+
+    rho: float
+    correlation: float
+    rival: str
+    margin: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rival:
+    """Small effects of one name and site, and what the base leaves of them.
+
+    Attributes:
+        shapes: the effects.
+        directions: what the base leaves of each, (n_rows,) each.
+        plane: orthonormal columns that span the directions.
+    """
+
+    shapes: tuple[HiddenEffect, ...]
+    directions: tuple[FloatArray, ...]
+    plane: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MarginScale:
+    """Everything about a design that margins need, computed once.
+
+    Attributes:
+        scales: what its specimen does.
+        view: its base as least squares sees it.
+        rivals: of any hidden effect, by name and site.
+    """
+
+    scales: Scales
+    view: BaseView
+    rivals: Mapping[str, Rival] = field(repr=False)
+
+
+def margin_scale(design: CampaignDesign) -> MarginScale:
+    """Prepare a design for `expected_margin`.
+
+    Args:
+        design: the campaign without effects.
+
+    Returns:
+        Base responses, weights, slopes and rivals.
+    """
+    view, scales = base_view(design), specimen_scales(design)
+    families: dict[str, list[HiddenEffect]] = {}
+    for rival in rival_effects(scales):
+        families.setdefault(_site(rival), []).append(rival)
+    rivals = {site: _rival(view, shapes) for site, shapes in families.items()}
+    return MarginScale(scales, view, rivals)
+
+
+def expected_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
+    """Judge how visible an effect is, and how distinct from the best rival.
+
+    Args:
+        scale: the design, prepared.
+        effect: the hidden effect, at its size.
+
+    Returns:
+        rho, the best rival and the margin. The rivals most alike by their grids, and
+        the effect itself at its other site, are refitted with all their parameters
+        and the base's; the correlation is that of the best fit.
+    """
+    responses = sketch_responses(scale.view.design, [effect])
+    alone = refit_base(scale.view, responses)
+    norm = max(float(np.sqrt(alone.cost)), 1e-300)
+    alike = _correlations(scale, effect, alone.left)
+    rival, remaining = max(alike, key=lambda site: alike[site]), norm
+    for site, start in _starts(scale, effect, alone, alike):
+        distance = refit_rival(scale.view, responses, alone, start)
+        if distance < remaining:
+            rival, remaining = site, distance
+    found = _margin(effect, norm, rival, 1 - (remaining / norm) ** 2)
+    return _over_scatter(scale, effect, found)
+
+
+def first_order_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
+    """Judge an effect by the grid of small rivals alone, for a quick first size.
+
+    Args:
+        scale: the design, prepared.
+        effect: the hidden effect, at its size.
+
+    Returns:
+        As `expected_margin`; a rival may mix all shapes of its grid, but no others.
+
+    Source:
+        Cook and Weisberg's added-variable projection, with the rival's plane in
+        place of one regressor.
+    """
+    responses = sketch_responses(scale.view.design, [effect])
+    alone = refit_base(scale.view, responses)
+    alike = _correlations(scale, effect, alone.left)
+    rival = max(alike, key=lambda site: alike[site])
+    found = _margin(effect, float(np.sqrt(alone.cost)), rival, alike[rival] ** 2)
+    return _over_scatter(scale, effect, found)
+
+
+def _over_scatter(scale: MarginScale, effect: HiddenEffect, found: Margin) -> Margin:
+    """Return a margin, or what the joint's own scatter leaves of it."""
+    settled = settled_shares(scale.view, effect)
+    if settled is None:
+        return found
+    norm, alike, rival = settled
+    own = _margin(effect, norm, rival, alike**2)
+    return own if own.margin < found.margin else found
+
+
+def _rival(view: BaseView, shapes: list[HiddenEffect]) -> Rival:
+    changes = (sketch_responses(view.design, [s]) - view.responses for s in shapes)
+    directions = tuple(project(view, change) for change in changes)
+    plane = np.asarray(scipy.linalg.orth(np.stack(directions, axis=1), 1e-6))
+    return Rival(tuple(shapes), directions, plane)
+
+
+def _correlations(
+    scale: MarginScale, effect: HiddenEffect, left: FloatArray
+) -> dict[str, float]:
+    """Return how much of what is left lies in the plane of each rival."""
+    norm = max(float(np.linalg.norm(left)), 1e-300)
+    return {
+        site: min(float(np.linalg.norm(rival.plane.T @ left)) / norm, 1.0)
+        for site, rival in scale.rivals.items()
+        if not _same_thing(effect, site)
+    }
+
+
+def _starts(
+    scale: MarginScale, effect: HiddenEffect, alone: BaseFit, alike: dict[str, float]
+) -> list[tuple[str, HiddenEffect]]:
+    """Return the rivals worth a refit, each as it should start."""
+    starts: list[tuple[str, HiddenEffect]] = []
+    for site in sorted(alike, key=lambda site: -alike[site]):
+        if alike[site] < _ALIKE:
+            break
+        known = scale.rivals[site]
+        best = best_shape(known.shapes, known.directions, alone.left)
+        if best is not None and len(starts) < _REFITTED:
+            starts.append((site, best[0]))
+    twin = sized_twin(scale.view, effect, alone.left)
+    return starts if twin is None else [*starts, (_site(twin), twin)]
+
+
+def _margin(effect: HiddenEffect, norm: float, rival: str, square: float) -> Margin:
+    rho = norm / float(np.sqrt(max(FAMILIES[effect.name].free, 1)))
+    return Margin(rho, float(np.sqrt(square)), rival, rho**2 * (1 - square))
+
+
+def _site(effect: HiddenEffect) -> str:
+    return f"{effect.name} {effect.site}"
+
+
+def _same_thing(effect: HiddenEffect, site: str) -> bool:
+    """Say whether a rival is the effect itself, perhaps under another name.
+
+    A turned sign is a gain of -2; a limit on all channels is one on that which clips.
+    """
+    name = site.split()[0]
+    return (
+        site == _site(effect)
+        or (effect.name == "polarity" and site == f"gain_error {effect.site}")
+        or (effect.name == name == "saturation")
+    )

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""The stepper: fourth-order Runge-Kutta for bodies, links and joint laws."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.compiled import compiled
+from jointbench.simulators.mechanics.joint_laws import (
+    LawArrays,
+    LawKind,
+    law_force,
+    state_rate,
+)
+from jointbench.simulators.mechanics.sliders import move_slider
+
+
+class LinearPart(NamedTuple):
+    """Bodies and links as the stepper wants them."""
+
+    inverse_mass: FloatArray  # (n_bodies,)
+    stiffness: FloatArray  # (n_bodies, n_bodies)
+    damping: FloatArray  # (n_bodies, n_bodies)
+
+
+@compiled(error_model="numpy")
+def march(
+    linear: LinearPart,
+    laws: LawArrays,
+    force: FloatArray,
+    body: int,
+    clock: tuple[float, float],
+    state: FloatArray,
+    memory: FloatArray,
+) -> FloatArray:
+    """March through all half-step forces; state and slider memory change in place.
+
+    Args:
+        linear: bodies and links.
+        laws: joint laws.
+        force: on `body` at every half step [N], shape (2 n + 1,).
+        body: index of the body that is struck.
+        clock: time of the first sample, and time step [s].
+        state: displacements, velocities, law states, shape (2 n_bodies + n_laws,).
+        memory: of the sliders, shape (2, n_sliders).
+
+    Returns:
+        Accelerations at the start of each step [m/s^2], shape (n_bodies, n).
+    """
+    (begin, step), (inverse_mass, stiffness, damping) = clock, linear
+    kinds, ends, numbers, banks, sliders, tables, table_step = laws
+    size = inverse_mass.size
+    acceleration = np.empty((size, force.size // 2))
+    trial, slopes = np.empty(state.size), np.zeros((5, state.size))  # first row: rest
+    for n in range(acceleration.shape[1]):
+        for stage in range(4):
+            ahead = 0.5 * step * ((stage + 1) // 2)
+            for i in range(state.size):
+                trial[i] = state[i] + ahead * slopes[stage, i]
+            rate, push = slopes[stage + 1], force[2 * n + (stage + 1) // 2]
+            _linear_rate(inverse_mass, stiffness, damping, trial, body, push, rate)
+            for i in range(kinds.size):
+                first, second = ends[i]
+                r = _difference(trial, first, second)
+                v = _difference(trial[size:], first, second)
+                w = trial[2 * size + i]
+                if kinds[i] == LawKind.SLIDERS:
+                    moved = r - _difference(state, first, second)
+                    pull = _bank_force(
+                        moved, banks[i], sliders, memory, tables[i], table_step[i]
+                    )
+                else:
+                    now = begin + n * step + ahead
+                    pull = law_force(kinds[i], numbers[i], r, v, w, now)
+                rate[size + second] -= pull * inverse_mass[second]
+                if first >= 0:
+                    rate[size + first] += pull * inverse_mass[first]
+                rate[2 * size + i] = state_rate(kinds[i], numbers[i], v, w)
+        for i in range(size):
+            acceleration[i, n] = slopes[1, size + i]
+        _advance(step, slopes, state, trial)
+        for i in range(kinds.size):
+            moved = _difference(trial, ends[i, 0], ends[i, 1])
+            _move_bank(moved, banks[i], sliders, memory, tables[i], table_step[i])
+    return acceleration
+
+
+@compiled(error_model="numpy")
+def _advance(
+    step: float, slopes: FloatArray, state: FloatArray, change: FloatArray
+) -> None:
+    """Move the state by one step of the classical rule and keep the change."""
+    for i in range(state.size):
+        mean = slopes[1, i] + 2 * slopes[2, i] + 2 * slopes[3, i] + slopes[4, i]
+        change[i] = step / 6 * mean
+        state[i] += change[i]
+
+
+@compiled(error_model="numpy")
+def _linear_rate(
+    inverse_mass: FloatArray,
+    stiffness: FloatArray,
+    damping: FloatArray,
+    state: FloatArray,
+    body: int,
+    push: float,
+    rate: FloatArray,
+) -> None:
+    """Fill `rate` with velocities and with accelerations of the linear links."""
+    size = inverse_mass.size
+    for i in range(size):
+        total = push if i == body else 0.0
+        for j in range(size):
+            total -= stiffness[i, j] * state[j] + damping[i, j] * state[size + j]
+        rate[i] = state[size + i]
+        rate[size + i] = total * inverse_mass[i]
+
+
+@compiled(error_model="numpy")
+def _difference(values: FloatArray, first: int, second: int) -> float:
+    """Return how much further body `second` is than body `first`, or the ground."""
+    if first < 0:
+        return float(values[second])
+    return float(values[second] - values[first])
+
+
+@compiled(error_model="numpy")
+def _bank_force(
+    moved: float,
+    bank: IntArray,
+    sliders: FloatArray,
+    memory: FloatArray,
+    table: FloatArray,
+    table_step: float,
+) -> float:
+    """Return the force of a bank displaced by `moved` since the start of the step."""
+    total = 0.0
+    for k in range(bank[0], bank[1]):
+        u, _ = move_slider(
+            memory[0, k], memory[1, k], moved * sliders[1, k], table, table_step
+        )
+        total += float(sliders[0, k]) * u
+    return total
+
+
+@compiled(error_model="numpy")
+def _move_bank(
+    moved: float,
+    bank: IntArray,
+    sliders: FloatArray,
+    memory: FloatArray,
+    table: FloatArray,
+    table_step: float,
+) -> None:
+    """Let the sliders of a bank remember the displacement of a whole step."""
+    for k in range(bank[0], bank[1]):
+        memory[0, k], memory[1, k] = move_slider(
+            memory[0, k], memory[1, k], moved * sliders[1, k], table, table_step
+        )

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: MIT
+"""A visit to the two-body bench by plan: points x levels x preloads, each repeated.
+
+What a session needs for the question which effect a model misses; one or more effects
+may be hidden. Every run is one hit, recorded from before the trigger.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from urllib.parse import urlencode
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.records.recordings import Channel, Quantity
+from jointbench.simulators.campaigns.campaign_records import (
+    SimulatedCampaign,
+    quick_campaign,
+)
+from jointbench.simulators.hidden.campaign_design import GRIDS, SAMPLE_RATE
+from jointbench.simulators.hidden.hidden_effects import HiddenEffect
+
+_BETWEEN_RUNS = 20.0  # [s] a hand needs from hit to hit
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CampaignRun:
+    """One hit of the visit: a `Source` of one block, under a preload of its own.
+
+    Attributes:
+        name: of the run.
+        samples: force and the accelerations of base and top, shape (3, n).
+        point: what was struck, ``"1"`` the base or ``"2"`` the top.
+        preload: on the joint [N].
+        start_time: since the visit began [s].
+    """
+
+    name: str
+    samples: FloatArray
+    point: str
+    preload: float
+    start_time: float
+
+    @property
+    def simulated(self) -> bool:
+        """True: there is no hardware behind it."""
+        return True
+
+    @property
+    def sample_rate(self) -> float:
+        """Samples per second and channel [Hz]."""
+        return SAMPLE_RATE
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Hammer force, acceleration a0 of the base and a1 of the top."""
+        responses = (
+            Channel(name, Quantity.ACCELERATION, point, "+z", "m/s^2", 10.2e-3)
+            for name, point in (("a0", "1"), ("a1", "2"))
+        )
+        force = Channel("force", Quantity.FORCE, self.point, "+z", "N", 2.25e-3)
+        return (force, *responses)
+
+    def blocks(self) -> Iterator[FloatArray]:
+        """Yield the run in SI units, shape (3, n)."""
+        yield self.samples
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignBench:
+    """A planned visit to the bench of `simulators.campaign`.
+
+    Attributes:
+        seed: of specimen, sheet, hits, noise and the parameters of what is hidden.
+        hide: names of hidden effects, joined by commas; empty for none.
+        grid: of hits, one of `GRIDS`; ``"crossed"`` has every condition twice.
+        noise: of each accelerometer, standard deviation [m/s^2].
+        hit_scatter: relative standard deviation from hit to hit [-].
+        size: of each hidden effect, as a share of its largest physical size [-].
+    """
+
+    seed: int = 1
+    hide: str = ""
+    grid: str = "crossed"
+    noise: float = 0.05
+    hit_scatter: float = 0.001
+    size: float = 0.02
+
+    def __post_init__(self) -> None:
+        """Refuse what no visit can be, before anything is simulated."""
+        if not (np.isfinite(self.noise) and self.noise > 0):
+            raise UsageError(f"noise is {self.noise!r}, it must be finite and positive")
+        if not 0 < self.size <= 1:
+            raise UsageError(f"size is {self.size!r}; give a share above 0, up to 1")
+        if not 0 <= self.hit_scatter <= 0.1:
+            raise UsageError(
+                f"hit_scatter is {self.hit_scatter!r}; give 0 to 0.1, a good hand has "
+                "0.001"
+            )
+        if self.seed < 0:
+            raise UsageError(f"seed is {self.seed}; give 0 or more")
+        if self.grid not in GRIDS:
+            raise UsageError(
+                f"unknown grid {self.grid!r}; there are {', '.join(GRIDS)}"
+            )
+        for effect in self.hidden:
+            HiddenEffect(effect, {})
+
+    @property
+    def name(self) -> str:
+        """The URL that opens this visit again: all that differs from the default."""
+        changed = {
+            field.name: getattr(self, field.name)
+            for field in fields(self)
+            if field.name == "seed" or getattr(self, field.name) != field.default
+        }
+        return f"sim:two-body-campaign?{urlencode(changed)}"
+
+    @property
+    def simulated(self) -> bool:
+        """True: there is no hardware behind it."""
+        return True
+
+    @property
+    def hidden(self) -> tuple[str, ...]:
+        """Names of the hidden effects."""
+        return tuple(word.strip() for word in self.hide.split(",") if word.strip())
+
+    def simulate(self) -> SimulatedCampaign:
+        """Run the whole visit: its records, its sheet, and the truth about both."""
+        return quick_campaign(
+            self.seed,
+            effects=self.hidden,
+            size=self.size,
+            grid=self.grid,
+            noise=self.noise,
+            hit_scatter=self.hit_scatter,
+        )
+
+
+def campaign_runs(campaign: SimulatedCampaign) -> tuple[CampaignRun, ...]:
+    """Return the hits of a campaign as a bench delivers them, in their order."""
+    pairs = zip(
+        campaign.design.conditions, campaign.force, campaign.acceleration, strict=True
+    )
+    return tuple(
+        CampaignRun(
+            name=f"run-{condition.order + 1:02d}",
+            samples=np.vstack((force, acceleration)),
+            point=("1", "2")[condition.hit_dof],
+            preload=condition.preload,
+            start_time=_BETWEEN_RUNS * condition.order,
+        )
+        for condition, force, acceleration in pairs
+    )

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench gap``: where model and measurement disagree, and what is missing."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
+from jointbench.analysis.gap.response.threads import side_by_side
+from jointbench.station.files.input_files import parse_preload
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.gap.gap_inputs import Examined, GapRequest, examine
+from jointbench.station.gap.gap_output import show_diagnosis
+from jointbench.station.gap.gap_scores import score_section, score_table, scores_json
+from jointbench.station.models.effects_file import read_effects, with_own
+from jointbench.station.report.gap_report import gap_report
+from jointbench.station.screen.escaping_console import Screen, seen
+from jointbench.station.screen.page import write_report
+from jointbench.station.screen.terminal import console, table, write_json
+from jointbench.station.sources.open_source import is_url
+
+MOST_REMARKS = 5
+
+
+def run_gap(
+    source: Path | str,
+    *,
+    more: Sequence[Path | str] = (),
+    model: Path | None = None,
+    preload: str | None = None,
+    without: str | None,
+    effects: Sequence[Path] = (),
+    report: Path | None,
+    json_target: str | None,
+) -> Diagnosis:
+    """Diagnose a source, show verdict and evidence, and write the page if asked.
+
+    Args:
+        source: campaign file, session, MAT file, model file that names data, or URL.
+        more: further sessions of the same bench.
+        model: bench model, where the source brings none.
+        preload: on the joint with unit, where the session does not say.
+        without: names of effects to leave out of the catalogue, joined by commas.
+        effects: files of the user's own effects, run as Python.
+        report: HTML page to write, or None.
+        json_target: where the JSON goes.
+    """
+    sources = [str(source), *map(str, more)]
+    files = [Path(name) for name in sources if not is_url(name)]
+    check_outputs(
+        [*files, *effects, *([model] if model else [])], [report, json_target]
+    )
+    wanted = GapRequest(
+        model, _names(without), parse_preload(preload) if preload else None
+    )
+    own = [entry for path in effects for entry in read_effects(path)]
+    wanted = replace(wanted, entries=with_own(CATALOGUE, own))
+    screen = Screen(stderr=True)
+    with side_by_side(), screen.status(seen(f"reading {sources[0]}")) as status:
+        done = examine(sources, wanted, progress=lambda line: status.update(seen(line)))
+    _show(done, json_target)
+    if report is not None:
+        page = gap_report(done.found, title=done.title)
+        if done.scores:
+            section = score_section(done.scores, done.unit)
+            page = replace(page, sections=(*page.sections, section))
+        write_report(page, report)
+        console(json_target).print(f"\nreport: {report}")
+    write_json(json_target, _json(sources, done))
+    return done.found
+
+
+def _names(without: str | None) -> frozenset[str]:
+    return frozenset(
+        word.strip() for word in (without or "").split(",") if word.strip()
+    )
+
+
+def _show(done: Examined, json_target: str | None) -> None:
+    show_diagnosis(done.found, json_target)
+    screen = console(json_target)
+    if done.scores:
+        content = score_table(done.scores, done.unit)
+        screen.print(table(content.caption, content.columns, content.rows))
+    for remark in done.remarks[:MOST_REMARKS]:
+        screen.print(f"note: {remark}")
+    if len(done.remarks) > MOST_REMARKS:
+        screen.print(f"note: {len(done.remarks) - MOST_REMARKS} more like these")
+
+
+def _json(sources: Sequence[str], done: Examined) -> dict[str, object]:
+    return {
+        "campaign": sources[0],
+        "sources": list(sources),
+        **diagnosis_json(done.found),
+        "scored": scores_json(done.scores, done.unit),
+        "remarks": list(done.remarks),
+    }

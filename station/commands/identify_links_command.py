@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench identify``: the links of a lumped bench from its measured modes."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.analysis.lumped.identified import (
+    Identification,
+    identification_json,
+)
+from jointbench.signal.modal.modes import ModalSettings
+from jointbench.station.files.input_files import read_recordings
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.files.toml_text import load_toml
+from jointbench.station.models.bench_model import BenchModel
+from jointbench.station.pipeline.chain import ChainSettings, run_chain
+from jointbench.station.pipeline.link_stage import fits, identify_joint
+from jointbench.station.pipeline.modal_options import parse_band
+from jointbench.station.screen.joint_text import WHAT_IS_SHOWN, parameter_text
+from jointbench.station.screen.terminal import console, table, working, write_json
+
+
+def run_identify(
+    model: Path,
+    sessions: Sequence[Path],
+    *,
+    band: str | None = None,
+    json_target: str | None,
+) -> Identification:
+    """Identify the links of `model` from the modes of `sessions` and show them."""
+    check_outputs([model, *sessions], [json_target])
+    settings = ChainSettings(modal=ModalSettings(band=parse_band(band)))
+    bench = read_toml(model, BenchModel)
+    recordings = read_recordings(sessions, columns=None, point="1")
+    with working("fitting modes, identifying links"):
+        modes = run_chain(recordings, settings).result.model
+        result = identify_joint(bench, modes)
+    show_joint(result, json_target)
+    write_json(json_target, identification_json(result))
+    return result
+
+
+def identify_any(
+    model: Path,
+    sessions: Sequence[Path],
+    *,
+    band: str | None,
+    cache: Path | None,
+    report: Path | None,
+    json_target: str | None,
+    surfaces: Sequence[Path] = (),
+) -> bool:
+    """Identify the joints of whatever the model file describes.
+
+    Returns:
+        Whether the model can have what was measured.
+
+    Raises:
+        UsageError: a lumped bench without a session, or with a page of its own.
+    """
+    if describes_structure(model):
+        from jointbench.station.commands.identify_structure_command import (
+            run_identify_structure,
+        )
+
+        return run_identify_structure(
+            model,
+            sessions,
+            band=band,
+            cache=cache,
+            report=report,
+            json_target=json_target,
+            surfaces=surfaces,
+        )
+    if not sessions:
+        raise UsageError(
+            f"'{model}' is a lumped bench; give the sessions it was hit in"
+        )
+    if report is not None or surfaces:
+        raise UsageError(
+            "--report and --surface are for structures [joints]; of a lumped bench "
+            "write 'jointbench report SESSION --model MODEL --out PAGE'"
+        )
+    return fits(run_identify(model, sessions, band=band, json_target=json_target))
+
+
+def describes_structure(model: Path) -> bool:
+    """Tell whether a model file has meshed bodies; what cannot be read has none."""
+    try:
+        content = load_toml(model)
+    except (BadData, OSError, ValueError, RecursionError):
+        return False  # the reader of lumped benches says what is wrong
+    return "joints" in content
+
+
+def show_joint(result: Identification, json_target: str | None) -> None:
+    """Print the identified parameters and how far they are determined."""
+    screen = console(json_target)
+    rows = [
+        (
+            one.name,
+            parameter_text(one),
+            one.unit,
+            "yes" if one.identifiable else "no",
+        )
+        for one in result.parameters
+    ]
+    title = f"Links from the modes: {result.verdict.value} {WHAT_IS_SHOWN}"
+    screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
+    reasons = [*result.reasons, *(p.reason for p in result.parameters if p.reason)]
+    for reason in dict.fromkeys(reasons):
+        screen.print(f"  {reason}", markup=False)

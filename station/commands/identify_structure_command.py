@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench identify`` of meshed structures: sessions to joints."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.lumped.identified import IdentificationVerdict
+from jointbench.analysis.structures.identification.identify_structure import (
+    identify_structure,
+)
+from jointbench.analysis.structures.identification.joint_result import (
+    StructureIdentification,
+    structure_json,
+)
+from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.mounted_sensors import (
+    MountedSensor,
+    sensor_rows,
+)
+from jointbench.analysis.structures.reduction.reduce import reduce_structure
+from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
+from jointbench.analysis.structures.reduction.reduction_cache import cached, content_key
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.joints.structure_contact import joint_of, theory_surface
+from jointbench.station.joints.structure_model import (
+    StructureModel,
+    sensors_of,
+    structure_of,
+)
+from jointbench.station.joints.structure_states import (
+    MEASURED_LABEL,
+    MeasuredState,
+    all_evidence,
+    measured_states,
+)
+from jointbench.station.joints.theory import (
+    TheoryRow,
+    against_theory,
+    identified_states,
+    known_preloads,
+    theory_json,
+)
+from jointbench.station.report.theory_section import show_theory, theory_section
+from jointbench.station.screen.joint_text import WHAT_IS_SHOWN, parameter_text
+from jointbench.station.screen.terminal import console, table, working, write_json
+
+RIGID_MODES = 6
+SPARE_MODES = 4
+
+
+def run_identify_structure(
+    model: Path,
+    sessions: Sequence[Path],
+    *,
+    band: str | None,
+    cache: Path | None,
+    report: Path | None,
+    json_target: str | None,
+    surfaces: Sequence[Path] = (),
+) -> bool:
+    """Identify the joints of a structure, show and write them.
+
+    With a table [contact] they are laid beside the contact law.
+
+    Returns:
+        Whether the structure can have what was measured, and the full mesh agrees.
+    """
+    check_outputs([model, *sessions, *surfaces], [json_target, report])
+    settings = read_toml(model, StructureModel)
+    with working("meshing"):
+        structure = structure_of(settings, model.parent)
+    surface = _surface(settings, model, surfaces, sessions)
+    measured = measured_states(sessions, band)
+    preloads = _preloads(settings, measured)
+    sensors = {**sensors_of(settings.hits), **sensors_of(settings.sensors)}
+    with working("reducing, identifying joints"):
+        reduced = _reduced(structure, settings, measured, sensors, cache)
+        evidence = all_evidence(structure, reduced, settings, measured)
+        result = identify_structure(
+            reduced,
+            evidence,
+            sought=settings.identify.sought,
+            shared=settings.identify.shared,
+            structure=structure,
+        )
+    rows = _theory(settings, surface, preloads, result)
+    show_structure(result, json_target)
+    show_theory(rows, json_target)
+    content = structure_json(result, reduced.names)
+    write_json(json_target, content | ({"theory": theory_json(rows)} if rows else {}))
+    if report is not None:
+        from jointbench.station.report.structure_report import write_structure_report
+
+        write_structure_report(
+            report, model.name, structure, reduced, result, theory_section(rows)
+        )
+    return result.verdict is not IdentificationVerdict.INCONSISTENT and all(
+        one.agrees for one in result.full_check
+    )
+
+
+def _surface(
+    settings: StructureModel,
+    model: Path,
+    faces: Sequence[Path],
+    sessions: Sequence[Path],
+) -> ContactSurface | None:
+    """Return the joint's surface where the model asks for a contact law."""
+    if settings.contact is None:
+        if faces:
+            raise UsageError(
+                "--surface needs a table [contact] in the model: modulus, hardness and "
+                "the joint that has these faces"
+            )
+        return None
+    with working("fitting surfaces"):
+        return theory_surface(
+            settings.contact, model.parent, list(faces), list(sessions)
+        )
+
+
+def _preloads(
+    settings: StructureModel, measured: dict[str, MeasuredState]
+) -> dict[str, float]:
+    """Return the preload of every state where the model asks for a contact law [N]."""
+    if settings.contact is None:
+        return {}
+    found = {label: state.preload for label, state in measured.items()}
+    if settings.measured is not None:
+        found = {MEASURED_LABEL: None, **found}
+    return known_preloads(settings.contact, found)
+
+
+def _theory(
+    settings: StructureModel,
+    surface: ContactSurface | None,
+    preloads: dict[str, float],
+    result: StructureIdentification,
+) -> tuple[TheoryRow, ...]:
+    table, joints = settings.contact, settings.parametric_joints
+    if table is None or surface is None:
+        return ()
+    states = identified_states(result, joint_of(table, joints), preloads, joints)
+    return against_theory(states, surface, table)
+
+
+def _reduced(
+    structure: Structure,
+    settings: StructureModel,
+    measured: dict[str, MeasuredState],
+    sensors: dict[str, MountedSensor],
+    cache: Path | None,
+) -> ReducedModel:
+    counts = [
+        state.chain.result.model.natural_frequency.size for state in measured.values()
+    ]
+    if settings.measured is not None:
+        counts.append(len(settings.measured.frequencies))
+    if not counts:
+        raise UsageError("nothing was measured: give a session, or [measured] in TOML")
+    modes = settings.identify.modes or RIGID_MODES + max(counts) + SPARE_MODES
+    box = settings.identify.stiffness_box
+    loads = sensor_rows(structure, list(sensors.values())) if sensors else None
+    key = content_key(structure, modes, box, sorted(map(repr, sensors.values())))
+    return cached(
+        cache,
+        key,
+        lambda: reduce_structure(structure, modes=modes, box=box, loads=loads),
+    )
+
+
+def show_structure(result: StructureIdentification, json_target: str | None) -> None:
+    """Print the identified parameters, the solutions and the full check."""
+    screen = console(json_target)
+    rows = [
+        (
+            one.name,
+            parameter_text(one),
+            one.unit,
+            "yes" if one.identifiable else "no",
+        )
+        for one in result.parameters
+    ]
+    title = f"Joints: {result.verdict.value} {WHAT_IS_SHOWN}"
+    screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
+    for reason in result.reasons:
+        screen.print(f"  {reason}", markup=False)
+    for state in result.states:
+        pairs = [
+            (f"{m:.6g}", f"{p:.6g}", f"{100 * (p / m - 1):+.3f} %")
+            for m, p in zip(state.measured, state.predicted, strict=False)
+        ]
+        if pairs:
+            columns = ("measured [Hz]", "predicted [Hz]", "error")
+            screen.print(table(f"Modes of {state.label}", columns, pairs))
+    for check in result.full_check:
+        word = "agrees with" if check.agrees else "DISAGREES with"
+        worst = (np.abs(check.reduced - check.full) / check.full).max(initial=0.0)
+        screen.print(
+            f"{check.label}: one full solve {word} the reduced model "
+            f"(largest difference {worst:.1e} of the frequency)"
+        )

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench modal --output-only``: modes from responses without a force channel."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.output_only.output_only_modes import (
+    OutputOnlyModes,
+    OutputOnlySettings,
+    identify_output_only,
+)
+from jointbench.station.files.input_files import read_recordings
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.screen.terminal import (
+    console,
+    table,
+    with_sd,
+    working,
+    write_json,
+)
+
+
+def run_output_only(
+    files: Sequence[Path],
+    *,
+    columns: str | None,
+    band: tuple[float, float] | None,
+    order: int | None,
+    json_target: str | None,
+) -> OutputOnlyModes:
+    """Identify the modes in the responses of `files` and show them."""
+    check_outputs(files, [json_target])
+    recording = longest(read_recordings(files, columns=columns, point=""))
+    settings = OutputOnlySettings(band=band)
+    if order is not None:
+        settings = OutputOnlySettings(band=band, highest_order=order)
+    with working("correlating responses, fitting modes"):
+        modes = identify_output_only(recording, settings)
+    show_output_only(recording, modes, json_target)
+    write_json(json_target, output_only_json(recording, modes))
+    return modes
+
+
+def longest(recordings: Sequence[Recording]) -> Recording:
+    """Return the one recording to look at.
+
+    Raises:
+        BadData: there are several: correlations do not reach across recordings.
+    """
+    if len(recordings) > 1:
+        names = ", ".join(repr(r.name) for r in recordings)
+        raise BadData(
+            f"{len(recordings)} recordings ({names}); modes from responses alone need "
+            "one long one: give a single file"
+        )
+    return recordings[0]
+
+
+def show_output_only(
+    recording: Recording, modes: OutputOnlyModes, json_target: str | None
+) -> None:
+    """Print the modes."""
+    low, high = modes.band
+    seconds = recording.samples.shape[1] / recording.sample_rate
+    rows = [
+        (
+            str(i + 1),
+            with_sd(modes.natural_frequency[i], modes.frequency_sd[i]),
+            with_sd(100 * modes.damping_ratio[i], 100 * modes.damping_ratio_sd[i]),
+            "steady sine, no resonance" if modes.sine_like[i] else "",
+        )
+        for i in range(modes.natural_frequency.size)
+    ]
+    title = (
+        f"Modes from responses alone, {low:.0f} to {high:.0f} Hz, {seconds:.4g} s "
+        "(± one standard deviation)"
+    )
+    columns = ("mode", "natural frequency [Hz]", "damping ratio [%]", "remark")
+    console(json_target).print(table(title, columns, rows))
+
+
+def output_only_json(recording: Recording, modes: OutputOnlyModes) -> dict[str, object]:
+    """Return the modes for programs; there are no residues and no modal masses."""
+    return {
+        "output_only": True,
+        "recording": recording.name,
+        "band_hz": list(modes.band),
+        "outputs": list(modes.outputs),
+        "modes": [
+            {
+                "frequency_hz": float(modes.natural_frequency[i]),
+                "frequency_sd_hz": float(modes.frequency_sd[i]),
+                "damping_ratio": float(modes.damping_ratio[i]),
+                "damping_ratio_sd": float(modes.damping_ratio_sd[i]),
+                "stable_orders": int(modes.stable_orders[i]),
+                "sine_like": bool(modes.sine_like[i]),
+                "shape_re": [float(v) for v in modes.shapes[i].real],
+                "shape_im": [float(v) for v in modes.shapes[i].imag],
+            }
+            for i in range(modes.natural_frequency.size)
+        ],
+    }

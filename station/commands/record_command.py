@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench record``: a visit to a bench into a session file, with its sheet."""
+
+from pathlib import Path
+
+from jointbench.acquisition.records.recordings import Verdict
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.session_place import check_session_name
+from jointbench.station.screen.terminal import (
+    lasting_console,
+    table,
+    working,
+    write_json,
+)
+from jointbench.station.sources.visit_file import WrittenVisit, write_visit
+
+
+def run_record(
+    url: str, out: Path, *, overwrite: bool, json_target: str | None
+) -> WrittenVisit:
+    """Record a bench and say what was recorded.
+
+    Args:
+        url: of the bench.
+        out: session file to write.
+        overwrite: replace an earlier session and its sheets, once all is recorded.
+        json_target: where the JSON goes.
+    """
+    check_session_name(out)
+    check_outputs([out], [json_target])
+    with working(f"recording {url}"):
+        written = write_visit(url, out, overwrite=overwrite)
+    _show(written, json_target)
+    return written
+
+
+def _show(written: WrittenVisit, json_target: str | None) -> None:
+    session = written.session
+    hits = [hit for recording in session.recordings for hit in recording.hits]
+    good = sum(hit.verdict is Verdict.OK for hit in hits)
+    preloads = sorted({r.preload for r in session.recordings if r.preload is not None})
+    rows = [
+        ("recordings", f"{len(session.recordings)}"),
+        ("hits", f"{len(hits)}, {good} accepted"),
+        ("hit points", ", ".join(sorted({hit.point for hit in hits})) or "-"),
+        ("preloads", ", ".join(f"{p:g} N" for p in preloads) or "-"),
+    ]
+    screen = lasting_console(json_target)
+    screen.print(table(f"{written.path}", ("visit", "holds"), rows))
+    for words, path in (("model", written.model), ("truth", written.truth)):
+        if path is not None:
+            screen.print(f"{words}: {path}")
+    for words in (written.stays, "" if written.whole else "stopped before its end"):
+        if words:
+            screen.print(words, soft_wrap=True)
+    if written.model is not None:
+        screen.print(f"\nnext: jointbench gap {written.path} --model {written.model}")
+    write_json(
+        json_target,
+        {
+            "session": str(written.path),
+            "interrupted": not written.whole,
+            "model": None if written.model is None else str(written.model),
+            "truth": None if written.truth is None else str(written.truth),
+            "recordings": len(session.recordings),
+            "hits": len(hits),
+            "accepted_hits": good,
+            "preloads_n": preloads,
+        },
+    )

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench surface``: structure function and fractal parameters of surfaces."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jointbench.acquisition.formats.heights.height_facts import cautions
+from jointbench.acquisition.records.recordings import Step
+from jointbench.acquisition.records.surfaces import Surface
+from jointbench.signal.fractal.fractal_fit import fit_fractal
+from jointbench.signal.fractal.surface_verdict import FractalFit
+from jointbench.station.files.input_files import read_surfaces
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.pipeline.roughness_words import (
+    HEADING,
+    roughness_words,
+)
+from jointbench.station.pipeline.surface_options import (
+    PLAIN,
+    SurfaceOptions,
+    pooled_beside,
+    pooled_structure,
+    require_suited,
+)
+from jointbench.station.pipeline.surface_stages import (
+    Pooled,
+    SurfaceChain,
+    analyse_surface,
+    chain_cautions,
+    fit_json,
+    surface_json,
+)
+from jointbench.station.screen.terminal import (
+    console,
+    engineering,
+    table,
+    with_sd,
+    working,
+    write_json,
+)
+
+
+def run_surface(
+    files: Sequence[Path],
+    *,
+    columns: str | None,
+    json_target: str | None,
+    options: SurfaceOptions = PLAIN,
+) -> tuple[SurfaceChain, ...]:
+    """Fit every surface in `files` and show the verdicts.
+
+    Raises:
+        UsageError: an option does not suit a surface.
+        BadData: a file cannot be read, or a surface is too small.
+    """
+    check_outputs(files, [json_target])
+    read = read_surfaces(files, columns=columns)
+    given = [surface for _, surface in read]
+    require_suited(given, options)
+    chains = []
+    results: list[dict[str, object]] = []
+    for path, surface in read:
+        with working(f"fitting {surface.name}"):
+            chain = analyse_surface(surface, options)
+        chains.append(chain)
+        results.append({"file": str(path)} | surface_json(chain))
+    pooled = _pooled(given, chains) if options.pool else None
+    show_surfaces(chains, json_target, pooled)
+    found: dict[str, object] = {"files": results}
+    if pooled is not None:
+        found["pooled"] = _pooled_json(pooled, chains)
+    write_json(json_target, found)
+    return tuple(chains)
+
+
+def show_surfaces(
+    chains: Sequence[SurfaceChain],
+    json_target: str | None,
+    pooled: Pooled | None = None,
+) -> None:
+    """Print verdict, D, G and the reason of each surface, and what else was asked."""
+    screen = console(json_target)
+    rows = [(chain.surface.name, *_numbers(chain.fit)) for chain in chains]
+    if pooled is not None:
+        rows.append((pooled.structure.name, *_numbers(pooled.fit)))
+    columns = ("surface", "verdict", "D [-]", HEADING, "fit band")
+    screen.print(table("Surfaces (D ± one standard deviation)", columns, rows))
+    for chain in chains:
+        for said in chain_cautions(chain):
+            screen.print(f"  {said}", markup=False)
+        screen.print(f"  {chain.surface.name}: {chain.fit.reason}", markup=False)
+        screen.print(f"  {chain.surface.name}: {_origin(chain)}", markup=False)
+        for line in chain.beside.lines:
+            screen.print(f"  {chain.surface.name}: {line}", markup=False)
+    if pooled is not None:
+        for line in (pooled.fit.reason, *pooled.beside.lines):
+            screen.print(f"  {pooled.structure.name}: {line}", markup=False)
+
+
+def _pooled(given: Sequence[Surface], chains: Sequence[SurfaceChain]) -> Pooled:
+    """Fit all profiles as one."""
+    with working("fitting all profiles as one"):
+        structure = pooled_structure(given, [chain.surface for chain in chains])
+        fit = fit_fractal(structure)
+    dimensions = [chain.fit.dimension for chain in chains]
+    return Pooled(structure, fit, pooled_beside(structure, dimensions))
+
+
+def _pooled_json(pooled: Pooled, chains: Sequence[SurfaceChain]) -> dict[str, object]:
+    """Return what is told of all profiles as one."""
+    said = dict.fromkeys(s for c in chains for s in cautions(c.surface.provenance))
+    return {
+        **fit_json(pooled.structure.name, pooled.fit, tuple(said)),
+        "profiles": [chain.surface.name for chain in chains],
+        **dict(pooled.beside.keys),
+    }
+
+
+def _numbers(fit: FractalFit) -> tuple[str, str, str, str]:
+    if fit.scaling is None or fit.fit_band is None:
+        return fit.verdict.value, "-", "-", "-"
+    low, high = (engineering(end, "m") for end in fit.fit_band)
+    return (
+        fit.verdict.value,
+        with_sd(fit.scaling.dimension, fit.scaling.dimension_sd),
+        roughness_words(fit.scaling),
+        f"{low} to {high}",
+    )
+
+
+def _origin(chain: SurfaceChain) -> str:
+    """Say in one line what the file was taken for."""
+    known = [s for s in chain.surface.provenance if s.name == "recognise"]
+    if not known:
+        return "made in memory"
+    detail = dict(known[0].detail)
+    return f"read as {detail.get('format', 'a table')} ({_why(known[0])})"
+
+
+def _why(recognised: Step) -> str:
+    detail = dict(recognised.detail)
+    return str(detail.get("reason", "no reason kept"))

@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench verify`` over many files: sessions, results, tables and ledgers.
+
+A results file is 'whole' if its content is what its own digest says, 'unsigned' if it
+was written before there were digests, 'rotten' if it is not. Digests find accidents.
+Whoever changes a number on purpose can write the digest anew, too.
+"""
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import JointbenchError, UsageError
+from jointbench.acquisition.file_access.content_digest import Seal, seal_of
+from jointbench.acquisition.file_access.hdf5_guards import open_guarded
+from jointbench.acquisition.file_access.netcdf_read import read_attribute
+from jointbench.acquisition.file_access.text_files import shown, visible
+from jointbench.acquisition.session_file.store import damage_named
+from jointbench.station.archive.archive_table import TABLE_SCHEMA
+from jointbench.station.archive.ledger import ledger_seal
+from jointbench.station.archive.session_problems import problems_of
+from jointbench.station.commands.verify_command import run_verify
+from jointbench.station.files.archive_patterns import archive_files
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.results.result_tables import result_tables
+from jointbench.station.results.results_read import is_results, read_result
+from jointbench.station.screen.terminal import console, table, working, write_json
+
+LEDGER, TABLE = ".ledger.jsonl", ".nc"
+DAMAGED = "damaged"
+MOST_SHOWN = 20
+ROTTEN = (
+    "its content is not what its digest says; make it anew by `jointbench process`, "
+    "`reprocess` or `modal`, or use another copy"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What verifying a file came to.
+
+    Attributes:
+        path: of the file.
+        kind: session, results, table or ledger.
+        state: whole, unsigned, rotten or damaged.
+        problems: what is wrong, a line each; empty where nothing is.
+    """
+
+    path: Path
+    kind: str
+    state: str
+    problems: tuple[str, ...] = ()
+
+
+def verify_all(patterns: Sequence[str], *, json_target: str | None) -> bool:
+    """Verify what patterns name; a single session is shown in detail.
+
+    Args:
+        patterns: files, folders (all below is meant) or quoted patterns.
+        json_target: where the JSON goes.
+
+    Returns:
+        True where nothing is wrong; files without a digest are no fault.
+
+    Raises:
+        UsageError: a pattern names nothing.
+        BadData: the only file named is a session that cannot be read at all.
+    """
+    paths = archive_files(patterns, (TABLE, LEDGER))
+    if len(paths) == 1 and _kind(paths[0]) == "session":
+        return run_verify(paths[0], json_target=json_target)
+    check_outputs(paths, [json_target])
+    with working(f"verifying {len(paths)} files"):
+        found = [check_file(path) for path in paths]
+    _show(found, json_target)
+    faults = [one for one in found if one.problems]
+    write_json(
+        json_target,
+        {
+            "whole": not faults,
+            "problems": [
+                f"{one.path}: {word}" for one in faults for word in one.problems
+            ],
+            "counts": dict(Counter(one.state for one in found)),
+            "files": [
+                {
+                    "file": str(one.path),
+                    "kind": one.kind,
+                    "state": one.state,
+                    "problems": list(one.problems),
+                }
+                for one in found
+            ],
+        },
+    )
+    return not faults
+
+
+def check_file(path: Path) -> Checked:
+    """Read a file of an archive through; never raise for its sake."""
+    kind = _kind(path)
+    checks: dict[str, Callable[[Path], Checked]] = {
+        "results": _results,
+        "table": _table,
+        "ledger": _ledger,
+    }
+    try:
+        return checks.get(kind, _session)(path)
+    except JointbenchError as error:
+        return Checked(path, kind, DAMAGED, (str(error),))
+
+
+def _kind(path: Path) -> str:
+    """Tell what a file is by what it says; by its name where it says nothing."""
+    if path.name.endswith(LEDGER):
+        return "ledger"
+    try:
+        if is_results(path):
+            return "results"
+    except JointbenchError:
+        pass
+    if path.suffix == TABLE:
+        return "table"
+    return "results" if path.name.endswith(".results.h5") else "session"
+
+
+def _session(path: Path) -> Checked:
+    problems = tuple(problems_of(path))
+    return Checked(path, "session", DAMAGED if problems else Seal.WHOLE, problems)
+
+
+def _results(path: Path) -> Checked:
+    seal = _seal(path)
+    if seal is Seal.ROTTEN:
+        return Checked(path, "results", seal, (ROTTEN,))
+    read_result(path)
+    result_tables(path)
+    return Checked(path, "results", seal)
+
+
+def _table(path: Path) -> Checked:
+    with open_guarded(path) as file, damage_named(path):
+        if read_attribute(file, "schema") != TABLE_SCHEMA:
+            raise UsageError(f"{shown(path.name)} is no table of an archive of ours")
+    seal = _seal(path)
+    problems = (ROTTEN.replace("process`, `reprocess` or `modal", "archive"),)
+    return Checked(path, "table", seal, problems if seal is Seal.ROTTEN else ())
+
+
+def _seal(path: Path) -> Seal:
+    with open_guarded(path) as file, damage_named(path):
+        return seal_of(file)
+
+
+def _ledger(path: Path) -> Checked:
+    seal, count = ledger_seal(path)
+    words = f"{count} lines are not what their digests say; they are passed over"
+    return Checked(path, "ledger", seal, (words,) if count else ())
+
+
+def _show(found: Sequence[Checked], json_target: str | None) -> None:
+    screen = console(json_target)
+    states = [*(seal.value for seal in Seal), DAMAGED]
+    kinds = list(dict.fromkeys(one.kind for one in found))
+    counts = Counter((one.kind, str(one.state)) for one in found)
+    rows = [(kind, *(str(counts[kind, state]) for state in states)) for kind in kinds]
+    screen.print(table("Verified", ("files", *states), rows))
+    faults = [one for one in found if one.problems]
+    for one in faults[:MOST_SHOWN]:
+        for word in one.problems:
+            name = visible(str(one.path))
+            line = word if name in word else f"{name}: {word}"
+            screen.print(f"{one.state}: {line}", soft_wrap=True)
+    if len(faults) > MOST_SHOWN:
+        screen.print(f"and {len(faults) - MOST_SHOWN} more, see --json")
+    if any(one.state == Seal.UNSIGNED for one in found):
+        screen.print(
+            "unsigned: written before there were digests; nothing tells whether they "
+            "changed",
+            soft_wrap=True,
+        )

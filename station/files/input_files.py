@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""Whatever files a command is given: sessions, hit tables and surfaces, told apart."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import BadData, UnitError, UsageError
+from jointbench.acquisition.basics.units import parse_value
+from jointbench.acquisition.file_access.text_files import file_digest
+from jointbench.acquisition.formats.columns import SURFACE_EXAMPLES, parse_columns
+from jointbench.acquisition.formats.heights.read_surfaces import read_surface
+from jointbench.acquisition.formats.samples.hit_tables import read_recording
+from jointbench.acquisition.formats.samples.mat_recording import read_mat_recording
+from jointbench.acquisition.formats.samples.rattlesnake import (
+    SUFFIXES as RATTLESNAKE_SUFFIXES,
+)
+from jointbench.acquisition.formats.samples.rattlesnake import read_rattlesnake
+from jointbench.acquisition.formats.samples.tdms import read_tdms
+from jointbench.acquisition.formats.samples.universal import (
+    SUFFIXES as UNIVERSAL_SUFFIXES,
+)
+from jointbench.acquisition.formats.samples.universal import read_universal
+from jointbench.acquisition.formats.samples.wave import read_wave
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.acquisition.records.surfaces import Surface
+from jointbench.acquisition.session_file.store import read_session
+
+SESSION_SUFFIXES = (".h5", ".hdf5")
+
+
+def parse_preload(text: str) -> float:
+    """Read a preload as typed, for example ``"4 kN"``; in newton.
+
+    Raises:
+        UnitError: it has no unit of force.
+        UsageError: it is not above zero.
+    """
+    value = parse_value(text, "force")
+    if value <= 0:
+        raise UsageError(f"--preload is {text!r}; it must be above zero, e.g. '4 kN'")
+    return value
+
+
+def is_session_name(path: Path) -> bool:
+    """Return whether a path is named like an HDF5 file."""
+    return path.suffix.lower() in SESSION_SUFFIXES
+
+
+def read_samples(
+    path: Path, *, columns: str | None, point: str, full_scale: float | None = None
+) -> tuple[Recording, ...]:
+    """Read a file of a format that holds samples by its nature, told by its ending.
+
+    Args:
+        path: of the file.
+        columns: what its channels hold, where the file does not say.
+        point: where the hammer struck.
+        full_scale: what the largest number of a WAV file stands for.
+
+    Returns:
+        The recordings of the file; none where the ending is none of these.
+
+    Raises:
+        BadData: the file is not what it should be, or its units are missing.
+    """
+    suffix = path.suffix.lower()
+    if suffix in UNIVERSAL_SUFFIXES:
+        return (read_universal(path, columns=columns, point=point),)
+    if suffix == ".tdms":
+        return (read_tdms(path, columns=columns, point=point),)
+    if suffix == ".mat":
+        return (read_mat_recording(path, columns=columns, point=point),)
+    if suffix == ".wav":
+        return (read_wave(path, columns=columns, point=point, full_scale=full_scale),)
+    if suffix in RATTLESNAKE_SUFFIXES:
+        return read_rattlesnake(path, columns=columns, point=point)
+    return ()
+
+
+def read_foreign(
+    path: Path, *, columns: str | None, point: str, full_scale: float | None = None
+) -> tuple[Recording | Surface, ...]:
+    """Read one foreign file as hits or as a surface.
+
+    Args:
+        path: of the file.
+        columns: what the columns of a plain table hold; a ``time`` makes it hits.
+            Formats that state their units do without.
+        point: where the hammer struck.
+        full_scale: what the largest number of a WAV file stands for.
+
+    Returns:
+        A recording or a surface, named after the file; one for each stream where it
+        holds several.
+
+    Raises:
+        BadData: the file is neither, or its units are missing; the message says what
+            to type.
+    """
+    samples = read_samples(path, columns=columns, point=point, full_scale=full_scale)
+    if samples:
+        return samples
+    if columns is not None and "time" in {c.role for c in parse_columns(columns)}:
+        return (read_recording(path, columns=columns, point=point),)
+    try:
+        return (read_surface(path, columns=columns),)
+    except UnitError as surface_error:
+        if columns is not None:
+            raise
+        try:
+            return (read_recording(path, columns=None, point=point),)
+        except UnitError as error:
+            heights = " or ".join(f"'{example}'" for example in SURFACE_EXAMPLES)
+            raise UnitError(
+                f"{error}; for heights --columns {heights}"
+            ) from surface_error
+
+
+def read_recordings(
+    files: Sequence[Path], *, columns: str | None, point: str
+) -> tuple[Recording, ...]:
+    """Read the recordings of sessions and hit files.
+
+    Raises:
+        BadData: a file cannot be read, or none holds a recording.
+    """
+    refuse_twice(files)
+    found: list[Recording] = []
+    for path in files:
+        if is_session_name(path):
+            found += read_session(path).recordings
+        else:
+            samples = read_samples(path, columns=columns, point=point)
+            found += samples or (read_recording(path, columns=columns, point=point),)
+    if not found:
+        names = ", ".join(path.name for path in files)
+        raise BadData(f"no recording in {names}; 'jointbench inspect' shows what is")
+    return tuple(found)
+
+
+def refuse_twice(files: Sequence[Path]) -> None:
+    """Raise `UsageError` where the same content is given twice: it is no repeat."""
+    digests: dict[str, Path] = {}
+    for path in files:
+        digest = file_digest(path)
+        if digest in digests:
+            raise UsageError(
+                f"'{path}' and '{digests[digest]}' hold the same data; a copy is no "
+                "second measurement, give each once"
+            )
+        digests[digest] = path
+
+
+def read_surfaces(
+    files: Sequence[Path], *, columns: str | None
+) -> tuple[tuple[Path, Surface], ...]:
+    """Read the surfaces of sessions and surface files, each with its file.
+
+    Raises:
+        BadData: a file cannot be read, or none holds a surface.
+    """
+    found: list[tuple[Path, Surface]] = []
+    for path in files:
+        if is_session_name(path):
+            found += [(path, surface) for surface in read_session(path).surfaces]
+        else:
+            found.append((path, read_surface(path, columns=columns)))
+    if not found:
+        names = ", ".join(path.name for path in files)
+        raise BadData(f"no surface in {names}; 'jointbench inspect' shows what is")
+    return tuple(found)

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: MIT
+"""FRFs and mode shapes as universal files, data sets 58 and 55, SI units.
+
+Source:
+    Structural Dynamics Research Laboratory, University of Cincinnati, Universal File
+    Formats, data sets 55 (data at nodes) and 58 (function at nodal degree of freedom).
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.file_access.text_files import visible
+from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.station.files.output_paths import write_text
+
+_EDGE = "    -1"
+_WIDTH = 80
+_FRF = 4
+_COMPLEX_DOUBLE = 6
+_UNEVEN, _EVEN = 0, 1
+_FREQUENCY = 18
+_FORCE = 13
+# Data set 55: structural, complex mode, 3 translations, displacement, complex.
+_STRUCTURAL, _COMPLEX_MODE, _TRANSLATIONS, _DISPLACEMENT, _COMPLEX = 1, 3, 2, 8, 5
+# Specific data types of the response: displacement, velocity, acceleration.
+_RESPONSE = {
+    FrfKind.RECEPTANCE: (8, "Displacement", "m"),
+    FrfKind.MOBILITY: (11, "Velocity", "m/s"),
+    FrfKind.ACCELERANCE: (12, "Acceleration", "m/s^2"),
+}
+
+
+class Modes(Protocol):
+    """What data set 55 takes of modes."""
+
+    @property
+    def natural_frequency(self) -> FloatArray:
+        """[Hz], shape (n_modes,)."""
+
+    @property
+    def poles(self) -> ComplexArray:
+        """[rad/s], shape (n_modes,)."""
+
+    @property
+    def shapes(self) -> ComplexArray:
+        """Shape (n_modes, n_outputs)."""
+
+
+def write_universal_frf(path: Path, frf: Frf) -> None:
+    """Write every FRF as a data set of its own; nodes are numbered from 1.
+
+    Args:
+        path: file to write.
+        frf: any kind. The labels go into the identification lines; directions are not
+            known here and are written as scalar.
+    """
+    lines = [
+        line
+        for row, column in np.ndindex(frf.response.shape[:2])
+        for line in _data_set(frf, row, column)
+    ]
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def write_universal(path: Path, frf: Frf, model: Modes) -> None:
+    """Write FRFs (58) and mode shapes (55) into one universal file.
+
+    Args:
+        path: file to write.
+        frf: as for `write_universal_frf`.
+        model: modes of the same outputs; node n is output n, as in the FRFs. Of the
+            three translations only the third is used, for want of directions.
+    """
+    lines = [
+        line
+        for row, column in np.ndindex(frf.response.shape[:2])
+        for line in _data_set(frf, row, column)
+    ]
+    for number in range(model.natural_frequency.size):
+        lines += _shape_set(model, number)
+    write_text(path, "\n".join(lines) + "\n")
+
+
+def _shape_set(model: Modes, number: int) -> Iterator[str]:
+    """Yield a complex mode: pole and Modal A as data set 55 defines them."""
+    pole = model.poles[number]
+    yield from (_EDGE, "    55")
+    frequency = f"{model.natural_frequency[number]:.6g} Hz"
+    for text in (f"mode {number + 1}, {frequency}", "jointbench", "", "", "NONE"):
+        yield printable(text)
+    fields = (_STRUCTURAL, _COMPLEX_MODE, _TRANSLATIONS, _DISPLACEMENT, _COMPLEX, 3)
+    yield "".join(f"{value:10d}" for value in fields)
+    yield "".join(f"{value:10d}" for value in (2, 6, 1, number + 1))
+    # Modal A of a shape phi and participation L is 1 where residue = phi L / A.
+    reals = (pole.real, pole.imag, 1.0, 0.0, 0.0, 0.0)
+    yield "".join(f"{value:13.5e}" for value in reals)
+    for node, value in enumerate(model.shapes[number], 1):
+        yield f"{node:10d}"
+        parts = (0.0, 0.0, 0.0, 0.0, value.real, value.imag)
+        yield "".join(f"{part:13.5e}" for part in parts)
+    yield _EDGE
+
+
+def _data_set(frf: Frf, row: int, column: int) -> Iterator[str]:
+    code, word, unit = _RESPONSE[frf.kind]
+    output, point = frf.outputs[row], frf.inputs[column]
+    yield from (_EDGE, "    58")
+    for text in (f"{frf.kind.value} {output} / {point}", "jointbench", "", "", "NONE"):
+        yield printable(text)
+    yield (
+        f"{_FRF:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{row + 1:10d}{0:4d}"
+        f" {'NONE':10s}{column + 1:10d}{0:4d}"
+    )
+    axis, step = frf.frequency, _step(frf.frequency)
+    spacing = _UNEVEN if step is None else _EVEN
+    begin = 0.0 if step is None else axis[0]
+    yield (
+        f"{_COMPLEX_DOUBLE:10d}{axis.size:10d}{spacing:10d}"
+        f"{begin:13.5e}{step or 0.0:13.5e}{0.0:13.5e}"
+    )
+    yield axis_line(_FREQUENCY, "Frequency", "Hz")
+    yield axis_line(code, word, unit)
+    yield axis_line(_FORCE, "Force", "N")
+    yield axis_line(0, "NONE", "NONE")
+    response: ComplexArray = frf.response[row, column]
+    values = [f"{value.real:20.11e}{value.imag:20.11e}" for value in response]
+    if step is None:
+        yield from (f"{f:13.5e}{v}" for f, v in zip(axis, values, strict=True))
+    else:
+        yield from ("".join(values[i : i + 2]) for i in range(0, len(values), 2))
+    yield _EDGE
+
+
+def _step(axis: FloatArray) -> float | None:
+    """Return the step of an even axis, None for an uneven one."""
+    if axis.size < 2:
+        return None
+    step = float(axis[-1] - axis[0]) / (axis.size - 1)
+    even = np.allclose(np.diff(axis), step, rtol=1e-6, atol=0.0)
+    return step if even else None
+
+
+def axis_line(code: int, name: str, unit: str) -> str:
+    """Return a record of data set 58 that describes an axis."""
+    return f"{code:10d}{0:5d}{0:5d}{0:5d} {name:20s} {unit:20s}"
+
+
+def printable(text: str) -> str:
+    """Return one line of 80 plain characters at the most, whatever a file's texts."""
+    line = visible(" ".join(text.split()))
+    return line.encode("ascii", "replace").decode("ascii")[:_WIDTH] or "NONE"

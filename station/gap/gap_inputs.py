@@ -1,0 +1,280 @@
+# SPDX-License-Identifier: MIT
+"""Whatever `gap` is given (campaign, sessions, a long record, a URL), examined."""
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from jointbench.acquisition.basics.errors import BadData, NoHitFound, UsageError
+from jointbench.acquisition.file_access.hdf5_guards import open_guarded
+from jointbench.acquisition.file_access.netcdf_read import read_attribute
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.acquisition.records.session import Session
+from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.diagnosis.single_record import (
+    StretchScore,
+    diagnose_record,
+)
+from jointbench.analysis.gap.intake.read_campaign import read_campaign
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
+from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+from jointbench.signal.hits.find_hits import HitCriteria
+from jointbench.signal.hits.hit_verdicts import HitLimits
+from jointbench.station.files.input_files import is_session_name, refuse_twice
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.gap.record_campaign import read_record
+from jointbench.station.models.bench_model import BenchModel
+from jointbench.station.models.gap_model import gap_sheet
+from jointbench.station.pipeline.chain import hits_stage
+from jointbench.station.pipeline.joint_stages import gap_of
+from jointbench.station.pipeline.judge_again import StoredHits, with_hits
+from jointbench.station.pipeline.stage_store import StageRun
+from jointbench.station.sources.open_source import is_url
+from jointbench.station.sources.visit_file import write_visit
+
+ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
+"""Levels span 30x on purpose: none is weak but what lies far below the softest of them,
+and the trigger must reach that one."""
+Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class GapRequest:
+    """What is asked of a source.
+
+    Attributes:
+        model: bench model file, or None.
+        without: names of effects to leave out of the catalogue.
+        preload: on the joint where the session does not say [N], or None.
+        entries: the catalogue of this run.
+    """
+
+    model: Path | None = None
+    without: frozenset[str] = frozenset()
+    preload: float | None = None
+    entries: tuple[LumpedEffect, ...] = CATALOGUE
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """What became of a source.
+
+    Attributes:
+        title: of the source, for the report.
+        found: verdict and evidence.
+        scores: on parts of a long record that no fit has seen.
+        unit: of the scores.
+        remarks: what was left out, and why, a line each.
+    """
+
+    title: str
+    found: Diagnosis
+    scores: tuple[StretchScore, ...] = ()
+    unit: str = ""
+    remarks: tuple[str, ...] = ()
+
+
+def examine(
+    sources: Sequence[str], wanted: GapRequest, *, progress: Progress
+) -> Examined:
+    """Read the sources, whatever they are, and diagnose them.
+
+    Args:
+        sources: a campaign file; sessions; a MAT file; a model file that names one of
+            these; or the URL of a bench.
+        wanted: model and options.
+        progress: told what is being done, one line at a time.
+
+    Raises:
+        UsageError: a model is missing, or is given where the source brings its own.
+        BadData: a file cannot be used as it is.
+    """
+    if len(sources) == 1 and is_url(sources[0]):
+        return _examine_url(sources[0], wanted, progress)
+    if any(is_url(source) for source in sources):
+        raise UsageError("a URL is a visit of its own; give it alone")
+    paths = [Path(source) for source in sources]
+    if paths[0].suffix.lower() == ".toml":
+        return _examine_named(paths, wanted, progress)
+    refuse_twice(paths)
+    if any(path.suffix.lower() == ".mat" for path in paths):
+        return _examine_record(paths, wanted, progress)
+    if not is_session_name(paths[0]):
+        raise UsageError(
+            f"'{paths[0]}' is no campaign, session (.h5) or record (.mat); bring hits "
+            "in with `jointbench import` first"
+        )
+    if _schema(paths[0]) != SESSION_SCHEMA:
+        return _examine_campaign(paths, wanted, progress)
+    return _examine_sessions(paths, wanted, progress)
+
+
+def _schema(path: Path) -> str:
+    with open_guarded(path) as file:
+        return str(read_attribute(file, "schema"))
+
+
+def _examine_url(url: str, wanted: GapRequest, progress: Progress) -> Examined:
+    """Record a visit into a session file, and examine that as any other session."""
+    with tempfile.TemporaryDirectory() as folder:
+        session = Path(folder) / "session.h5"
+        progress("recording the visit")
+        written = write_visit(url, session)
+        model = wanted.model or written.model
+        done = _examine_sessions([session], replace(wanted, model=model), progress)
+    return replace(done, title=url)
+
+
+def _examine_named(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    """Examine the files that a model file names."""
+    model = paths[0]
+    if len(paths) > 1 or wanted.model is not None:
+        raise UsageError(
+            f"'{model}' is a model file: give it alone, with the sessions it is about "
+            "in its [gap] table, or as --model beside them"
+        )
+    bench = read_toml(model, BenchModel)
+    names = bench.gap.sessions
+    if bench.record is not None and bench.record.file is not None:
+        names = (*names, bench.record.file)
+    if not names:
+        raise UsageError(
+            f"'{model}' names no data; add sessions = ['session.h5'] to its [gap] "
+            f"table, or type: jointbench gap session.h5 --model {model}"
+        )
+    files = [str(model.parent / name) for name in names]
+    return examine(files, replace(wanted, model=model), progress=progress)
+
+
+def _examine_campaign(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    if len(paths) > 1 or wanted.model is not None or wanted.preload is not None:
+        raise UsageError(
+            f"'{paths[0]}' is no session: a campaign file is given alone, it brings "
+            "its own model and preloads"
+        )
+    campaign = read_campaign(paths[0])
+    found = diagnose(
+        campaign, without=wanted.without, entries=wanted.entries, progress=progress
+    )
+    return Examined(paths[0].stem, found)
+
+
+def _examine_record(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    if len(paths) > 1:
+        raise UsageError("a record is examined alone; give one MAT file")
+    bench = _model(paths[0], wanted)
+    if wanted.preload is not None:
+        raise UsageError("--preload belongs to sessions; a record has none")
+    record = read_record(paths[0], bench)
+    found, scores = diagnose_record(
+        record.record,
+        record.training,
+        record.scored,
+        record.sheet,
+        without=wanted.without,
+        entries=wanted.entries,
+        progress=progress,
+    )
+    return Examined(
+        paths[0].stem,
+        record.in_stand_ins(found),
+        record.in_unit(scores),
+        record.unit,
+        record.remarks,
+    )
+
+
+def _examine_sessions(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    sheet = gap_sheet(_model(paths[0], wanted))
+    sessions = [read_session(path) for path in paths]
+    sessions.sort(key=lambda session: session.created)
+    remarks: list[str] = []
+    stored = [
+        pair for session in sessions for pair in _with_preloads(session, wanted.preload)
+    ]
+    recordings = _judged(stored, remarks)
+    if not recordings:
+        names = ", ".join(path.name for path in paths)
+        raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
+    title = ", ".join(path.stem for path in paths)
+    found, left_out = gap_of(
+        title,
+        recordings,
+        sheet,
+        without=wanted.without,
+        entries=wanted.entries,
+        progress=progress,
+    )
+    return Examined(title, found, remarks=(*remarks, *left_out))
+
+
+def _model(path: Path, wanted: GapRequest) -> BenchModel:
+    if wanted.model is None:
+        raise UsageError(
+            f"'{path}' holds data but no model; give the bench's with --model "
+            "bench.toml"
+        )
+    return read_toml(wanted.model, BenchModel)
+
+
+def _with_preloads(
+    session: Session, preload: float | None
+) -> list[tuple[Recording, float | None]]:
+    """Return recordings in order of time, each with the preload it was made at [N]."""
+    of_session = session.joint.preload if session.joint is not None else None
+    found = []
+    for recording in sorted(session.recordings, key=lambda r: r.start_time):
+        own = recording.preload if recording.preload is not None else of_session
+        if own is not None and preload is not None and own != preload:
+            raise UsageError(
+                f"--preload is {preload:g} N, but recording {recording.name!r} was "
+                f"made at {own:g} N; leave --preload out"
+            )
+        found.append((recording, own if own is not None else preload))
+    return found
+
+
+def _judged(
+    stored: Sequence[tuple[Recording, float | None]], remarks: list[str]
+) -> list[Recording]:
+    """Return the recordings that hold hits; their level is that of all sessions."""
+    recordings = [recording for recording, _ in stored]
+    try:
+        found = hits_stage(
+            recordings, ANY_LEVEL, StoredHits(all_struck=False), StageRun()
+        )
+    except NoHitFound:
+        return []
+    remarks += [one.quiet for one in found if one.quiet]
+    remarks += [
+        f"recording {recording.name!r}: {hit.reason}"
+        for recording, one in zip(recordings, found, strict=True)
+        for hit in one.lowered
+    ]
+    # What was written of the session is not checked there: an impossible preload
+    # must reach the one check that names it, not the record's own.
+    return [
+        _at_preload(with_hits(recording, one), preload)
+        for (recording, preload), one in zip(stored, found, strict=True)
+        if one.hits
+    ]
+
+
+def _at_preload(recording: Recording, preload: float | None) -> Recording:
+    if preload is not None and not preload > 0:
+        raise BadData(
+            f"recording {recording.name!r} was made at a preload of {preload:g} N; it "
+            "must be above zero: correct it where the session was made"
+        )
+    return replace(recording, preload=preload)

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: MIT
+"""What ``jointbench gap`` shows on a terminal, in 80 columns or more."""
+
+import textwrap
+from collections.abc import Sequence, Set
+from typing import Literal
+
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
+from jointbench.station.report.gap_sentences import (
+    SHEET,
+    SMALL_GAP,
+    headline,
+    next_step,
+    percent,
+    place,
+    short,
+    sure,
+    why_lost,
+)
+from jointbench.station.screen.escaping_console import seen
+from jointbench.station.screen.terminal import console, with_sd
+
+MOST_CANDIDATES = 6
+MOST_SLICES = 3
+SMALL_SHARE = 0.005
+WIDEST = 110
+LABEL = 9
+"""Width of the words that lead the lines."""
+LONGEST_NAME = 34
+VIEW_HEADS = ("view", "largest shares")
+TRIED_HEADS = ("explanation", "behind", "chi2/dof", "pull", "why")
+
+
+def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
+    """Print verdict, effects, where the gap sat, rivals, and what to do next.
+
+    Args:
+        found: the diagnosis.
+        json_target: where the JSON goes; ``-`` moves the words to standard error.
+    """
+    show_on(console(json_target), found)
+
+
+def show_on(screen: Console, found: Diagnosis) -> None:
+    """Print the same on a screen."""
+    screen.print(f"verdict: {found.verdict.value}", style="bold")
+    _say(screen, "", f"{headline(found)}.")
+    _say(screen, "", found.reason)
+    if found.effects:
+        columns = ("effect", "value ± sd", "unit", "sure")
+        screen.print(
+            _table("What the model lacks", columns, _effects(found), words={0, 2})
+        )
+    screen.print()
+    _say(screen, "gap", _gap_words(found))
+    if found.exhibit is not None and found.exhibit.where:
+        _say(screen, "where", found.exhibit.where)
+        if found.verdict is Finding.UNKNOWN:
+            _say(screen, "looks", *found.exhibit.look)
+    _say(screen, "limits", _limit_words(found))
+    where = _where(found)
+    if where:
+        screen.print(_table("Where the gap sits", VIEW_HEADS, where, words={0, 1}))
+    if len(found.candidates) > 1:
+        tried = _candidates(screen, found)
+        screen.print(_table("Explanations tried", TRIED_HEADS, tried, words={0, 4}))
+    if next_step(found):
+        screen.print()
+        _say(screen, "next", next_step(found))
+
+
+def _say(screen: Console, label: str, *texts: str) -> None:
+    """Print texts as paragraphs that hang behind a label."""
+    width = min(screen.width, WIDEST)
+    for number, text in enumerate(texts):
+        lead = f"{label}:" if label and number == 0 else ""
+        start = f"{lead:<{LABEL}}" if label else "  "
+        hang = " " * (LABEL if label else 2)
+        if label and len(texts) > 1:
+            start, hang = f"{start}- ", f"{hang}  "
+        for line in textwrap.wrap(
+            text, width, initial_indent=start, subsequent_indent=hang
+        ):
+            screen.print(line, markup=False, soft_wrap=True)
+
+
+def _table(
+    title: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    words: Set[int],
+) -> RenderableType:
+    """Return a titled table; columns of words read from the left."""
+    result = Table(box=None, pad_edge=False)
+    for number, column in enumerate(columns):
+        side: Literal["left", "right"] = "left" if number in words else "right"
+        result.add_column(seen(column), justify=side)
+    for row in rows:
+        result.add_row(*(seen(cell) for cell in row))
+    return Group(Text(), seen(title, style="bold"), result)
+
+
+def _effects(found: Diagnosis) -> list[tuple[str, str, str, str]]:
+    rows = []
+    for effect in found.effects:
+        name = f"{effect.name.replace('_', ' ')} {place(effect.site)}"
+        rows.append((name, "", "", sure(effect.confidence)))
+        rows += [
+            (f"  {one.name}", with_sd(one.value, one.sd), one.unit, "")
+            for one in effect.parameters
+        ]
+    return rows
+
+
+def _gap_words(found: Diagnosis) -> str:
+    before, after = found.gap_before, found.gap_after
+    pull = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+    if found.verdict not in (Finding.NAMED, Finding.AMBIGUOUS):
+        return (
+            f"{short(before.value)} on held-out records; sheet pulled by "
+            f"{short(pull)} sd"
+        )
+    shrink = ""
+    if before.value > SMALL_GAP:
+        shrink = f" (shrinks by {percent(found.shrink)})"
+    return (
+        f"{short(before.value)} before, {short(after.value)} after, on held-out "
+        f"records{shrink}; sheet pulled by {short(pull)} sd before, "
+        f"{short(after.pull)} sd after"
+    )
+
+
+def _limit_words(found: Diagnosis) -> str:
+    largest, limit = found.null_statistic
+    words = f"null test {short(largest)} of {short(limit)}"
+    if found.exhibit is not None:
+        limits = found.exhibit.limits
+        words += (
+            f"; at the end chi2/dof {limits.chi2_per_dof:.4g} of "
+            f"{limits.chi2_allowed:.4g}"
+        )
+        if limits.remaining is not None:
+            words += (
+                f", directed test left {short(limits.remaining)} of "
+                f"{short(limits.remaining_allowed)}"
+            )
+    scatter = found.noise.get("scatter_gain", 0.0)
+    return f"{words}; hits repeat to {100 * scatter:.2g} %"
+
+
+def _where(found: Diagnosis) -> list[tuple[str, str]]:
+    rows: list[tuple[str, str]] = []
+    sheet = found.exhibit is not None and found.exhibit.view == SHEET
+    if found.verdict is Finding.NONE or sheet:
+        return rows
+    for view in found.gap_before.views:
+        if view.name == "order" or len(view.share) < 2:
+            continue
+        ordered = sorted(view.share.items(), key=lambda item: -item[1])[:MOST_SLICES]
+        words = [
+            f"{label} {100 * share:.0f} %"
+            for label, share in ordered
+            if share > SMALL_SHARE
+        ]
+        if words:
+            rows.append((view.name, ", ".join(words)))
+    return rows
+
+
+def _candidates(
+    screen: Console, found: Diagnosis
+) -> list[tuple[str, str, str, str, str]]:
+    room = min(screen.width, WIDEST) - 3 * 10
+    widest = min(max(room // 2, 22), LONGEST_NAME)
+    return [
+        (
+            _short(" + ".join(one.effects), widest),
+            short(one.behind),
+            f"{one.chi2_per_dof:.4g}",
+            short(one.pull),
+            why_lost(one, found),
+        )
+        for one in found.candidates[:MOST_CANDIDATES]
+    ]
+
+
+def _short(name: str, widest: int) -> str:
+    name = "base alone" if name == "none" else name.replace("link:joint", "joint")
+    return name if len(name) <= widest else f"{name[: widest - 3]}..."

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""How well parts of a record are foretold that no fit has seen: on screen, as page."""
+
+from collections.abc import Sequence
+
+from jointbench.analysis.gap.diagnosis.single_record import StretchScore
+from jointbench.station.screen.page import DataTable, Section
+from jointbench.station.screen.terminal import engineering
+
+UNPREFIXED = frozenset({"V", "m", "m/s", "m/s^2", "N"})
+"""Units that take an SI prefix; all others are written as they stand."""
+
+
+def score_table(scores: Sequence[StretchScore], unit: str) -> DataTable:
+    """Return rms of output and error, before and after, in the output's unit."""
+    rows = tuple(
+        (
+            score.name,
+            _amount(score.rms, unit),
+            f"{_amount(score.before, unit)} ({_share(score.before, score.rms)})",
+            f"{_amount(score.after, unit)} ({_share(score.after, score.rms)})",
+            f"{100 * score.shrink:.1f} %",
+        )
+        for score in scores
+    )
+    return DataTable(
+        "Error on parts of the record that no fit has seen (rms, share of the output)",
+        ("part", "output", "before", "after", "shrinks by"),
+        rows,
+    )
+
+
+def score_section(scores: Sequence[StretchScore], unit: str) -> Section:
+    """Return the scores as a section of a report."""
+    return Section("scores", "On parts no fit has seen", (score_table(scores, unit),))
+
+
+def scores_json(scores: Sequence[StretchScore], unit: str) -> list[dict[str, object]]:
+    """Return the scores as JSON objects."""
+    return [
+        {
+            "name": score.name,
+            "unit": unit,
+            "rms_output": score.rms,
+            "rms_before": score.before,
+            "rms_after": score.after,
+            "shrink": score.shrink,
+        }
+        for score in scores
+    ]
+
+
+def _amount(value: float, unit: str) -> str:
+    return engineering(value, unit) if unit in UNPREFIXED else f"{value:.4g} {unit}"
+
+
+def _share(value: float, whole: float) -> str:
+    return f"{100 * value / whole:.3g} %" if whole > 0 else "-"

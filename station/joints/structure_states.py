@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""What sessions say of a structure: a state for each session and preload."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.lumped.measured_modes import MeasuredModes
+from jointbench.analysis.structures.identification.structure_evidence import (
+    StructureEvidence,
+)
+from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.mounted_sensors import (
+    MountedSensor,
+    readout,
+)
+from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
+from jointbench.signal.frf.frf import Frf
+from jointbench.signal.modal.modal_model import ModalModel
+from jointbench.signal.modal.modes import ModalSettings
+from jointbench.station.files.input_files import read_recordings
+from jointbench.station.joints.structure_model import (
+    IdentifyTable,
+    StructureModel,
+    sensors_of,
+)
+from jointbench.station.pipeline.chain import (
+    ChainSettings,
+    ModalChain,
+    judge_hits,
+    judged_modes,
+)
+from jointbench.station.pipeline.modal_options import parse_band
+from jointbench.station.pipeline.preloads import by_preload
+from jointbench.station.screen.terminal import working
+
+MEASURED_LABEL = "measured"
+"""State of the frequencies that the model file itself holds."""
+SENSITIVITY_SD = 0.02
+"""Relative sd of a shape component [-]: accelerometers of one batch differ by 2 %."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MeasuredState:
+    """A structure as it was measured under one preload.
+
+    Attributes:
+        preload: on the joint [N], None where the session does not say.
+        chain: from its hits to modes.
+    """
+
+    preload: float | None
+    chain: ModalChain
+
+
+def measured_states(
+    sessions: Sequence[Path], band: str | None
+) -> dict[str, MeasuredState]:
+    """Take every session, and every preload in it, to modes.
+
+    Args:
+        sessions: files; a state is named after its file and, where the session holds
+            several preloads, "@" and the preload.
+        band: as typed, or None.
+    """
+    settings = ChainSettings(modal=ModalSettings(band=parse_band(band)))
+    found: dict[str, MeasuredState] = {}
+    for path in sessions:
+        stored = read_recordings([path], columns=None, point="1")
+        groups = by_preload(judge_hits(stored, settings))
+        for preload, recordings in groups:
+            label = path.stem
+            if len(groups) > 1:
+                label += "@" + ("none" if preload is None else f"{preload:g}N")
+            with working(f"fitting modes of {label}"):
+                found[label] = MeasuredState(
+                    preload, judged_modes(recordings, settings, preload=preload)
+                )
+    return found
+
+
+def all_evidence(
+    structure: Structure,
+    reduced: ReducedModel,
+    settings: StructureModel,
+    measured: dict[str, MeasuredState],
+) -> list[StructureEvidence]:
+    """Return what was measured, state by state, printed frequencies first."""
+    none = np.zeros((0, reduced.size))
+    found = []
+    if settings.measured is not None:
+        frequency = np.array(settings.measured.frequencies)
+        sd = settings.measured.relative_sd * frequency
+        found.append(
+            StructureEvidence(
+                MEASURED_LABEL, MeasuredModes(frequency, sd), None, none, none
+            )
+        )
+    for label, state in measured.items():
+        found.append(_evidence(label, structure, reduced, settings, state.chain))
+    return found
+
+
+def _evidence(
+    label: str,
+    structure: Structure,
+    reduced: ReducedModel,
+    settings: StructureModel,
+    chain: ModalChain,
+) -> StructureEvidence:
+    modes, frf = chain.result.model, chain.frf
+    none = np.zeros((0, reduced.size))
+    if settings.identify.data == "frequencies":
+        plain = _measured(modes, settings.identify)
+        plain = MeasuredModes(plain.natural_frequency, plain.frequency_sd)
+        return StructureEvidence(label, plain, None, none, none)
+    sensors = sensors_of(settings.sensors)
+    outputs = readout(structure, reduced, _named(frf.outputs, sensors, "sensors"))
+    if settings.identify.data == "modes":
+        return StructureEvidence(
+            label, _measured(modes, settings.identify), None, outputs, none
+        )
+    hits = {**sensors, **sensors_of(settings.hits)}
+    inputs = readout(structure, reduced, _named(frf.inputs, hits, "hits"))
+    low, high = chain.result.band
+    picked = _thinned(frf, low, high, settings.identify.lines)
+    return StructureEvidence(label, None, picked, outputs, inputs)
+
+
+def _named(
+    labels: Sequence[str], places: dict[str, MountedSensor], kind: str
+) -> list[MountedSensor]:
+    """Return the places of channels ``"channel@point"`` or of hit points."""
+    names = [label.partition("@")[0] for label in labels]
+    missing = [name for name in names if name not in places]
+    if missing:
+        raise BadData(
+            f"{missing[0]!r} of the session is not among [{kind}.*] of the model, "
+            f"which are {list(places)}; say where it sits"
+        )
+    return [places[name] for name in names]
+
+
+def _measured(modes: ModalModel, trust: IdentifyTable) -> MeasuredModes:
+    """Return modes, their uncertainty widened by what the model is good for."""
+    shapes = modes.shapes
+    largest: FloatArray = np.abs(shapes).max(axis=1, keepdims=True)
+    several = shapes.shape[1] > 1
+    return MeasuredModes(
+        natural_frequency=modes.natural_frequency,
+        frequency_sd=np.hypot(
+            modes.frequency_sd, trust.frequency_sd * modes.natural_frequency
+        ),
+        damping_ratio=modes.damping_ratio,
+        damping_ratio_sd=np.hypot(
+            modes.damping_ratio_sd, trust.damping_sd * modes.damping_ratio
+        ),
+        shapes=shapes if several else None,
+        shape_sd=SENSITIVITY_SD * np.broadcast_to(largest, shapes.shape)
+        if several
+        else None,
+        outputs=modes.outputs,
+    )
+
+
+def _thinned(frf: Frf, low: float, high: float, most: int) -> Frf:
+    """Return the lines of a band, at most so many."""
+    inside = np.flatnonzero((frf.frequency >= low) & (frf.frequency <= high))
+    if not inside.size:
+        raise BadData(f"no FRF line between {low:g} and {high:g} Hz; widen --band")
+    step = -(-inside.size // most)
+    chosen = inside[::step]
+    return Frf(
+        frequency=frf.frequency[chosen],
+        response=frf.response[:, :, chosen],
+        kind=frf.kind,
+        variance=None if frf.variance is None else frf.variance[:, :, chosen],
+        added_decay_rate=frf.added_decay_rate,
+        outputs=frf.outputs,
+        inputs=frf.inputs,
+    )

@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: MIT
+"""Identified joints beside the contact law's prediction, state by state.
+
+Source: Appl. Sci. 2025, 15, 9040, Fig. 9 (three torques, three models, one test).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.contact.case import ContactCase, ContactConditions
+from jointbench.analysis.contact.damping import DampingChoice
+from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.contact.uncertainty import Uncertainty
+from jointbench.analysis.structures.identification.joint_result import (
+    StructureIdentification,
+)
+from jointbench.station.joints.structure_contact import TheoryTable
+from jointbench.station.pipeline.contact_prediction import ContactPoint, predict_point
+
+
+class JointQuantity(StrEnum):
+    """What is compared, as a joint's parameters end."""
+
+    NORMAL_STIFFNESS = "normal_stiffness"
+    TANGENTIAL_1_STIFFNESS = "tangential_1_stiffness"
+    TANGENTIAL_2_STIFFNESS = "tangential_2_stiffness"
+    NORMAL_DAMPING = "normal_damping"
+
+
+@dataclass(frozen=True, slots=True)
+class StateEstimate:
+    """A value with its 95 % interval; ends are None where it is open or unknown.
+
+    Attributes:
+        value: [N/m] or [N s/m].
+        low: lower end, same unit.
+        high: upper end, same unit.
+    """
+
+    value: float
+    low: float | None
+    high: float | None
+
+    def overlaps(self, other: "StateEstimate") -> bool | None:
+        """Tell whether two intervals share a value; None where one is not known."""
+        ends = (self.low, self.high, other.low, other.high)
+        if self.low is None or self.high is None or None in ends:
+            return None
+        assert other.low is not None
+        assert other.high is not None
+        return max(self.low, other.low) <= min(self.high, other.high)
+
+
+@dataclass(frozen=True, slots=True)
+class IdentifiedState:
+    """What was identified of a joint in one state.
+
+    Attributes:
+        label: of the state.
+        preload: on the joint [N].
+        frequency: at which the law's loss becomes a damping coefficient [Hz], or None.
+        values: identified, with their intervals.
+        doubtful: those of them that the measurement does not determine.
+    """
+
+    label: str
+    preload: float
+    frequency: float | None
+    values: Mapping[JointQuantity, StateEstimate]
+    doubtful: frozenset[JointQuantity] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class TheoryRow:
+    """One quantity of one state, identified and predicted.
+
+    Attributes:
+        state: its label.
+        preload: on the joint [N].
+        torque: on each bolt [N m], or None.
+        quantity: what is compared.
+        identified: from the measurement.
+        identifiable: whether the measurement determines it.
+        predicted: by model name; None where the model says nothing.
+    """
+
+    state: str
+    preload: float
+    torque: float | None
+    quantity: JointQuantity
+    identified: StateEstimate
+    identifiable: bool
+    predicted: Mapping[str, StateEstimate | None]
+
+
+def known_preloads(
+    table: TheoryTable, preloads: Mapping[str, float | None]
+) -> dict[str, float]:
+    """Return the preload of every state [N]; what the table says comes first.
+
+    Raises:
+        BadData: nobody says it of a state.
+    """
+    found = {}
+    for label, own in preloads.items():
+        value = table.preloads.get(label, own)
+        if value is None:
+            raise BadData(
+                f"state {label!r} has no preload; say it in [contact], "
+                f'preloads = {{ "{label}" = "25 kN" }}'
+            )
+        found[label] = value
+    return found
+
+
+def identified_states(
+    result: StructureIdentification,
+    joint: str,
+    preloads: Mapping[str, float],
+    joints: Sequence[str],
+) -> tuple[IdentifiedState, ...]:
+    """Take what was identified of the joint that has a contact law, state by state.
+
+    Args:
+        result: of the whole structure.
+        joint: that has the law.
+        preloads: on it, by state [N].
+        joints: names of all joints that have parameters.
+    """
+    column = 3 * list(joints).index(joint)
+    found = []
+    for state in result.states:
+        mode = int(np.argmax(state.energy_share[:, column]))
+        values, doubtful = _values(result, joint, state.label)
+        frequency = float(state.predicted[mode])
+        found.append(
+            IdentifiedState(
+                state.label, preloads[state.label], frequency, values, doubtful
+            )
+        )
+    return tuple(found)
+
+
+def _values(
+    result: StructureIdentification, joint: str, label: str
+) -> tuple[dict[JointQuantity, StateEstimate], frozenset[JointQuantity]]:
+    """Return what was found of one joint in one state, and what of it is open."""
+    by_name = {one.name: one for one in result.parameters}
+    values, doubtful = {}, set()
+    for quantity in JointQuantity:
+        short = f"{joint}.{quantity}"
+        one = by_name.get(f"{label}:{short}", by_name.get(short))
+        if one is None:
+            continue
+        values[quantity] = StateEstimate(one.value, *one.interval)
+        if not one.identifiable:
+            doubtful.add(quantity)
+    return values, frozenset(doubtful)
+
+
+def against_theory(
+    states: Sequence[IdentifiedState], surface: ContactSurface, table: TheoryTable
+) -> tuple[TheoryRow, ...]:
+    """Predict every state by every model, and lay it beside what was identified.
+
+    Args:
+        states: identified.
+        surface: of both faces as one.
+        table: models, material, bolts.
+
+    Returns:
+        A row for each state and quantity that was identified.
+
+    Source:
+        `predict.predict_contact`; the damping coefficient is eta K/omega at the
+        state's own frequency, of a first loading: an upper bound.
+    """
+    rows = []
+    for state in states:
+        points = {
+            name: predict_state(name, state, surface, table) for name in table.models
+        }
+        for quantity, value in state.values.items():
+            rows.append(
+                TheoryRow(
+                    state.label,
+                    state.preload,
+                    table.torque(state.preload),
+                    quantity,
+                    value,
+                    quantity not in state.doubtful,
+                    {name: _predicted(one, quantity) for name, one in points.items()},
+                )
+            )
+    return tuple(rows)
+
+
+def predict_state(
+    model: str, state: IdentifiedState, surface: ContactSurface, table: TheoryTable
+) -> ContactPoint:
+    """Predict one model at the preload of one state."""
+    damping = None
+    if state.frequency is not None:
+        damping = DampingChoice(frequency=state.frequency)
+    conditions = ContactConditions(
+        table.material,
+        hardness_sd=table.hardness_sd * table.hardness,
+        damping=damping,
+    )
+    preload = table.spread_preload(state.preload)
+    return predict_point(
+        ContactCase(contact_model(model, table.mode), surface, preload, conditions)
+    )
+
+
+def _predicted(point: ContactPoint, quantity: JointQuantity) -> StateEstimate | None:
+    state, found = point.state, point.uncertainty
+    values = {
+        JointQuantity.NORMAL_STIFFNESS: state.normal_stiffness,
+        JointQuantity.NORMAL_DAMPING: state.damping,
+    }
+    value = values.get(quantity, state.tangential_stiffness)
+    if value is None:
+        return None
+    part: Uncertainty | None = None
+    if found is not None:
+        parts = {
+            JointQuantity.NORMAL_STIFFNESS: found.stiffness,
+            JointQuantity.NORMAL_DAMPING: found.damping,
+        }
+        part = parts.get(quantity, found.tangential)
+    if part is None:
+        return StateEstimate(value, None, None)
+    return StateEstimate(value, part.interval.lower, part.interval.upper)
+
+
+def theory_json(rows: Sequence[TheoryRow]) -> list[dict[str, object]]:
+    """Return the comparison as plain numbers and texts."""
+    return [
+        {
+            "state": row.state,
+            "preload_n": row.preload,
+            "torque_n_m": row.torque,
+            "quantity": row.quantity.value,
+            "unit": unit_of(row.quantity),
+            "identified": row.identified.value,
+            "identified_interval_95": [row.identified.low, row.identified.high],
+            "identifiable": row.identifiable,
+            "predicted": {
+                name: None
+                if one is None
+                else {
+                    "value": one.value,
+                    "interval_95": [one.low, one.high],
+                    "ratio": one.value / row.identified.value,
+                    "intervals_overlap": row.identified.overlaps(one),
+                }
+                for name, one in row.predicted.items()
+            },
+        }
+        for row in rows
+    ]
+
+
+def unit_of(quantity: JointQuantity) -> str:
+    """Return the unit of a quantity."""
+    return "N s/m" if quantity is JointQuantity.NORMAL_DAMPING else "N/m"

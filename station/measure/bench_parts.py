@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: MIT
+"""What a session has on its bench: plan, stream, file, hand, screen, torque tester."""
+
+from dataclasses import dataclass
+
+from jointbench.acquisition.ni.stream import NiStream
+from jointbench.acquisition.records.recordings import Channel
+from jointbench.acquisition.session_file.live_write import LiveSession
+from jointbench.station.measure.bolt_torques import BoltWatch
+from jointbench.station.measure.observer import Operator, Watcher
+from jointbench.station.measure.plan import MeasurePlan
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class BenchParts:
+    """Everything that a session talks to.
+
+    Attributes:
+        plan: what is measured.
+        stream: of samples, started.
+        live: the file that everything goes into.
+        channels: of the stream.
+        hand: whoever strikes.
+        watcher: whoever looks on.
+        bolts: reads the torque of every bolt; None where the plan names no tester.
+        hardware_trigger: whether the device itself looks for hits after the trials.
+    """
+
+    plan: MeasurePlan
+    stream: NiStream
+    live: LiveSession
+    channels: tuple[Channel, ...]
+    hand: Operator
+    watcher: Watcher
+    bolts: BoltWatch | None = None
+    hardware_trigger: bool = False

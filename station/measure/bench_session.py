@@ -1,0 +1,350 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench measure``: a bench session by a plan, into one file."""
+
+import uuid
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from rich.console import Console
+
+from jointbench.acquisition.basics.errors import (
+    InstrumentError,
+    JointbenchError,
+    UsageError,
+)
+from jointbench.acquisition.file_access.file_lock import is_held
+from jointbench.acquisition.ni.sensors import calibration_warning, table_channels
+from jointbench.acquisition.ni.stream import Counters, NiStream, StreamSettings
+from jointbench.acquisition.records.recordings import Channel, Hit, Verdict
+from jointbench.acquisition.records.session import software_version
+from jointbench.acquisition.session_file.finish import finish_live
+from jointbench.acquisition.session_file.live_write import LiveSession, channel_rows
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.session_place import (
+    Place,
+    check_session_name,
+    session_place,
+)
+from jointbench.station.measure.bench_parts import BenchParts
+from jointbench.station.measure.bench_screen import watching
+from jointbench.station.measure.bolt_torques import BoltWatch
+from jointbench.station.measure.chassis import OpenChassis, open_chassis
+from jointbench.station.measure.observer import Watcher
+from jointbench.station.measure.plan import MeasurePlan, conditions, read_plan
+from jointbench.station.measure.session_engine import MeasureSession
+from jointbench.station.measure.session_record import Record
+from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
+from jointbench.station.screen.interrupt import patient_interrupt, restless
+from jointbench.station.screen.terminal import lasting_console, table, write_json
+from jointbench.station.sources.serial_port import line_name
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Measured:
+    """What a session came to.
+
+    Attributes:
+        path: of the session file; beside the one asked for where an earlier session
+            keeps its name.
+        record: hits, gaps, proposals, checks.
+        counters: what the device made against what was stored.
+        planned: conditions of the plan.
+        sample_rate: at which the device ran [Hz].
+    """
+
+    path: Path
+    record: Record
+    counters: Counters
+    planned: int
+    sample_rate: float
+
+    @property
+    def whole(self) -> bool:
+        """Whether every condition was measured as the plan wanted."""
+        return self.record.done == self.planned and not self.record.incomplete
+
+
+def run_measure(
+    plan_file: Path,
+    out: Path,
+    *,
+    source: str | None,
+    overwrite: bool,
+    json_target: str | None,
+) -> Measured:
+    """Measure by a plan, hands-free.
+
+    Args:
+        plan_file: TOML.
+        out: session file to write.
+        source: URL of the chassis; None for the plan's own.
+        overwrite: replace a session that is there, once the new one is whole.
+        json_target: where the JSON goes.
+
+    Raises:
+        UsageError: there is no source, the session is there already, is being
+            recorded, or what is there is no session.
+        InstrumentError: the chassis refuses or does not come back; what was recorded
+            until then is in the session file.
+    """
+    plan = read_plan(plan_file)
+    url = source or plan.table.source
+    if url is None:
+        raise UsageError(
+            "no source: add --source ni:, ni+grpc://host:31763 or sim:plates?seed=1"
+        )
+    check_session_name(out)
+    check_outputs([plan_file, out], [json_target])
+    screen = lasting_console(json_target)
+    with session_place(out, overwrite=overwrite) as place:
+        with _told_where(place, screen), open_chassis(url) as opened:
+            with watching(screen) as watcher:
+                measured = measure(plan, opened, place.own, watcher)
+        measured = replace(measured, path=place.settle(whole=measured.whole))
+        write_json(json_target, _summary(measured))
+        _show(measured, screen)
+        if measured.path != out:
+            screen.print(place.stays, soft_wrap=True)
+    return measured
+
+
+@contextmanager
+def _told_where(place: Place, screen: Console) -> Iterator[None]:
+    """Where something goes wrong, say which file holds what was recorded."""
+    try:
+        yield
+    except BaseException:
+        if place.stays and place.own.exists():
+            screen.print(place.stays, soft_wrap=True)
+        raise
+
+
+def measure(
+    plan: MeasurePlan, opened: OpenChassis, out: Path, watcher: Watcher
+) -> Measured:
+    """Record a session into `out` and finish its file, come what may.
+
+    Raises:
+        InstrumentError: the chassis refuses or does not come back, or the disk is
+            full; the file holds what was recorded until then.
+    """
+    warnings = _warnings(plan, opened)
+    record = Record()
+    stream = NiStream(opened.chassis, plan.sensors, _stream_settings(plan, record))
+    stream.start()
+    with patient_interrupt(record):
+        try:
+            _record(plan, opened, out, (stream, watcher, warnings, record))
+        except BaseException:
+            stream.close()
+            # What went wrong first is what the operator has to know.
+            with suppress(JointbenchError):
+                if out.exists() and not is_held(out):
+                    finish_session(out)
+            raise
+        stream.close()
+        finish_session(out)
+    return Measured(
+        out, record, stream.counters, len(conditions(plan)), stream.sample_rate
+    )
+
+
+def _stream_settings(plan: MeasurePlan, record: Record) -> StreamSettings:
+    acquisition = plan.acquisition
+    return StreamSettings(
+        sample_rate=acquisition.sample_rate,
+        block=round(acquisition.block * acquisition.sample_rate),
+        buffer=acquisition.buffer,
+        patience=acquisition.patience,
+        sleep=restless(record),
+    )
+
+
+def finish_session(path: Path) -> None:
+    """Turn the file of a recording into a finished session, compressed, in its place.
+
+    Until the new file is whole and on the disk, the old one stays.
+
+    Raises:
+        InstrumentError: there is no room for it; the recording is safe as it is.
+    """
+    try:
+        finish_live(path, path, overwrite=True)
+    except UsageError as error:
+        raise InstrumentError(
+            f"'{path}' could not be finished ({error}); what was recorded is safe in "
+            "it: make room, then `jointbench recover` it"
+        ) from error
+
+
+def _record(
+    plan: MeasurePlan,
+    opened: OpenChassis,
+    out: Path,
+    running: tuple[NiStream, Watcher, tuple[str, ...], Record],
+) -> None:
+    stream, watcher, warnings, record = running
+    channels = table_channels(plan.sensors)
+    meta = _meta(plan, opened, channels, stream.sample_rate)
+    block = stream.settings.block
+    with (
+        _torque_tester(plan) as bolts,
+        LiveSession(out, meta, channels=len(channels), block=block) as live,
+    ):
+        session = MeasureSession(
+            BenchParts(
+                plan=plan,
+                stream=stream,
+                live=live,
+                channels=channels,
+                hand=opened.hand,
+                watcher=watcher,
+                bolts=bolts,
+                hardware_trigger=by_device(plan, opened.chassis),
+            ),
+            record,
+        )
+        try:
+            watcher.begin(channels, stream.sample_rate)
+            for words in warnings:
+                live.log({"kind": "warning", "words": words})
+                watcher.say(f"warning: {words}")
+            session.run()
+        except KeyboardInterrupt:
+            record.interrupted = True
+        finally:
+            _close_the_books(live, stream, record)
+
+
+@contextmanager
+def _torque_tester(plan: MeasurePlan) -> Iterator[BoltWatch | None]:
+    """Give what reads the bolts, None where the plan names no tester."""
+    torque, joint = plan.table.torque, plan.table.joint
+    if torque is None or joint is None:
+        yield None
+        return
+    with line_name(torque.line) as name:
+        yield BoltWatch(table=torque, line=name, bolts=joint.bolts, wait=plan.hits.wait)
+
+
+def _close_the_books(live: LiveSession, stream: NiStream, record: Record) -> None:
+    """Log what the device made against what was stored, and that this is the end."""
+    with suppress(InstrumentError):
+        stream.count()
+    counters = stream.counters
+    live.log(
+        {
+            "kind": "continuity",
+            "acquired": counters.acquired,
+            "unread": counters.unread,
+            "unwanted": counters.unwanted,
+            "stored_samples": live.samples,
+            "lost": counters.lost,
+        }
+    )
+    live.log({"kind": "end", "interrupted": record.interrupted})
+
+
+def _warnings(plan: MeasurePlan, opened: OpenChassis) -> tuple[str, ...]:
+    today = datetime.now(UTC).date()
+    old = (calibration_warning(sensor, today) for sensor in plan.sensors)
+    expired = (words for words in old if words is not None)
+    asked = plan.acquisition.trigger == "hardware"
+    trigger = asked and not by_device(plan, opened.chassis)
+    return (
+        *expired,
+        *teds_warnings(opened.chassis, plan.sensors),
+        *((NO_TRIGGER,) if trigger else ()),
+    )
+
+
+def _meta(
+    plan: MeasurePlan, opened: OpenChassis, channels: tuple[Channel, ...], rate: float
+) -> dict[str, object]:
+    table_ = plan.table
+    notes = [table_.notes]
+    if table_.temperature:
+        notes.append(f"temperature {table_.temperature}")
+    torques = plan.hits.torques
+    return {
+        "uuid": str(uuid.uuid4()),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "software": software_version(),
+        "operator": table_.operator,
+        "notes": "; ".join(note for note in notes if note),
+        "source": opened.name,
+        "simulated": opened.simulated,
+        "sample_rate": rate,
+        "torque": torques[0] if len(torques) == 1 else None,
+        "plan": plan.text,
+        "channels": channel_rows(channels),
+    }
+
+
+def _show(measured: Measured, screen: Console) -> None:
+    counts = _counts(measured.record.hits)
+    rows = [
+        ("hits", ", ".join(f"{n} {word}" for word, n in counts.items()) or "none"),
+        ("conditions", f"{measured.record.done} of {measured.planned}"),
+        ("samples per channel", f"{measured.counters.delivered}"),
+        ("lost samples", f"{measured.counters.lost}"),
+        (
+            "interruptions",
+            f"{sum(g.kind in ('back', 'rearmed') for g in measured.record.gaps)}",
+        ),
+    ]
+    screen.print(table(f"{measured.path}", ("session", "holds"), rows))
+    for check in measured.record.checks:
+        word = "good" if check.passed else "LOOK AT IT"
+        screen.print(f"check {check.name}: {word}, {check.words}", soft_wrap=True)
+    screen.print(f"\nnext: jointbench modal {measured.path}")
+
+
+def _counts(hits: list[Hit]) -> dict[str, int]:
+    found = Counter(hit.verdict for hit in hits)
+    return {verdict.value: found[verdict] for verdict in Verdict if found[verdict]}
+
+
+def _summary(measured: Measured) -> dict[str, object]:
+    record, counters = measured.record, measured.counters
+    return {
+        "session": str(measured.path),
+        "complete": measured.whole,
+        "hits": [
+            {
+                "number": number,
+                "time_s": hit.trigger / measured.sample_rate,
+                "point": hit.point,
+                "peak_n": hit.peak_force,
+                "verdict": hit.verdict.value,
+                "measure": hit.measure,
+                "reason": hit.reason,
+            }
+            for number, hit in enumerate(record.hits, 1)
+        ],
+        "verdicts": {v.value: _counts(record.hits).get(v.value, 0) for v in Verdict},
+        "lost_samples": counters.lost,
+        "acquired_samples": counters.acquired,
+        "unread_samples": counters.unread,
+        "stored_samples": counters.delivered,
+        "gaps": [
+            {
+                "kind": g.kind,
+                "samples": g.samples,
+                "seconds": g.seconds,
+                "words": g.words,
+            }
+            for g in record.gaps
+        ],
+        "settings": {p.name: p.value for p in record.proposals},
+        "checks": [
+            {"name": c.name, "value": c.value, "limit": c.limit, "passed": c.passed}
+            for c in record.checks
+        ],
+        "incomplete": list(record.incomplete),
+        "interrupted": record.interrupted,
+    }

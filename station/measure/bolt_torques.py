@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: MIT
+"""The torque of every bolt, read from a torque tester while it is tightened.
+
+Hands-free: the bolts are tightened in turn, and the largest reading between two rests
+is what a bolt got. Every reading that counts is in the file, those set aside too.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from jointbench.acquisition.basics.errors import FormatError, InstrumentError
+from jointbench.acquisition.serial_lines.line import SerialLine
+from jointbench.acquisition.serial_lines.mark10 import Reading, read_gauge
+from jointbench.acquisition.session_file.live_write import LiveSession
+from jointbench.station.measure.observer import Command, Watcher
+from jointbench.station.measure.session_record import Record
+from jointbench.station.models.plan_model import TorqueTable
+
+BEGUN = 0.3
+"""Share of the target from which a bolt counts as being tightened [-]."""
+RELEASED = 0.5
+"""Share of its largest reading below which a bolt counts as done [-]."""
+NONSENSE = 10.0
+"""Share of the target beyond which a reading is none: bolts break before [-]."""
+_SILENCE = 1.0  # [s] after which a tester does not answer; it takes milliseconds
+_RETRY = 0.2  # [s] between attempts to open a line that broke
+
+
+class Surroundings(Protocol):
+    """What a `BoltWatch` needs of the bench around it."""
+
+    @property
+    def watcher(self) -> Watcher:
+        """Who is told."""
+        ...
+
+    @property
+    def live(self) -> LiveSession:
+        """Where it is logged."""
+        ...
+
+
+@dataclass(slots=True)
+class PeakHold:
+    """From what a tester shows to the torque that a bolt was tightened to.
+
+    Attributes:
+        target: asked for [N m].
+        top: largest reading since the bolt was begun, None before.
+    """
+
+    target: float
+    top: Reading | None = None
+
+    def feed(self, reading: Reading) -> Reading | None:
+        """Take a reading; return the largest one once the wrench is let go."""
+        value = abs(reading.value)
+        if self.top is None:
+            self.top = reading if value >= BEGUN * self.target else None
+        elif value > abs(self.top.value):
+            self.top = reading
+        elif value < RELEASED * abs(self.top.value):
+            done, self.top = self.top, None
+            return done
+        return None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BoltWatch:
+    """A torque tester that is read bolt by bolt.
+
+    Attributes:
+        table: of the plan.
+        line: name of the serial line.
+        bolts: how many.
+        wait: longest time for a bolt [s].
+        now: clock [s].
+        sleep: waits [s].
+    """
+
+    table: TorqueTable
+    line: str
+    bolts: int
+    wait: float
+    now: Callable[[], float] = time.monotonic
+    sleep: Callable[[float], None] = time.sleep
+
+    def tighten(
+        self, target: float, bench: Surroundings, record: Record
+    ) -> tuple[float, ...] | None:
+        """Read the torque of every bolt while it is tightened to a target [N m].
+
+        Args:
+            target: of every bolt [N m].
+            bench: its watcher is told what to do, and may say: accept takes the
+                reading as it is, undo goes back to the bolt before, quit ends the
+                session; its file takes every reading that counts.
+            record: says when the session was interrupted.
+
+        Returns:
+            Torque of each bolt [N m], None where the operator quits.
+
+        Raises:
+            InstrumentError: nobody tightens a bolt, or the tester does not answer, for
+                longer than `wait`.
+        """
+        tester = Tester(self)
+        try:
+            return self._all(target, tester, bench, record)
+        finally:
+            tester.close()
+
+    def _all(
+        self, target: float, tester: "Tester", bench: Surroundings, record: Record
+    ) -> tuple[float, ...] | None:
+        watcher, live = bench.watcher, bench.live
+        found: list[float] = []
+        tries = 0
+        while len(found) < self.bolts:
+            number = len(found) + 1
+            watcher.say(f"tighten bolt {number} of {self.bolts} to {target:g} N m")
+            answer = self._one(target, (number, tester), watcher, record)
+            if answer is Command.QUIT:
+                return None
+            if answer is Command.UNDO:
+                found, tries = found[:-1], 0
+                continue
+            assert isinstance(answer, Reading)
+            tries += 1
+            words, kept = self._weigh(answer, target, tries)
+            live.log(_entry(answer, number, target, kept=kept))
+            watcher.say(f"bolt {number}: {answer.raw}, {words}")
+            if kept:
+                found, tries = [*found, abs(answer.value)], 0
+        return tuple(found)
+
+    def _weigh(self, reading: Reading, target: float, tries: int) -> tuple[str, bool]:
+        """Return whether a reading is kept, in words and as such."""
+        share = abs(reading.value) / target - 1
+        if abs(share) <= self.table.tolerance:
+            return f"{100 * share:+.1f} % of {target:g} N m", True
+        words = f"{100 * share:+.1f} % beside the {target:g} N m asked for"
+        if tries >= self.table.tries:
+            return f"{words}; kept after {tries} tries", True
+        return f"{words} (limit {100 * self.table.tolerance:g} %); once more", False
+
+    def _one(
+        self, target: float, at: "tuple[int, Tester]", watcher: Watcher, record: Record
+    ) -> Reading | Command:
+        """Return the torque of one bolt, or what the operator wants instead."""
+        number, tester = at
+        hold, until = PeakHold(target), self.now() + self.wait
+        while self.now() < until:
+            reading = tester.read(watcher, NONSENSE * target)
+            done = None if reading is None else hold.feed(reading)
+            if done is not None:
+                return done
+            self.sleep(_RETRY if reading is None else self.table.poll)
+            said = watcher.command()
+            if said is Command.ACCEPT and hold.top is not None:
+                return hold.top
+            if said is Command.QUIT or record.interrupted:
+                return Command.QUIT
+            if said is Command.UNDO:
+                return said
+        trouble = f": {tester.trouble}" if tester.trouble else ""
+        raise InstrumentError(
+            f"bolt {number} was not tightened within {self.wait:g} s{trouble}; what "
+            "was recorded is safe, check the torque tester and measure again"
+        )
+
+
+@dataclass(slots=True)
+class Tester:
+    """A torque tester whose cable may come off and on again.
+
+    Attributes:
+        watch: that knows line and rate.
+        trouble: why it could not be read the last time, empty if it could.
+    """
+
+    watch: BoltWatch
+    trouble: str = ""
+    _line: SerialLine | None = None
+
+    def read(self, watcher: Watcher, most: float) -> Reading | None:
+        """Return what it shows, None where it cannot be read, which is said once.
+
+        Args:
+            watcher: is told.
+            most: beyond which no reading is believed [N m].
+        """
+        try:
+            if self._line is None:
+                self._line = SerialLine(
+                    self.watch.line, baud=self.watch.table.baud, timeout=_SILENCE
+                )
+            reading = _torque(self._line, most)
+        except (InstrumentError, FormatError) as error:
+            if str(error) != self.trouble:
+                watcher.say(f"torque tester: {error}; waiting for it")
+            self.trouble = str(error)
+            self.close()
+            return None
+        if self.trouble:
+            watcher.say("torque tester: it is back")
+        self.trouble = ""
+        return reading
+
+    def close(self) -> None:
+        """Let go of the line."""
+        if self._line is not None:
+            self._line.close()
+            self._line = None
+
+
+def _torque(line: SerialLine, most: float) -> Reading:
+    reading = read_gauge(line)
+    if reading.kind != "torque":
+        raise FormatError(
+            f"the gauge answers {reading.raw!r}, a {reading.kind}; a torque is "
+            "needed, plug in the torque tester or set its unit"
+        )
+    if abs(reading.value) > most:
+        raise FormatError(
+            f"the gauge answers {reading.raw!r}, {NONSENSE:g} times the target is "
+            f"{most:g} N m; check its unit and the plan's torque"
+        )
+    return reading
+
+
+def _entry(
+    reading: Reading, number: int, target: float, *, kept: bool
+) -> dict[str, object]:
+    return {
+        "kind": "bolt",
+        "bolt": number,
+        "target": target,
+        "torque": abs(reading.value),
+        "kept": kept,
+        "raw": reading.raw,
+    }

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+"""Whether all sensors are still plugged in, where the device can tell."""
+
+from dataclasses import dataclass, field
+
+from jointbench.acquisition.ni.stream import NiStream
+from jointbench.acquisition.session_file.live_write import LiveSession
+from jointbench.station.measure.observer import Watcher
+
+LOOK_AT_CABLES = 1.0  # [s] of signal between looks at the sensor loops
+
+
+@dataclass(slots=True)
+class CableWatch:
+    """Look at the sensor loops now and then, and say what changed.
+
+    Attributes:
+        stream: that knows the device.
+        live: where a change is logged.
+        watcher: who is told.
+        open: channels whose loop is open.
+    """
+
+    stream: NiStream
+    live: LiveSession
+    watcher: Watcher
+    open: tuple[str, ...] = field(default=())
+    _since: int = 0
+
+    def look(self, count: int) -> bool:
+        """Look, where it is time to; True where the loops changed.
+
+        Args:
+            count: samples since this was called last.
+        """
+        self._since += count
+        if self._since < LOOK_AT_CABLES * self.stream.sample_rate:
+            return False
+        self._since = 0
+        found = self.stream.open_loops()
+        if found == self.open:
+            return False
+        self.open = found
+        words = ", ".join(found)
+        self.live.log({"kind": "cable", "channels": words or "all closed again"})
+        self.watcher.say(
+            f"sensor loop open: {words}; hits wait until the cable is back"
+            if found
+            else "sensors are back"
+        )
+        return True

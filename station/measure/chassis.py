@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""The chassis that a measurement runs on: local, remote or simulated, by its URL."""
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.ni.answers import ConnectionLost
+from jointbench.acquisition.ni.driver import Chassis
+from jointbench.station.measure.observer import Operator, OwnHand
+from jointbench.station.measure.plan import Condition
+
+REMOTE = "ni+grpc://"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OpenChassis:
+    """A chassis ready to be used.
+
+    Attributes:
+        chassis: the driver.
+        name: URL that opens it again.
+        simulated: True where no hardware is behind it.
+        hand: whoever strikes.
+    """
+
+    chassis: Chassis
+    name: str
+    simulated: bool
+    hand: Operator
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulatedHand:
+    """The hand of a simulated bench, which moves hammer and bolts as it is told."""
+
+    chassis: Chassis
+
+    def ask(self, condition: Condition) -> None:
+        """Ask for one stroke; while the server is away there is nobody to ask."""
+        wishes = {"point": condition.point}
+        torque = condition.tightened or condition.torque
+        optional = {"torque": torque, "level": condition.level}
+        wishes |= {k: v for k, v in optional.items() if v is not None}  # type: ignore[misc]
+        try:
+            self.chassis.hand(json.dumps(wishes).encode())
+        except ConnectionLost:
+            return
+
+
+@contextmanager
+def open_chassis(url: str) -> Iterator[OpenChassis]:
+    """Open the chassis that a URL names.
+
+    Args:
+        url: ``ni:`` for a driver on this computer, ``ni+grpc://host:port`` for a device
+            server, ``sim:plates?seed=1`` for a simulated chassis.
+
+    Raises:
+        UsageError: it is none of these.
+        InstrumentError: nobody answers.
+    """
+    if url.rstrip("/") == "ni:":
+        with _driver(None, "ni:") as opened:
+            yield opened
+    elif url.startswith(REMOTE):
+        with _driver(_address(url), url) as opened:
+            yield opened
+    else:
+        from jointbench.simulators.chassis.chassis_url import (
+            chassis_from_url,
+            is_plates_url,
+        )
+        from jointbench.simulators.chassis.server import SimulatedChassis
+
+        if not is_plates_url(url):
+            raise UsageError(
+                f"source {url!r} is no chassis; type ni:, ni+grpc://host:31763 or "
+                "sim:plates?seed=1"
+            )
+        with (
+            SimulatedChassis(chassis_from_url(url)) as server,
+            _driver(server.address, url) as opened,
+        ):
+            yield opened
+
+
+@contextmanager
+def _driver(address: str | None, name: str) -> Iterator[OpenChassis]:
+    chassis = Chassis(address)
+    try:
+        modules = chassis.modules()
+        simulated = bool(modules) and all(module.simulated for module in modules)
+        # NI's own simulated devices have no hand; asking the first time tells.
+        hand: Operator = SimulatedHand(chassis) if simulated else OwnHand()
+        yield OpenChassis(chassis, name, simulated, hand)
+    finally:
+        chassis.close()
+
+
+def _address(url: str) -> str:
+    address = url.removeprefix(REMOTE).rstrip("/")
+    host, colon, port = address.rpartition(":")
+    if not (host and colon and port.isdigit()):
+        raise UsageError(f"{url!r} names no device server; type ni+grpc://host:31763")
+    return address

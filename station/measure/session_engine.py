@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""The session engine: everything that arrives is stored first and judged afterwards.
+
+The engine never waits for the operator: a hit that falls while somebody reads the
+screen counts like any other. What a hit means for the plan is `measure_points`' affair.
+"""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.ni.stream import Block, StreamGap
+from jointbench.station.measure.bench_parts import BenchParts
+from jointbench.station.measure.cable_checks import CableWatch
+from jointbench.station.measure.points import Points
+from jointbench.station.measure.session_log import gap_entry, gap_words
+from jointbench.station.measure.session_record import Record
+from jointbench.station.measure.trigger import TriggerWatch
+
+
+class MeasureSession:
+    """One session; `run` returns when the plan is done or the operator ends it."""
+
+    def __init__(self, bench: BenchParts, record: Record) -> None:
+        self.record = record
+        self._bench = bench
+        self._trigger = TriggerWatch(
+            bench.plan.hits, bench.channels, bench.stream.sample_rate
+        )
+        self._points = Points(bench, self.record, self._trigger)
+        self._cables = CableWatch(bench.stream, bench.live, bench.watcher)
+
+    def run(self) -> None:
+        """Measure until the plan is done.
+
+        Raises:
+            InstrumentError: the chassis does not come back, the disk refuses, or
+                nobody hits for longer than the plan waits.
+        """
+        self._points.tighten()
+        for item in self._bench.stream.items():
+            if self.record.interrupted:
+                return
+            if isinstance(item, StreamGap):
+                self._gap(item)
+            elif isinstance(item, Block):
+                self._block(item)
+            else:
+                self._points.wait(item.samples)
+            command = self._bench.watcher.command()
+            if command is not None and not self._points.over:
+                self._points.obey(command)
+            if self.record.interrupted or self._points.over:
+                return
+
+    def _block(self, block: Block) -> None:
+        bench = self._bench
+        bench.live.append(block.samples, segment=block.segment, first=block.first)
+        # Judged is what was stored, to the last bit.
+        samples = block.samples.astype(np.float32).astype(np.float64)
+        bench.watcher.block(samples)
+        if self._cables.look(samples.shape[1]):
+            self._trigger.break_off()
+            if self._trigger.armed and not self._cables.open:
+                self._points.ask()
+        self._hear(samples)
+
+    def _hear(self, samples: FloatArray) -> None:
+        if not self._trigger.armed:
+            if self._trigger.listen(samples, stored=self._bench.live.samples):
+                self._points.begin()
+            return
+        cut = self._trigger.feed(samples)
+        if self._cables.open:
+            return
+        if cut is None:
+            self._points.wait(samples.shape[1])
+        else:
+            self._points.take(cut)
+
+    def _gap(self, gap: StreamGap) -> None:
+        """Note what is missing; a hit cut short by it is late, and asked for again."""
+        self.record.gaps.append(gap)
+        self._bench.live.log(gap_entry(gap))
+        self._bench.watcher.say(gap_words(gap))
+        cut = self._trigger.break_off()
+        if cut is not None and not self._points.on_trial:
+            self._points.take(cut)
+        elif self._trigger.armed and gap.kind != "lost":
+            self._points.ask()

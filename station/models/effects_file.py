@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: MIT
+"""Effects of the user's own, from a Python file named on the command line.
+
+Such a file is run, with all that the user may do. So it is taken from nowhere but the
+command line: no campaign, session, plan or environment can name one, and nothing is
+looked for in any folder.
+"""
+
+import importlib.util
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.gap.catalogue.probes import PROBES
+from jointbench.analysis.gap.model.effect import PROBE_FAMILY, Parameter
+from jointbench.analysis.gap.response.effect_hooks import (
+    ElementState,
+    HitConditions,
+    LumpedEffect,
+)
+from jointbench.analysis.gap.response.force_integration import CURVES
+
+ATTRIBUTE = "EFFECTS"
+SITES = ("link", "body", "channel")
+HOOKS = ("stiffness", "law", "transfer", "mixing", "shape")
+"""What an effect acts through; `rise` only goes with a stiffness."""
+HOOK_SITES = {
+    "stiffness": ("link", "body"),
+    "law": ("link",),
+    "transfer": ("channel",),
+    "mixing": ("channel",),
+    "shape": ("channel",),
+    "rise": ("link",),
+}
+"""Kinds of site at which the engine looks for a hook. It counts elements without asking
+for their kind, so a hook elsewhere would act on whatever has the same index."""
+TRIED_PRELOADS = (0.5, 1.0, 2.0)
+"""Over the reference [-]: at 1 alone every power of the preload is silent."""
+TRIED_PROGRESS = (0.0, 0.5, 1.0)
+TRIED_SAMPLES = 256
+TRIED_RATE = 4096.0
+"""Of the signal at which a `shape` is tried [Hz]."""
+TRIED_LINES = 16
+TRIED_DAMPING = 100.0
+"""Of the Laplace variable at which a linear effect is tried [1/s]."""
+NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+
+
+def read_effects(path: Path) -> tuple[LumpedEffect, ...]:
+    """Run a file and return the effects that it holds.
+
+    Args:
+        path: Python file with a tuple called ``EFFECTS``.
+
+    Returns:
+        Its effects, each checked as far as can be without a campaign.
+
+    Raises:
+        UsageError: the file cannot be run, or holds no sound effects.
+    """
+    found = getattr(_run(path), ATTRIBUTE, None)
+    if not isinstance(found, tuple | list) or not found:
+        raise UsageError(
+            f"'{path}' has no tuple called {ATTRIBUTE}; end it with "
+            f"{ATTRIBUTE} = (MY_EFFECT,)"
+        )
+    for entry in found:
+        _check(path, entry)
+    return tuple(found)
+
+
+def with_own(
+    catalogue: tuple[LumpedEffect, ...], own: Sequence[LumpedEffect]
+) -> tuple[LumpedEffect, ...]:
+    """Return a catalogue with effects of the user's own.
+
+    Args:
+        catalogue: what the engine knows.
+        own: to be added.
+
+    Raises:
+        UsageError: two effects have one name, or one has that of a probe.
+    """
+    probes = {probe.effect.name for probe in PROBES}
+    taken = sorted(probes & {entry.effect.name for entry in own})
+    if taken:
+        raise UsageError(
+            f"an effect may not be called {taken[0]!r}: the engine's own probes use "
+            "that name; give yours another"
+        )
+    names = [entry.effect.name for entry in (*catalogue, *own)]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise UsageError(
+            f"two effects are called {twice[0]!r}; give your own another name"
+        )
+    return (*catalogue, *own)
+
+
+def _run(path: Path) -> ModuleType:
+    if not path.is_file():
+        raise UsageError(f"there is no effects file '{path}'; give a Python file")
+    spec = importlib.util.spec_from_file_location(f"own_effects_{path.stem}", path)
+    if spec is None or spec.loader is None:
+        raise UsageError(f"'{path}' is no Python file; its name must end in .py")
+    module = importlib.util.module_from_spec(spec)
+    kept, sys.dont_write_bytecode = sys.dont_write_bytecode, True
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise UsageError(
+            f"'{path}' cannot be run ({type(error).__name__}: {error}); "
+            f"try 'python {path}'"
+        ) from error
+    finally:
+        sys.dont_write_bytecode = kept
+    return module
+
+
+def _check(path: Path, entry: object) -> None:
+    """Refuse what the engine would stumble over long after."""
+    if not isinstance(entry, LumpedEffect):
+        raise UsageError(
+            f"'{path}': {ATTRIBUTE} holds a {type(entry).__name__}; "
+            "each must be a LumpedEffect"
+        )
+    fault = _fault(entry)
+    if fault:
+        raise UsageError(f"'{path}', effect {entry.effect.name!r}: {fault}")
+
+
+def _fault(entry: LumpedEffect) -> str:
+    """Return what is wrong with an effect, or an empty text."""
+    parameters = entry.effect.parameters
+    if not NAME.fullmatch(entry.effect.name):
+        return "the name must be words in small letters joined by _"
+    if not parameters:
+        return "it has no parameter; the first is its amplitude"
+    if entry.effect.family == PROBE_FAMILY:
+        return "its family is that of what is never named; give it another"
+    if parameters[0].off != 0.0:
+        return "its first parameter must be an amplitude with off=0.0"
+    if not entry.sites or not set(entry.sites) <= set(SITES):
+        return f"its sites must be among {', '.join(SITES)}"
+    if all(getattr(entry, hook) is None for hook in HOOKS):
+        return f"it acts through no hook; give one of {', '.join(HOOKS)}"
+    return _misplaced(entry) or _loud(entry)
+
+
+def _misplaced(entry: LumpedEffect) -> str:
+    """Return which hook is on a site that it does not act at, or an empty text."""
+    for hook, right in HOOK_SITES.items():
+        wrong = [site for site in entry.sites if site not in right]
+        if wrong and getattr(entry, hook) is not None:
+            return f"its hook {hook} sits on {' or '.join(right)}, not on {wrong[0]}"
+    if entry.mixing is not None and entry.every_channel:
+        # Its index is -1, at which a mixing would take the last channel alone.
+        return "its hook mixing acts on one channel; leave every_channel out"
+    return ""
+
+
+def _loud(entry: LumpedEffect) -> str:
+    """Return what is wrong with an effect at amplitude 0, or an empty text."""
+    try:
+        silent = _silent(entry)
+    except UsageError:
+        raise
+    except Exception as error:
+        raise UsageError(
+            f"effect {entry.effect.name!r} fails at amplitude 0 "
+            f"({type(error).__name__}: {error}); try its hook by itself"
+        ) from error
+    return "" if silent else "at amplitude 0 it must vanish to the last bit"
+
+
+def _silent(entry: LumpedEffect) -> bool:
+    """Return whether an effect of amplitude 0 leaves the base as it is.
+
+    A law other than one of curves is not tried: its amplitude stands in parameters of
+    its own.
+    """
+    values = np.array([p.starts[0] if p.starts else 1.0 for p in _shapes(entry)])
+    values = np.concatenate([[0.0], values])
+    s = np.asarray(
+        TRIED_DAMPING + 2j * np.pi * np.geomspace(1.0, 1e4, TRIED_LINES),
+        dtype=np.complex128,
+    )
+    conditions = HitConditions(np.array(TRIED_PRELOADS), np.array(TRIED_PROGRESS))
+    state = ElementState(s, 1.0, 1.0, 1.0, conditions)
+    return not (_moves(entry, state, values) or _bends(entry, s, values))
+
+
+def _moves(entry: LumpedEffect, state: ElementState, values: FloatArray) -> bool:
+    """Return whether an effect adds anything to a link or a body."""
+    left: list[object] = []
+    if entry.stiffness is not None:
+        left.append(np.any(entry.stiffness(state, values)))
+    if entry.rise is not None:
+        left.append(np.any(entry.rise(state.conditions, values)))
+    if entry.law is not None and (law := entry.law(values)).kind == CURVES:
+        left.append(np.any(law.tables))
+    return any(left)
+
+
+def _bends(entry: LumpedEffect, s: ComplexArray, values: FloatArray) -> bool:
+    """Return whether an effect changes anything about a channel."""
+    left: list[object] = []
+    if entry.transfer is not None:
+        left.append(np.any(entry.transfer(s, values) != 1.0))
+    if entry.mixing is not None:
+        left.append(entry.mixing(values) != 0.0)
+    if entry.shape is not None:
+        model = _signal()
+        shaped = entry.shape(model.copy(), 1.01 * model, values, TRIED_RATE)
+        left.append(np.any(shaped != model))
+    return any(left)
+
+
+def _signal() -> FloatArray:
+    """Return a decaying tone in three records, shape (3, 1, TRIED_SAMPLES)."""
+    turn = np.arange(TRIED_SAMPLES) / TRIED_SAMPLES
+    tone = np.exp(-3.0 * turn) * np.sin(2 * np.pi * 10.0 * turn)
+    return np.asarray(np.array([0.5, 1.0, 2.0])[:, None, None] * tone)
+
+
+def _shapes(entry: LumpedEffect) -> tuple[Parameter, ...]:
+    return entry.effect.parameters[1:]

@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: MIT
+"""The plan of a measurement (TOML): channel table, points, levels, torques, settings.
+
+::
+
+    operator = "A. Miller"
+    [acquisition]
+    sample_rate = "25.6 kHz"
+    [hits]
+    points = ["1", "2"]
+    levels = ["100 N"]          # peak force to aim at; left out, any level
+    torques = ["20 N m", "50 N m"]
+    repeats = 3
+    [[sensors]]
+    name = "force"
+    quantity = "force"
+    sensitivity = "2.25 mV/N"
+    physical = "cDAQ1Mod1/ai0"
+    range = "2000 N"
+
+A triaxial sensor lists ``axes``, each with its own input, direction and sensitivity.
+"""
+
+import re
+from datetime import date
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from jointbench.acquisition.basics.errors import UnitError
+from jointbench.acquisition.basics.units import parse_sensitivity, parse_value
+from jointbench.acquisition.ni.sensors import Axis, Sensor
+from jointbench.acquisition.records.recordings import Quantity
+from jointbench.station.files.toml_file import StrictTable, with_unit
+
+SECONDS_IN_A_MINUTE = 60.0
+
+
+Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
+Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
+Newtons = Annotated[float, with_unit("force"), Field(gt=0)]
+Torque = Annotated[float, with_unit("torque"), Field(gt=0)]
+Metres = Annotated[float, with_unit("length"), Field(gt=0)]
+
+
+class AxisTable(StrictTable):
+    """One axis of a sensor: its input, its direction, its sensitivity as text."""
+
+    physical: str = Field(min_length=1)
+    direction: str = Field(pattern=r"^[+-][A-Za-z][A-Za-z0-9]*$")
+    sensitivity: str
+
+
+class PlanSensorTable(StrictTable):
+    """A sensor, of one axis (given right here) or of several (`axes`)."""
+
+    name: str = Field(min_length=1, max_length=40)
+    quantity: Literal["force", "acceleration"]
+    point: str = ""
+    physical: str | None = None
+    direction: str = Field(default="+z", pattern=r"^[+-][A-Za-z][A-Za-z0-9]*$")
+    sensitivity: str | None = None
+    axes: tuple[AxisTable, ...] = Field(default=(), max_length=3)
+    range: str
+    iepe: str | None = None
+    coupling: Literal["AC", "DC"] = "AC"
+    serial: str = ""
+    calibrated: date | None = None
+    calibration_months: int = Field(default=12, ge=1, le=120)
+
+    @model_validator(mode="after")
+    def _one_way(self) -> "PlanSensorTable":
+        single = self.physical is not None and self.sensitivity is not None
+        if single == bool(self.axes):
+            raise ValueError(
+                "give either physical and sensitivity, or axes with both in each"
+            )
+        if self.quantity != "force" and not self.point:
+            raise ValueError("say at which point it sits, point = '1'")
+        return self
+
+    def sensor(self) -> Sensor:
+        """Return the sensor in SI.
+
+        Raises:
+            UnitError: a value has no unit, or a wrong one.
+        """
+        rows = self.axes or (
+            AxisTable(
+                physical=self.physical or "",
+                direction=self.direction,
+                sensitivity=self.sensitivity or "",
+            ),
+        )
+        return Sensor(
+            name=self.name,
+            quantity=Quantity(self.quantity),
+            point=self.point,
+            axes=tuple(
+                Axis(
+                    row.physical,
+                    row.direction,
+                    parse_sensitivity(row.sensitivity, self.quantity),
+                )
+                for row in rows
+            ),
+            unit=rows[0].sensitivity.rpartition("/")[2].strip(),
+            range=parse_value(self.range, self.quantity),
+            excitation=None if self.iepe is None else _amperes(self.iepe),
+            coupling=self.coupling,
+            serial=self.serial,
+            calibrated=self.calibrated,
+            calibration_months=self.calibration_months,
+        )
+
+
+def _amperes(text: str) -> float:
+    match = re.fullmatch(r"\s*(\d+\.?\d*)\s*(mA|A)\s*", text)
+    if match is None:
+        raise UnitError(
+            f"iepe is {text!r}; write the current with its unit, '4 mA', or '0 mA'"
+        )
+    return float(match[1]) * (1e-3 if match[2] == "mA" else 1.0)
+
+
+class AcquisitionTable(StrictTable):
+    """How to stream: rate, length of a block, what the driver keeps unread, trigger."""
+
+    sample_rate: Hertz = 25_600.0
+    block: Seconds = 0.05
+    buffer: Seconds = 20.0
+    patience: Seconds = 120.0
+    trigger: Literal["software", "hardware"] = "software"
+
+
+class HitsTable(StrictTable):
+    """What to hit, how often, and when a hit is good; None is left to trial hits."""
+
+    points: tuple[str, ...] = Field(min_length=1, max_length=200)
+    levels: tuple[Newtons, ...] = Field(default=(), max_length=20)
+    torques: tuple[Torque, ...] = Field(default=(), max_length=20)
+    repeats: int = Field(default=3, ge=1, le=1000)
+    most_repeats: int | None = Field(default=None, ge=1, le=2000)
+    most_rejected: int = Field(default=20, ge=1, le=1000)
+    coherence: float = Field(default=0.9, gt=0, lt=1)
+    trial_hits: int = Field(default=2, ge=0, le=20)
+    trigger: Newtons | None = None
+    length: Seconds | None = None
+    pretrigger: Seconds = 0.01
+    wait: Seconds = 10 * SECONDS_IN_A_MINUTE
+
+    @model_validator(mode="after")
+    def _unique(self) -> "HitsTable":
+        for name in ("points", "levels", "torques"):
+            values: tuple[object, ...] = getattr(self, name)
+            if len(set(values)) != len(values):
+                raise ValueError(f"{name} lists something twice")
+        if self.most_repeats is not None and self.most_repeats < self.repeats:
+            raise ValueError("most_repeats is below repeats")
+        return self
+
+
+class PlanJointTable(StrictTable):
+    """What a torque makes of the preload: P = n T / (K d)."""
+
+    bolts: int = Field(ge=1, le=1000)
+    diameter: Metres
+    nut_factor: float = Field(default=0.2, gt=0, lt=1)
+
+    def preload(self, torque: float) -> float:
+        """Return the preload of all bolts together [N] for a torque on each [N m].
+
+        Source:
+            Zhou et al. 2025: P = n T / (K d).
+        """
+        return self.bolts * torque / (self.nut_factor * self.diameter)
+
+
+class TorqueTable(StrictTable):
+    """The torque tester that every bolt is tightened with, on a serial line.
+
+    A bolt's torque is the largest reading between two rests. A reading beside the
+    target by more than `tolerance` is asked for again, `tries` times at the most.
+    """
+
+    instrument: Literal["mark10"] = "mark10"
+    line: str = Field(min_length=1)
+    baud: int = Field(default=115_200, ge=300, le=4_000_000)
+    tolerance: float = Field(default=0.1, gt=0, lt=1)
+    tries: int = Field(default=3, ge=1, le=100)
+    poll: Seconds = 0.02
+
+
+class MeasureTable(StrictTable):
+    """The whole plan."""
+
+    operator: str = ""
+    notes: str = ""
+    temperature: str = ""
+    source: str | None = None
+    acquisition: AcquisitionTable = Field(default_factory=AcquisitionTable)
+    hits: HitsTable
+    joint: PlanJointTable | None = None
+    torque: TorqueTable | None = None
+    sensors: tuple[PlanSensorTable, ...] = Field(min_length=2, max_length=128)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _known_shape(cls, content: Any) -> Any:
+        if isinstance(content, dict) and "sensors" not in content:
+            raise ValueError("there is no [[sensors]] table; list hammer and responses")
+        return content
+
+    @model_validator(mode="after")
+    def _bolts_known(self) -> "MeasureTable":
+        if self.torque is not None and (self.joint is None or not self.hits.torques):
+            raise ValueError(
+                "[torque] reads bolts that nobody names; give torques in [hits], and "
+                "bolts and diameter in [joint]"
+            )
+        return self

@@ -1,0 +1,233 @@
+# SPDX-License-Identifier: MIT
+"""The recipe (TOML): how recorded sessions are read again, stage by stage.
+
+Numbers carry their unit as text ("2 ms") and are parsed once, here. What is left out
+is chosen by the data, as `jointbench modal` chooses it.
+"""
+
+import json
+import re
+from hashlib import sha256
+from pathlib import Path, PureWindowsPath
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    Field,
+    model_validator,
+)
+
+from jointbench.acquisition.basics.errors import BadData, JointbenchError
+from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
+from jointbench.station.files.toml_file import (
+    AUTO,
+    NONE,
+    StrictTable,
+    read_toml,
+    with_unit,
+)
+from jointbench.station.models.bench_model import BenchModel, Force, Pressure
+
+_NAME = re.compile(r"\w([\w .-]{0,58}\w)?")
+"""A recipe's name becomes part of file names: of the results, of the ledger."""
+
+
+Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
+Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
+Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
+_NotNegative = Annotated[float, Field(ge=0)]
+# The limit is one of the number alone: asked of "auto" it ends in an internal error.
+WindowTime = Annotated[_NotNegative | None, with_unit("time", AUTO, NONE)]
+WindowRate = Annotated[_NotNegative | None, with_unit("frequency", AUTO, NONE)]
+
+
+def _beside(text: str) -> str:
+    """Refuse a file that is not below the recipe's folder."""
+    for path in (Path(text), PureWindowsPath(text)):
+        if path.anchor or ".." in path.parts or not text.isprintable():
+            raise ValueError("name a file beside the recipe, or in a folder below it")
+    return text
+
+
+FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
+
+
+class HitsPart(StrictTable):
+    """How hits are found and judged again; see `HitCriteria` and `HitLimits`."""
+
+    trigger_level: Force | None = None
+    pretrigger: Seconds | None = None
+    dead_time: Seconds | None = None
+    rearm_fraction: Share | None = None
+    noise_factor: Annotated[float, Field(gt=0)] | None = None
+    peak_fraction: Share | None = None
+    minimum_length: Seconds | None = None
+    overload_fraction: Share | None = None
+    flat_samples: Annotated[int, Field(ge=2)] | None = None
+    double_ratio: Share | None = None
+    weak_ratio: Share | None = None
+    weak_force: Force | None = None
+    again: bool = True
+    keep_operator: bool = True
+
+
+class WindowsPart(StrictTable):
+    """Windows: a time or a rate, "auto" (chosen by the hits) or "none"."""
+
+    force_width: WindowTime = None
+    exponential: WindowRate = None
+    lead: WindowTime = None
+
+
+class FrfPart(StrictTable):
+    """The estimator of the FRF."""
+
+    estimator: Literal["H1", "H2", "Hv"] = "H1"
+
+
+class KalmanPart(StrictTable):
+    """The Kalman stage; see `KalmanSettings`."""
+
+    use: bool = True
+    model: Literal["level_slope", "oscillator"] = "level_slope"
+    cutoff: Hertz | None = None
+    smooth: bool = True
+    frequency: Hertz | None = None
+    damping_ratio: Share | None = None
+
+    @model_validator(mode="after")
+    def _oscillator_has_a_frequency(self) -> "KalmanPart":
+        if self.model == "oscillator" and self.frequency is None:
+            raise ValueError("an oscillator needs its frequency, as '310 Hz'")
+        return self
+
+
+class ModesPart(StrictTable):
+    """Band, order and choices by hand; see `ModalSettings`."""
+
+    band: tuple[Hertz, Hertz] | None = None
+    highest_order: Annotated[int, Field(ge=2, le=200)] | None = None
+    refine: bool = True
+    keep: tuple[Hertz, ...] = ()
+    drop: tuple[Hertz, ...] = ()
+
+    @model_validator(mode="after")
+    def _band_ascends(self) -> "ModesPart":
+        if self.band is not None and not self.band[0] < self.band[1]:
+            raise ValueError(f"band is {self.band} Hz; write the lower end first")
+        return self
+
+
+class SurfacePart(StrictTable):
+    """Whether surfaces are fitted, and with which frequency ratio gamma."""
+
+    use: bool = True
+    gamma: Annotated[float, Field(gt=1)] | None = None
+
+
+class ContactPart(StrictTable):
+    """What the contact law needs to predict the joint from the session's faces."""
+
+    modulus: Pressure
+    hardness: Pressure
+    preload: Force | None = None
+    poisson: Annotated[float, Field(ge=0, lt=0.5)] = 0.25
+    model: str = "ke_3d_modified"
+
+
+class IdentificationPart(StrictTable):
+    """The bench model whose links are identified, beside the recipe."""
+
+    model: FileBeside
+
+
+class GapPart(StrictTable):
+    """The bench model whose gap is examined, and effects left out."""
+
+    model: FileBeside
+    without: tuple[str, ...] = ()
+
+
+class Recipe(StrictTable):
+    """A recipe as written; `models` holds what its model files say, by their names."""
+
+    name: str = ""
+    hits: HitsPart = HitsPart()
+    windows: WindowsPart = WindowsPart()
+    frf: FrfPart = FrfPart()
+    kalman: KalmanPart = KalmanPart()
+    modes: ModesPart = ModesPart()
+    surface: SurfacePart = SurfacePart()
+    contact: ContactPart | None = None
+    identification: IdentificationPart | None = None
+    gap: GapPart | None = None
+    models: dict[str, BenchModel] = Field(default_factory=dict, exclude=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _models_are_ours(cls, content: Any) -> Any:
+        if isinstance(content, dict) and "models" in content:
+            raise ValueError("'models' is no table of a recipe")
+        return content
+
+
+def read_recipe(path: Path) -> Recipe:
+    """Read a recipe and the model files that it names.
+
+    Args:
+        path: of the TOML file; model files lie beside it.
+
+    Returns:
+        The recipe, called after its file where it has no name.
+
+    Raises:
+        BadData: it or a model file breaks a rule; the message names file, key, value
+            and rule.
+    """
+    recipe = read_toml(path, Recipe)
+    name = recipe.name or path.stem
+    if _NAME.fullmatch(name) is None:
+        raise BadData(
+            f"{named(path)}: the recipe's name is {shown(name)}, and becomes part of "
+            "file names: write letters, digits, spaces, dots, - and _, 60 at "
+            "the most, as name = '...' or as the file's own name"
+        )
+    _check_names(recipe, path)
+    wanted = {
+        part.model for part in (recipe.identification, recipe.gap) if part is not None
+    }
+    models = {model: read_toml(path.parent / model, BenchModel) for model in wanted}
+    return recipe.model_copy(update={"models": models, "name": name})
+
+
+def _check_names(recipe: Recipe, path: Path) -> None:
+    """Refuse names of contact models and effects that nobody has, before any work."""
+    key = ""
+    try:
+        if recipe.contact is not None:
+            key = "contact.model"
+            contact_model(recipe.contact.model)
+        if recipe.gap is not None:
+            key = "gap.without"
+            check_names(recipe.gap.without, CATALOGUE)
+    except JointbenchError as error:
+        raise BadData(f"{named(path)}: key {key!r}: {error}") from error
+
+
+def recipe_content(recipe: Recipe) -> dict[str, object]:
+    """Return all that a result depends on: not the name, but what the models say."""
+    content = recipe.model_dump(mode="json", exclude={"name"})
+    return content | {
+        "models": {
+            name: model.model_dump(mode="json")
+            for name, model in sorted(recipe.models.items())
+        }
+    }
+
+
+def recipe_digest(recipe: Recipe) -> str:
+    """Return the SHA-256 of what a recipe says, however it is written."""
+    text = json.dumps(recipe_content(recipe), sort_keys=True)
+    return sha256(text.encode()).hexdigest()

@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: MIT
+"""The stages from recordings to modes, each put in once, and the chain of them.
+
+::
+
+    hits    <- samples                      kalman  <- samples
+    frf     <- hits, kalman, windows        modes   <- frf
+    fill    <- modes, samples (lost ones)
+
+Every command and every recipe runs these stages, each through a store
+(`stage_store`) that keeps what it gives, or nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from jointbench.acquisition.basics.errors import NoModeFound
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.records.recordings import Provenance, Recording
+from jointbench.signal.frf.estimators import Estimator
+from jointbench.signal.frf.frf import Frf, estimate_frf
+from jointbench.signal.hits.find_hits import HitCriteria
+from jointbench.signal.hits.windows import WindowRequest, requested_window
+from jointbench.signal.kalman.oscillator_bank import repair_dropouts
+from jointbench.signal.kalman.smoothing import KalmanSettings, smooth_recording
+from jointbench.signal.modal.data_limits import block_words, time_scale_words
+from jointbench.signal.modal.lscf import Progress
+from jointbench.signal.modal.modes import ModalResult, ModalSettings, identify_modes
+from jointbench.station.pipeline.judge_again import (
+    FoundHits,
+    StoredHits,
+    judge_again,
+    with_hits,
+)
+from jointbench.station.pipeline.preloads import at_words
+from jointbench.station.pipeline.stage_store import StageRun
+
+# A gap spoils the modes that fill it; what a second round leaves is below the noise.
+_REPAIRS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class ChainSettings:
+    """How recordings become modes.
+
+    Attributes:
+        hits: how hits are found and judged.
+        kalman: the smoother, run on all channels alike; None leaves it out.
+        modal: band, order and stability limits of the extraction.
+        estimator: of the FRF.
+        window: what is asked of the windows; by default nothing, the hits choose.
+    """
+
+    hits: HitCriteria = field(default_factory=HitCriteria)
+    kalman: KalmanSettings | None = field(default_factory=KalmanSettings)
+    modal: ModalSettings = field(default_factory=ModalSettings)
+    estimator: Estimator = Estimator.H1
+    window: WindowRequest = field(default_factory=WindowRequest)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModalChain:
+    """Recordings with judged hits, the FRF they give, and its modes.
+
+    Attributes:
+        recordings: as recorded, with hits and verdicts.
+        frf: from the accepted hits, after the Kalman stage.
+        result: modes, stabilisation and synthesis.
+        provenance: every step from the recordings to the modes.
+    """
+
+    recordings: tuple[Recording, ...]
+    frf: Frf
+    result: ModalResult
+    provenance: Provenance
+
+
+def run_chain(
+    recordings: Sequence[Recording],
+    settings: ChainSettings | None = None,
+    run: StageRun | None = None,
+) -> ModalChain:
+    """Take recordings to modes.
+
+    Args:
+        recordings: force and responses; hits that are already judged are kept.
+        settings: None for the defaults.
+        run: store and source of the stages; None to keep none.
+
+    Returns:
+        The whole chain, so that every stage can be shown.
+
+    Raises:
+        BadData: no usable hit, channels missing, or no mode above the noise.
+    """
+    settings, run = settings or ChainSettings(), run or StageRun()
+    with one_thread():
+        return judged_modes(judge_hits(recordings, settings, run), settings, run)
+
+
+def judge_hits(
+    recordings: Sequence[Recording],
+    settings: ChainSettings,
+    run: StageRun | None = None,
+) -> tuple[Recording, ...]:
+    """Find and judge the hits of recordings that carry none yet.
+
+    Where others were judged as they were recorded, one without a hit is a quiet
+    stretch between them, and is left out.
+
+    Raises:
+        NoHitFound: there is no hit in a recording, and none was judged before.
+    """
+    found = hits_stage(recordings, settings.hits, StoredHits(), run or StageRun())
+    return tuple(
+        with_hits(recording, one)
+        for recording, one in zip(recordings, found, strict=True)
+        if one.hits
+    )
+
+
+def judged_modes(
+    judged: Sequence[Recording],
+    settings: ChainSettings,
+    run: StageRun | None = None,
+    preload: float | None = None,
+) -> ModalChain:
+    """Take recordings with judged hits to modes, see `modal_chain`.
+
+    Raises:
+        NoModeFound: there is none; the message says what may keep it from being found.
+    """
+    try:
+        with one_thread():
+            return modal_chain(judged, settings, run or StageRun(), preload)
+    except NoModeFound as error:
+        why = (*time_scale_words(judged), *block_words(judged))
+        raise NoModeFound("; ".join((str(error), *why))) from error
+
+
+def modal_chain(
+    judged: Sequence[Recording],
+    settings: ChainSettings,
+    run: StageRun,
+    preload: float | None = None,
+) -> ModalChain:
+    """Run the stages that follow the hits.
+
+    Hits are judged on the samples as recorded: a smoother would round off the flat
+    tops that betray an overload. Where a response stood still for a while, the modes
+    found without regard to that fill the gap; a few rounds, as those modes get better.
+
+    Args:
+        judged: with judged hits.
+        settings: of the chain.
+        run: store and source.
+        preload: of these recordings [N], part of the names of the stages.
+
+    Returns:
+        The chain, its recordings with lost samples filled.
+
+    Raises:
+        BadData: no usable hit, channels missing, or no mode above the noise.
+    """
+    at = at_words(preload)
+    frf = frf_stage(judged, settings, run, at)
+    result = modes_stage(frf, settings, run, at)
+    filled = fill_stage(judged, result, settings, run, at)
+    whole = ModalChain(tuple(judged), frf, result, result.model.provenance)
+    return filled[0] if filled else whole
+
+
+def hits_stage(
+    recordings: Sequence[Recording],
+    criteria: HitCriteria,
+    stored: StoredHits,
+    run: StageRun,
+) -> tuple[FoundHits, ...]:
+    """Return the hits of each recording, see `judge_again`; none for no recordings."""
+    if not recordings:
+        return ()
+    source = run.digest or run.stages.digest(tuple(recordings))
+    return run.stages.run(
+        "hits",
+        run.stages.key("hits", [criteria, stored], source),
+        tuple[FoundHits, ...],
+        lambda: judge_again(recordings, criteria, stored),
+    )
+
+
+def kalman_stage(
+    recording: Recording, key: str, settings: ChainSettings, run: StageRun
+) -> Recording:
+    """Put a recording through the Kalman stage, if there is one; hits are kept."""
+    if settings.kalman is None:
+        return recording
+    bare, kalman = replace(recording, hits=()), settings.kalman
+    kept = run.stages.run(
+        f"kalman of {recording.name}",
+        key,
+        Recording,
+        lambda: smooth_recording(bare, kalman),
+    )
+    # Samples depend on samples alone: how the hits were found is not of this stage.
+    steps = (*recording.provenance, kept.provenance[-1])
+    return replace(recording, samples=kept.samples, provenance=steps)
+
+
+def _recorded(recording: Recording) -> tuple[object, ...]:
+    """Return what the Kalman stage of a recording depends on."""
+    return recording.name, recording.samples, recording.sample_rate, recording.channels
+
+
+def frf_stage(
+    judged: Sequence[Recording], settings: ChainSettings, run: StageRun, at: str
+) -> Frf:
+    """Estimate the FRF of recordings with judged hits, after the Kalman stage."""
+    stages = run.stages
+    keys = [
+        stages.key("kalman", settings.kalman, *run.source(r.name, _recorded(r)))
+        for r in judged
+    ]
+    found = stages.digest(tuple((r.name, r.hits, r.provenance) for r in judged))
+    return stages.run(
+        f"frf{at}",
+        stages.key("frf", [settings.window, settings.estimator.value], found, *keys),
+        Frf,
+        lambda: chain_frf(
+            [kalman_stage(*p, settings, run) for p in zip(judged, keys, strict=True)],
+            settings,
+        ),
+    )
+
+
+def modes_stage(
+    frf: Frf, settings: ChainSettings, run: StageRun, at: str
+) -> ModalResult:
+    """Find the modes of an FRF that `frf_stage` gave."""
+    return run.stages.run(
+        f"modes{at}",
+        run.stages.key("modes", settings.modal, run.stages.keys[f"frf{at}"]),
+        ModalResult,
+        lambda: identify_modes(frf, settings.modal, progress=run.progress),
+    )
+
+
+def fill_stage(
+    judged: Sequence[Recording],
+    result: ModalResult,
+    settings: ChainSettings,
+    run: StageRun,
+    at: str,
+) -> tuple[ModalChain, ...]:
+    """Fill lost samples with what the modes make of the good ones, and fit again.
+
+    Args:
+        judged: with judged hits.
+        result: modes that `modes_stage` found with the losses in them.
+        settings: of the chain.
+        run: store and source.
+        at: which preload, part of the name.
+
+    Returns:
+        The chain with the losses filled, or none where nothing was lost.
+    """
+    used = [settings.kalman, settings.modal, settings.window, settings.estimator.value]
+    return run.stages.run(
+        f"fill{at}",
+        run.stages.key("fill", used, run.stages.keys[f"modes{at}"]),
+        tuple[ModalChain, ...],
+        lambda: _filled(judged, result, settings, run.progress),
+    )
+
+
+def _filled(
+    judged: Sequence[Recording],
+    result: ModalResult,
+    settings: ChainSettings,
+    progress: Progress | None,
+) -> tuple[ModalChain, ...]:
+    chain: tuple[ModalChain, ...] = ()
+    for _ in range(_REPAIRS):
+        model = result.model
+        repaired = tuple(
+            repair_dropouts(r, model.natural_frequency, model.damping_ratio)
+            for r in judged
+        )
+        if all(new is old for new, old in zip(repaired, judged, strict=True)):
+            return chain
+        frf = chain_frf([_smoothed(r, settings) for r in repaired], settings)
+        result = identify_modes(frf, settings.modal, progress=progress)
+        chain = (ModalChain(repaired, frf, result, result.model.provenance),)
+    return chain
+
+
+def _smoothed(recording: Recording, settings: ChainSettings) -> Recording:
+    if settings.kalman is None:
+        return recording
+    return replace(smooth_recording(recording, settings.kalman), hits=recording.hits)
+
+
+def chain_frf(recordings: Sequence[Recording], settings: ChainSettings) -> Frf:
+    """Estimate the FRF of recordings that have been through the Kalman stage."""
+    window = requested_window(recordings, settings.window)
+    return estimate_frf(recordings, window=window, estimator=settings.estimator)

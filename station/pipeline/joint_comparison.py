@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""The joint twice: as the contact law predicts it, and as the modes identify it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.contact.case import ContactCase, ContactConditions
+from jointbench.analysis.contact.material import ContactMaterial
+from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.preload import Preload
+from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.signal.surface.structure_function import StructureFunction
+from jointbench.station.models.bench_model import ContactTable
+from jointbench.station.pipeline.contact_prediction import (
+    FACES,
+    ContactPoint,
+    equivalent_surface,
+    predict_point,
+)
+
+CURVE_POINTS = 13
+CURVE_DECADES = 1.0
+"""The curve runs this many decades of preload to either side."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactPrediction:
+    """What the contact law makes of two faces.
+
+    Attributes:
+        surface: the one surface that stands for both faces.
+        at: the prediction at the joint's own preload.
+        curve: predictions over a range of preloads around it.
+    """
+
+    surface: ContactSurface
+    at: ContactPoint
+    curve: tuple[ContactPoint, ...]
+
+
+def predict_joint(
+    structures: Sequence[StructureFunction], table: ContactTable
+) -> ContactPrediction:
+    """Predict a joint from the structure functions of its faces.
+
+    Args:
+        structures: of two faces, or of one that stands for both.
+        table: material, preload and model.
+
+    Raises:
+        BadData: no face, more than two, or no scaling range on them.
+    """
+    if not 1 <= len(structures) <= FACES:
+        raise BadData(
+            f"{len(structures)} surfaces for one joint; keep the two faces that meet "
+            "in the session, or one that stands for both"
+        )
+    faces = structures if len(structures) == FACES else [structures[0]] * FACES
+    surface = equivalent_surface(faces)
+    material = ContactMaterial(
+        effective_modulus=table.modulus, hardness=table.hardness, poisson=table.poisson
+    )
+    case = ContactCase(
+        contact_model(table.model),
+        surface,
+        Preload(table.preload, 0.0),
+        ContactConditions(material),
+    )
+    preloads = table.preload * np.logspace(-CURVE_DECADES, CURVE_DECADES, CURVE_POINTS)
+    return ContactPrediction(
+        surface,
+        predict_point(case),
+        tuple(
+            predict_point(replace(case, preload=Preload(float(p), 0.0)))
+            for p in preloads
+        ),
+    )

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: MIT
+"""The stages from surfaces and modes to the joint, each put in once.
+
+::
+
+    structure <- heights                surface <- structure
+    contact   <- structures, material   joint   <- modes, the model
+    gap       <- hits, samples, the model
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.acquisition.records.surfaces import Surface
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.intake.session_campaign import session_campaign
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
+from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+from jointbench.analysis.lumped.identified import Identification
+from jointbench.signal.fractal.fractal_fit import fit_fractal
+from jointbench.signal.fractal.surface_verdict import FractalFit
+from jointbench.signal.modal.modal_model import ModalModel
+from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
+from jointbench.signal.surface.structure_function import (
+    StructureFunction,
+    structure_function,
+)
+from jointbench.station.models.bench_model import BenchModel, ContactTable
+from jointbench.station.models.gap_model import gap_sheet
+from jointbench.station.pipeline.joint_comparison import (
+    ContactPrediction,
+    predict_joint,
+)
+from jointbench.station.pipeline.link_stage import identify_joint
+from jointbench.station.pipeline.preloads import at_words
+from jointbench.station.pipeline.stage_store import StageRun
+from jointbench.station.pipeline.surface_stages import SurfaceChain
+
+Page = dict[str, Any]
+Found = TypeVar("Found")
+
+
+@dataclass(slots=True)
+class Remarks:
+    """What could not be done, and why, a line each.
+
+    Attributes:
+        lines: so far, in the order of the stages.
+        refusals: errors that become a remark; all others end the run.
+    """
+
+    refusals: tuple[type[JointbenchError], ...]
+    lines: list[str] = field(default_factory=list)
+
+    def attempt(self, words: str, make: Callable[[], Found]) -> Found | None:
+        """Return what a stage gives, or None and a remark on why it cannot be done."""
+        try:
+            return make()
+        except self.refusals as error:
+            self.lines.append(f"No {words}: {error}")
+            return None
+
+
+def surface_stages(
+    surfaces: Iterable[Surface], run: StageRun, gamma: float = DEFAULT_GAMMA
+) -> tuple[SurfaceChain, ...]:
+    """Return the structure function and the fractal fit of each surface.
+
+    Args:
+        surfaces: heights.
+        run: store and source.
+        gamma: frequency ratio of the profile that D and G belong to [-].
+    """
+    return tuple(_surface(surface, run, gamma) for surface in surfaces)
+
+
+def _surface(surface: Surface, run: StageRun, gamma: float) -> SurfaceChain:
+    stages = run.stages
+    first = stages.key("structure", None, *run.source(surface.name, surface))
+    structure = stages.run(
+        f"structure of {surface.name}",
+        first,
+        StructureFunction,
+        lambda: structure_function(surface),
+    )
+    name = f"surface {surface.name}"
+    key = stages.key("surface", gamma, first)
+    fit = stages.run(name, key, FractalFit, lambda: fit_fractal(structure, gamma=gamma))
+    return SurfaceChain(surface, structure, fit)
+
+
+def contact_stage(
+    surfaces: Sequence[SurfaceChain], table: ContactTable, run: StageRun
+) -> ContactPrediction:
+    """Predict the joint between faces, see `predict_joint`."""
+    structures = tuple(one.structure for one in surfaces)
+    given = table.model_dump(mode="json", exclude={"link"})
+    return run.stages.run(
+        "contact",
+        run.stages.key("contact", given, run.stages.digest(structures)),
+        ContactPrediction,
+        lambda: predict_joint(structures, table),
+    )
+
+
+def joint_stage(
+    modes: ModalModel, bench: BenchModel, run: StageRun, preload: float | None = None
+) -> Identification:
+    """Identify the links of a bench from its modes, see `identify_joint`."""
+    given = bench.model_dump(mode="json")
+    return run.stages.run(
+        f"joint{at_words(preload)}",
+        run.stages.key("joint", given, run.stages.digest(modes)),
+        Identification,
+        lambda: identify_joint(bench, modes),
+    )
+
+
+def gap_stage(
+    judged: Sequence[Recording],
+    bench: BenchModel,
+    without: Sequence[str],
+    run: StageRun,
+) -> Page:
+    """Ask what a model lacks, as `jointbench gap` does; verdict and evidence as JSON.
+
+    Args:
+        judged: with hits and preloads.
+        bench: the model.
+        without: names of effects to leave out of the catalogue.
+        run: store and source.
+    """
+    left = frozenset(without)
+
+    def make() -> Page:
+        found, left_out = gap_of("session", judged, gap_sheet(bench), without=left)
+        return diagnosis_json(found) | {"left_out": list(left_out)}
+
+    given = [bench.model_dump(mode="json"), sorted(left)]
+    known = run.digest or run.stages.digest(tuple(judged))
+    facts = run.stages.digest(
+        tuple((r.name, r.hits, r.preload, r.provenance) for r in judged)
+    )
+    return run.stages.run("gap", run.stages.key("gap", given, known, facts), Page, make)
+
+
+def gap_of(
+    name: str,
+    judged: Sequence[Recording],
+    sheet: Sheet,
+    *,
+    without: frozenset[str],
+    entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[Diagnosis, tuple[str, ...]]:
+    """Diagnose the campaign that recordings make.
+
+    Args:
+        name: of the campaign.
+        judged: recordings with hits and preloads, in the order recorded.
+        sheet: the model that should explain them.
+        without: names of effects to leave out.
+        entries: the catalogue.
+        progress: told what is being done, one line at a time; None for no report.
+
+    Returns:
+        Verdict and evidence, and why accepted hits were left out, a line each.
+    """
+    campaign, left_out = session_campaign(name, judged, sheet)
+    found = diagnose(campaign, without=without, entries=entries, progress=progress)
+    return found, left_out

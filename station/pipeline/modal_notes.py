@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""What a person at the bench must know beside the table of modes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.signal.frf.beyond_band import Beyond, look_beyond
+from jointbench.signal.frf.linearity import Linearity, check_linearity
+from jointbench.signal.hits.find_hits import accepted_hits
+from jointbench.signal.hits.hit_spectra import hit_spectra
+from jointbench.signal.hits.windows import choose_window, join_windows
+from jointbench.signal.modal.data_limits import (
+    asked_words,
+    block_words,
+    mode_words,
+    time_scale_words,
+)
+from jointbench.station.pipeline.chain import ModalChain
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ModalNotes:
+    """What was looked at beside the modes.
+
+    Attributes:
+        beyond: what lies above the band.
+        linearity: whether the FRF depends on the level, None where it was not checked.
+        unchecked: why linearity was not checked, or empty.
+        limits: what cannot be in the data, a sentence each.
+    """
+
+    beyond: Beyond
+    linearity: Linearity | None
+    unchecked: str
+    limits: tuple[str, ...]
+
+    def remarks(self) -> tuple[str, ...]:
+        """Return what the modes should be read with, a sentence each."""
+        words = []
+        if self.linearity is not None and self.linearity.nonlinear:
+            words.append(f"levels disagree: {self.linearity.words}")
+        return (*words, *filter(None, [self.beyond.words()]))
+
+
+def modal_notes(chain: ModalChain) -> ModalNotes:
+    """Look at what a chain leaves out: band, levels, length, rate and decay.
+
+    Args:
+        chain: recordings with judged hits, FRF and modes.
+    """
+    judged = [r for r in chain.recordings if accepted_hits(r)]
+    window = join_windows([choose_window(recording) for recording in judged])
+    spectra = hit_spectra(judged, window)
+    try:
+        linearity, unchecked = check_linearity(spectra), ""
+    except BadData as error:
+        linearity, unchecked = None, str(error)
+    beyond = look_beyond(chain.frf, chain.result.band, spectra)
+    return ModalNotes(beyond, linearity, unchecked, limit_words(chain))
+
+
+def limit_words(chain: ModalChain) -> tuple[str, ...]:
+    """Say what cannot be in the data of a chain, a sentence each."""
+    judged = [r for r in chain.recordings if accepted_hits(r)]
+    low, high = chain.result.band
+    frequency = chain.frf.frequency
+    lines = int(np.count_nonzero((frequency >= low) & (frequency <= high)))
+    hits = sum(len(recording.hits) for recording in chain.recordings)
+    alone = "one hit alone: nothing tells whether it was a glancing one"
+    return (
+        *time_scale_words(judged),
+        *asked_words(judged, chain.result.settings.band),
+        *block_words(judged, lines),
+        *mode_words(judged, chain.result.model),
+        *([alone] if hits == 1 else []),
+    )

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+"""A recorded session through the whole chain under a recipe, stage by stage.
+
+Hits, modes at each preload and links from them, surfaces, the contact between them, and
+the gap over all recordings: the stages of `chain` and `joint_stages`, with the settings
+that the recipe names. Each is kept by content (`stage_store`): change the window, and
+hits, Kalman stage, surfaces and contact are taken as they are.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from jointbench.acquisition.basics.errors import BadData, JointbenchError, UsageError
+from jointbench.acquisition.records.recordings import Recording, Verdict
+from jointbench.acquisition.records.session import Session
+from jointbench.analysis.lumped.identified import identification_json
+from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
+from jointbench.station.models.bench_model import ContactTable
+from jointbench.station.models.recipe import Recipe
+from jointbench.station.pipeline.chain import ModalChain, hits_stage, modal_chain
+from jointbench.station.pipeline.contact_prediction import contact_json
+from jointbench.station.pipeline.joint_stages import (
+    Remarks,
+    contact_stage,
+    gap_stage,
+    joint_stage,
+    surface_stages,
+)
+from jointbench.station.pipeline.judge_again import Hits, VerdictChange, verdict_changes
+from jointbench.station.pipeline.modal_notes import limit_words
+from jointbench.station.pipeline.preloads import at_words, by_preload
+from jointbench.station.pipeline.recipe_settings import (
+    chain_settings,
+    hit_criteria,
+    stored_hits,
+)
+from jointbench.station.pipeline.stage_store import StageRun, StageStore
+from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+
+Page = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreloadModes:
+    """Modes at one preload of the joint.
+
+    Attributes:
+        preload: [N], None where it is not known.
+        recordings: names of those behind them.
+        chain: hits, FRF and modes.
+    """
+
+    preload: float | None
+    recordings: tuple[str, ...]
+    chain: ModalChain
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProcessedSession:
+    """What a recipe makes of a session.
+
+    Attributes:
+        session: as recorded.
+        hits: of each recording, as judged now.
+        changes: hits whose verdict is another than the stored one.
+        modal: modes at each preload.
+        surfaces: structure function and fractal fit of each surface.
+        contact: predicted joint, plain data, or None.
+        joints: identified links at each preload that has them, plain data.
+        gap: verdict on the model, plain data, or None.
+        remarks: what could not be done, and why, a line each.
+        stages: what was run and what was taken as kept.
+    """
+
+    session: Session
+    hits: tuple[Hits, ...]
+    changes: tuple[VerdictChange, ...]
+    modal: tuple[PreloadModes, ...]
+    surfaces: tuple[SurfaceChain, ...]
+    contact: dict[str, Any] | None
+    joints: tuple[tuple[float | None, dict[str, Any]], ...]
+    gap: dict[str, Any] | None
+    remarks: tuple[str, ...]
+    stages: StageStore
+
+
+def process_session(
+    session: Session, digest: str, recipe: Recipe, stages: StageStore
+) -> ProcessedSession:
+    """Run the chain; a late stage that cannot be done becomes a remark.
+
+    Args:
+        session: as recorded.
+        digest: SHA-256 of its file.
+        recipe: how to read it.
+        stages: keeps the stages.
+
+    Raises:
+        BadData: there is nothing in it, no usable hit, or no mode.
+    """
+    if not session.recordings and not session.surfaces:
+        raise BadData("the session holds neither recordings nor surfaces")
+    run, remarks = StageRun(stages, digest), Remarks((JointbenchError,))
+    hits = _hits(session, recipe, run)
+    judged = tuple(
+        replace(recording, hits=own)
+        for recording, own in zip(session.recordings, hits, strict=True)
+        if own
+    )
+    modal = _modal(judged, recipe, run, remarks.lines)
+    surfaces = _surfaces(session, recipe, run)
+    cautions = [said for one in surfaces for said in chain_cautions(one)]
+    remarks.lines.extend(f"Surface {said}" for said in cautions)
+    return ProcessedSession(
+        session=session,
+        hits=hits,
+        changes=verdict_changes(session.recordings, hits, hit_criteria(recipe.hits)),
+        modal=modal,
+        surfaces=surfaces,
+        contact=_contact(session, surfaces, recipe, run, remarks),
+        joints=tuple(
+            (modes.preload, page)
+            for modes in modal
+            if (page := _joint(modes, recipe, run, remarks)) is not None
+        ),
+        gap=_gap(session, judged, recipe, run, remarks),
+        remarks=tuple(remarks.lines),
+        stages=stages,
+    )
+
+
+def _hits(session: Session, recipe: Recipe, run: StageRun) -> tuple[Hits, ...]:
+    criteria, stored = hit_criteria(recipe.hits), stored_hits(recipe.hits)
+    found = hits_stage(session.recordings, criteria, stored, run)
+    hits = tuple(one.hits for one in found)
+    if hits and not any(hit.verdict is Verdict.OK for own in hits for hit in own):
+        raise BadData(_all_refused(hits))
+    return hits
+
+
+def _all_refused(hits: Sequence[Hits]) -> str:
+    refused = [hit for own in hits for hit in own]
+    if not refused:
+        return "there is no hit in the session"
+    return (
+        f"none of {len(refused)} hits is accepted; the first is "
+        f"{refused[0].verdict.value}: {refused[0].reason}"
+    )
+
+
+def _modal(
+    judged: Sequence[Recording], recipe: Recipe, run: StageRun, remarks: list[str]
+) -> tuple[PreloadModes, ...]:
+    """Return the modes at each preload; those that fail are reported, unless all do.
+
+    Raises:
+        BadData: there is no mode at any preload.
+    """
+    if not judged:
+        return ()
+    found: list[PreloadModes] = []
+    problems: list[JointbenchError] = []
+    for preload, group in by_preload(judged):
+        try:
+            found.append(_modes_at(preload, group, recipe, run))
+            words = limit_words(found[-1].chain)
+            remarks += [f"Modes{at_words(preload)}: {w}" for w in words]
+        except (BadData, UsageError) as error:
+            problems.append(error)
+            remarks.append(f"No modes{at_words(preload)}: {error}")
+    if problems and not found:
+        raise problems[0]
+    return tuple(found)
+
+
+def _modes_at(
+    preload: float | None, group: Sequence[Recording], recipe: Recipe, run: StageRun
+) -> PreloadModes:
+    chain = modal_chain(group, chain_settings(recipe), run, preload)
+    # A result speaks of the samples as recorded, not of those filled since.
+    chain = replace(chain, recordings=tuple(group))
+    return PreloadModes(preload, tuple(r.name for r in group), chain)
+
+
+def _surfaces(
+    session: Session, recipe: Recipe, run: StageRun
+) -> tuple[SurfaceChain, ...]:
+    """Fit every surface of a session, or none where the recipe says so."""
+    if not recipe.surface.use:
+        return ()
+    gamma = recipe.surface.gamma or DEFAULT_GAMMA
+    return surface_stages(session.surfaces, run, gamma)
+
+
+def _contact(
+    session: Session,
+    surfaces: Sequence[SurfaceChain],
+    recipe: Recipe,
+    run: StageRun,
+    remarks: Remarks,
+) -> Page | None:
+    """Predict the joint from the session's faces, if the recipe has a contact."""
+    part = recipe.contact
+    if part is None:
+        return None
+    if not surfaces:
+        why = "no surface in the session is fitted"
+        remarks.lines.append(f"No contact prediction: {why}")
+        return None
+    stored = None if session.joint is None else session.joint.preload
+    preload = part.preload or stored
+    if preload is None:
+        why = "no preload in the recipe or the session"
+        remarks.lines.append(f"No contact prediction: {why}")
+        return None
+    given = part.model_dump() | {"preload": preload}
+    # Read as a table its numbers would need units again; they were checked there.
+    table = ContactTable.model_construct(link="joint", **given)
+    found = remarks.attempt(
+        "contact prediction", lambda: contact_stage(surfaces, table, run)
+    )
+    return None if found is None else contact_json([found.at], found.surface)
+
+
+def _joint(
+    modes: PreloadModes, recipe: Recipe, run: StageRun, remarks: Remarks
+) -> Page | None:
+    """Identify the links of the recipe's model from the modes at a preload."""
+    if recipe.identification is None:
+        return None
+    bench = recipe.models[recipe.identification.model]
+    found = remarks.attempt(
+        f"joint identification{at_words(modes.preload)}",
+        lambda: joint_stage(modes.chain.result.model, bench, run, modes.preload),
+    )
+    return None if found is None else identification_json(found)
+
+
+def _gap(
+    session: Session,
+    judged: Sequence[Recording],
+    recipe: Recipe,
+    run: StageRun,
+    remarks: Remarks,
+) -> Page | None:
+    """Ask what the recipe's model lacks."""
+    if recipe.gap is None or not judged:
+        return None
+    bench, without = recipe.models[recipe.gap.model], recipe.gap.without
+    of_session = None if session.joint is None else session.joint.preload
+    recordings = [
+        r if r.preload is not None else replace(r, preload=of_session) for r in judged
+    ]
+    return remarks.attempt("gap", lambda: gap_stage(recordings, bench, without, run))

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench surface``: structure function and fractal parameters of surfaces."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from jointbench.acquisition.formats.heights.height_facts import cautions
+from jointbench.acquisition.records.surfaces import Surface
+from jointbench.signal.fractal.fractal_fit import fit_fractal
+from jointbench.signal.fractal.surface_verdict import FractalFit
+from jointbench.signal.surface.structure_function import StructureFunction
+from jointbench.signal.surface.surface_treatment import treated_structure
+from jointbench.station.pipeline.roughness_words import (
+    caution_lines,
+    roughness_json,
+)
+from jointbench.station.pipeline.surface_options import (
+    NOTHING_BESIDE,
+    PLAIN,
+    Beside,
+    SurfaceOptions,
+    beside_the_fit,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceChain:
+    """A surface, its structure function and what it says."""
+
+    surface: Surface
+    structure: StructureFunction
+    fit: FractalFit
+    beside: Beside = NOTHING_BESIDE
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pooled:
+    """Several profiles as one structure function, and what it says."""
+
+    structure: StructureFunction
+    fit: FractalFit
+    beside: Beside
+
+
+def analyse_surface(surface: Surface, options: SurfaceOptions = PLAIN) -> SurfaceChain:
+    """Take a surface to its fractal parameters, or to the reason why it has none.
+
+    Raises:
+        UsageError: an option does not suit the surface.
+        SurfaceTooSmall: too few measured points.
+    """
+    flat, structure = treated_structure(surface, options.treatment)
+    beside = beside_the_fit(flat, structure, options)
+    return SurfaceChain(flat, structure, fit_fractal(structure), beside)
+
+
+def chain_cautions(chain: SurfaceChain) -> tuple[str, ...]:
+    """Return what to keep in mind about the heights, one line each."""
+    return caution_lines(chain.surface.name, cautions(chain.surface.provenance))
+
+
+def surface_json(chain: SurfaceChain) -> dict[str, object]:
+    """Return what the contract promises of ``surface``, and more."""
+    said = cautions(chain.surface.provenance)
+    return {
+        **fit_json(chain.surface.name, chain.fit, said),
+        **dict(chain.beside.keys),
+    }
+
+
+def fit_json(name: str, fit: FractalFit, said: Sequence[str]) -> dict[str, object]:
+    """Return a fit and its cautions as plain data."""
+    return {
+        "surface": name,
+        "verdict": fit.verdict.value,
+        "reason": fit.reason,
+        "cautions": list(said),
+        "dimension": fit.dimension,
+        "dimension_sd": fit.dimension_sd,
+        **roughness_json(fit.scaling),
+        "fit_band_m": fit.fit_band,
+        "instrument": fit.instrument,
+        "instrument_parameters": [
+            {"name": p.name, "value_m": p.value, "sd_m": p.sd}
+            for p in fit.instrument_parameters
+        ],
+        "chi2_per_dof": fit.chi2_per_dof,
+        "pivot_m": fit.pivot,
+        "pivot_value_m2": fit.pivot_value,
+        "local_slope": {
+            "lag_m": fit.local_slope.lag.tolist(),
+            "slope": fit.local_slope.slope.tolist(),
+            "sd": fit.local_slope.sd.tolist(),
+        },
+        "provenance": [{"step": s.name, **dict(s.detail)} for s in fit.provenance],
+    }

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""The report's section on how far the FRFs and the modal model can be trusted."""
+
+import numpy as np
+
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.signal.frf.linearity import check_linearity
+from jointbench.signal.frf.mode_indicators import cmif
+from jointbench.signal.hits.find_hits import accepted_hits
+from jointbench.signal.hits.hit_spectra import hit_spectra
+from jointbench.signal.hits.leakage import estimate_leakage
+from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
+from jointbench.signal.modal.mode_confidence import rate_modes
+from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.screen.figures import PALETTE, axis, figure, line, thin
+from jointbench.station.screen.page import Plot, Section, Text
+
+_MOST_POINTS = 3000
+
+
+def checks_section(chain: ModalChain) -> Section:
+    """Return indicator functions, synthesis error by line, leakage and linearity."""
+    window = join_windows(
+        [choose_window(r) for r in chain.recordings if accepted_hits(r)]
+    )
+    return Section(
+        "checks",
+        "Checks",
+        (
+            _indicators(chain),
+            Text(_leakage(chain, window)),
+            Text(_linearity(chain, window)),
+        ),
+    )
+
+
+def _indicators(chain: ModalChain) -> Plot:
+    result = chain.result
+    low, high = result.band
+    inside = (chain.frf.frequency >= low) & (chain.frf.frequency <= high)
+    values = cmif(chain.frf)[:, inside]
+    frequency = chain.frf.frequency[inside]
+    traces = [
+        line(*thin(frequency, row, _MOST_POINTS), f"CMIF {i + 1}", color=PALETTE[i % 6])
+        for i, row in enumerate(values[:4])
+    ]
+    traces.append(
+        line(
+            *thin(
+                result.synthesis.frequency, 100 * result.synthesis_error, _MOST_POINTS
+            ),
+            "synthesis error",
+            color=PALETTE[1],
+            width=1,
+            axes=("x", "y2"),
+        )
+    )
+    plot = figure(
+        traces,
+        axis("frequency [Hz]", anchor="y2"),
+        axis("singular value", log=True, domain=[0.4, 1.0]),
+        yaxis2=axis("missed [%]", log=True, domain=[0.0, 0.32]),
+    )
+    caption = (
+        "Complex mode indicator function: singular values of the FRF matrix; two that "
+        "peak together are two modes. Below: what the synthesis misses of the FRF on "
+        "each line, rms over all pairs."
+    )
+    return Plot("cmif-plot", caption, plot, 460)
+
+
+def _leakage(chain: ModalChain, window: HammerWindow) -> str:
+    leakage = estimate_leakage(chain.recordings, window)
+    return (
+        f"Leakage: {100 * leakage.typical:.2g} % of the response's amplitude lies "
+        f"beyond the block as windowed, most of it near {leakage.worst_frequency:.5g} "
+        f"Hz ({100 * leakage.worst:.2g} % there)."
+    )
+
+
+def _linearity(chain: ModalChain, window: HammerWindow) -> str:
+    judged = [r for r in chain.recordings if accepted_hits(r)]
+    try:
+        text = check_linearity(hit_spectra(judged, window)).words
+    except BadData as error:
+        text = f"not checked: {error}"
+    return f"Linearity: {text}."
+
+
+def systematic_words(chain: ModalChain) -> str:
+    """Say which intervals rest on misfit, not noise, and by how much at most."""
+    model = chain.result.model
+    rated = rate_modes(model, chain.result.stabilisation.orders.size)
+    marked = np.flatnonzero(model.systematic)
+    if marked.size == 0:
+        return "Noise makes up the intervals of all modes."
+    error = rated.frequency_error[marked]
+    worst = int(np.argmax(error))
+    share = error / model.natural_frequency[marked]
+    damping = rated.damping_error[marked] / np.abs(model.damping_ratio[marked])
+    return (
+        f"Systematic error exceeds noise at {marked.size} of "
+        f"{model.natural_frequency.size} modes: {np.median(error):.2g} Hz "
+        f"({100 * np.median(share):.1g} %) and {100 * np.median(damping):.2g} % of the "
+        f"damping at the middle one, {error[worst]:.2g} Hz at most (mode "
+        f"{marked[worst] + 1}). Leakage, a neighbour left out or a structure that is "
+        "not linear; more hits would not narrow those intervals."
+    )

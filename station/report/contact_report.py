@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: MIT
+"""What ``jointbench contact`` shows: predictions, sweeps, and their page."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.records.session import software_version
+from jointbench.analysis.contact.predict import DAMPING_REASON
+from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.pipeline.contact_options import ContactOptions
+from jointbench.station.pipeline.contact_prediction import (
+    ContactPoint,
+    contact_json,
+    predict_request,
+    surface_of,
+    swept,
+)
+from jointbench.station.pipeline.contact_request import (
+    ContactRequest,
+    Sweep,
+    parse_sweep,
+)
+from jointbench.station.pipeline.roughness_words import contact_surface_words
+from jointbench.station.screen.figures import PALETTE, axis, figure, line
+from jointbench.station.screen.page import (
+    DataTable,
+    Item,
+    Plot,
+    Report,
+    Section,
+    Text,
+    write_report,
+)
+from jointbench.station.screen.terminal import console, table, write_json
+
+LABELS = {
+    "load": "preload [N]",
+    "dimension": "fractal dimension of a line [-]",
+    "roughness": "fractal roughness G [m]",
+}
+COLUMNS = (
+    "model",
+    "preload [N]",
+    "normal K [N/m]",
+    "95 %",
+    "tangential K [N/m]",
+    "C [N s/m]",
+    "real area [mm²]",
+    "verdict",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SweepRow:
+    """One value of a swept input: what each model makes of it, or why it is refused."""
+
+    value: float
+    points: tuple[ContactPoint, ...]
+    refusal: str = ""
+
+
+def run_contact(
+    request: ContactRequest, given: ContactOptions
+) -> tuple[ContactPoint, ...]:
+    """Predict every model at every preload, along a sweep too, and show them."""
+    faces = given.surface or []
+    check_outputs(faces, [given.json, given.plot])
+    sweep = None if given.sweep is None else parse_sweep(given.sweep)
+    surface = surface_of(
+        given.dimension,
+        given.roughness,
+        faces,
+        given.columns,
+        dimension_sd=given.dimension_sd,
+        roughness_sd=given.roughness_sd,
+    )
+    points = predict_request(request, surface)
+    rows = () if sweep is None else run_sweep(request, surface, sweep)
+    _show(points, surface, request, given.json)
+    if sweep is not None:
+        _show_sweep(sweep, rows, given.json)
+    if given.plot is not None:
+        write_report(contact_page(points, surface, sweep, rows), given.plot)
+    content = contact_json(points, surface)
+    if sweep is not None:
+        content["sweep"] = sweep_json(sweep, rows)
+    write_json(given.json, content)
+    return points
+
+
+def run_sweep(
+    request: ContactRequest, surface: ContactSurface, sweep: Sweep
+) -> tuple[SweepRow, ...]:
+    """Predict along a sweep; a value that the model refuses keeps its place."""
+    rows = []
+    for value in sweep.values:
+        try:
+            points = predict_request(*swept(request, surface, sweep.name, value))
+        except BadData as error:
+            rows.append(SweepRow(value, (), str(error)))
+        else:
+            rows.append(SweepRow(value, points))
+    return tuple(rows)
+
+
+def sweep_json(sweep: Sweep, rows: Sequence[SweepRow]) -> dict[str, object]:
+    """Return a sweep as the JSON has it."""
+    return {
+        "name": sweep.name,
+        "label": LABELS[sweep.name],
+        "rows": [
+            {
+                "value": row.value,
+                "refused": row.refusal or None,
+                "models": [
+                    {
+                        "name": point.state.model,
+                        "normal_stiffness": point.state.normal_stiffness,
+                        "damping": point.state.damping,
+                        "verdict": point.state.verdict.value,
+                    }
+                    for point in row.points
+                ],
+            }
+            for row in rows
+        ],
+    }
+
+
+def contact_page(
+    points: Sequence[ContactPoint],
+    surface: ContactSurface,
+    sweep: Sweep | None,
+    rows: Sequence[SweepRow],
+) -> Report:
+    """Arrange predictions and sweep as one offline page."""
+    cells = tuple(tuple(row) for row in _rows(points))
+    items: list[Item] = [DataTable("Predictions", COLUMNS, cells)]
+    items += [Text(said, "notice") for said in surface.cautions]
+    items += [Text(reason) for reason in _reasons(points)]
+    sections = [Section("points", "Predictions", tuple(items))]
+    if sweep is not None:
+        sections.append(Section("sweep", "Sweep", _plots(sweep, rows)))
+    return Report(
+        title="Contact of a rough joint",
+        lead=contact_surface_words(surface),
+        software=f"{software_version()}: contact",
+        simulated=False,
+        tiles=(),
+        sections=tuple(sections),
+    )
+
+
+def _plots(sweep: Sweep, rows: Sequence[SweepRow]) -> tuple[Item, ...]:
+    """Return stiffness, and damping where there is any, against the swept input."""
+    kept = [row for row in rows if row.points]
+    if not kept:
+        return (Text(rows[0].refusal, "notice"),)
+    x = axis(LABELS[sweep.name], log=sweep.name != "dimension")
+    plots: list[Item] = []
+    for name, key, title in (
+        ("stiffness", "normal_stiffness", "normal stiffness [N/m]"),
+        ("damping", "damping", "damping [N s/m]"),
+    ):
+        traces = [
+            line(
+                [row.value for row in kept],
+                [getattr(row.points[i].state, key) or float("nan") for row in kept],
+                f"{point.state.model}, {point.state.mode.value}",
+                color=PALETTE[i % len(PALETTE)],
+            )
+            for i, point in enumerate(kept[0].points)
+            if key != "damping" or point.state.damping is not None
+        ]
+        if traces:
+            picture = figure(traces, x, axis(title, log=True))
+            plots.append(Plot(f"{name}-sweep", title.capitalize(), picture))
+    refused = len(rows) - len(kept)
+    if refused:
+        plots.append(Text(f"{refused} values refused: {_first_refusal(rows)}"))
+    return tuple(plots)
+
+
+def _first_refusal(rows: Sequence[SweepRow]) -> str:
+    return next((row.refusal for row in rows if row.refusal), "")
+
+
+def _rows(points: Sequence[ContactPoint]) -> list[tuple[str, ...]]:
+    return [
+        (
+            point.state.model,
+            f"{point.state.preload:.6g}",
+            f"{point.state.normal_stiffness:.4g}",
+            _bounds(point),
+            f"{point.state.tangential_stiffness:.4g}",
+            "-" if point.state.damping is None else f"{point.state.damping:.4g}",
+            f"{point.state.real_area * 1e6:.4g}",
+            point.state.verdict.value,
+        )
+        for point in points
+    ]
+
+
+def _show(
+    points: Sequence[ContactPoint],
+    surface: ContactSurface,
+    request: ContactRequest,
+    json_target: str | None,
+) -> None:
+    screen = console(json_target)
+    title = f"Contact at {contact_surface_words(surface)}"
+    screen.print(table(title, COLUMNS, _rows(points)))
+    for said in surface.cautions:
+        screen.print(f"  {said}", markup=False)
+    for reason in _reasons(points):
+        screen.print(f"  {reason}", markup=False)
+    if request.conditions.damping is None:
+        screen.print(f"  {DAMPING_REASON}", markup=False)
+
+
+def _reasons(points: Sequence[ContactPoint]) -> list[str]:
+    """Return every reason once, and what leaves the most open."""
+    lines = [reason for point in points for reason in point.state.reasons]
+    for point in points:
+        found = point.uncertainty
+        if found is not None and (name := found.stiffness.dominant) is not None:
+            share = found.stiffness.shares[name]
+            lines.append(
+                f"{point.state.model}: {name} leaves the most open, {share:.0%} of the "
+                "variance of the stiffness"
+            )
+    return list(dict.fromkeys(lines))
+
+
+def _show_sweep(
+    sweep: Sweep, rows: Sequence[SweepRow], json_target: str | None
+) -> None:
+    screen = console(json_target)
+    names = next((row.points for row in rows if row.points), ())
+    heads = [LABELS[sweep.name]]
+    for point in names:
+        heads += [f"K {point.state.model} [N/m]", "C [N s/m]"]
+    cells = []
+    for row in rows:
+        line_ = [f"{row.value:.5g}"]
+        for point in row.points:
+            damping = point.state.damping
+            line_ += [
+                f"{point.state.normal_stiffness:.4g}",
+                "-" if damping is None else f"{damping:.4g}",
+            ]
+        cells.append(tuple(line_ + ["refused"] * (len(heads) - len(line_))))
+    screen.print(table(f"Sweep of {sweep.name}", heads, cells))
+    if refusal := _first_refusal(rows):
+        screen.print(f"  {refusal}", markup=False)
+
+
+def _bounds(point: ContactPoint) -> str:
+    """Write an interval; one that nothing widens is left out."""
+    interval = point.interval
+    if interval.upper <= interval.lower * (1 + 1e-9):
+        return "-"
+    return f"{interval.lower:.3g}–{interval.upper:.3g}"

@@ -1,0 +1,335 @@
+# SPDX-License-Identifier: MIT
+"""The page about a gap: what was found, where it sat, why the rivals lost."""
+
+from jointbench.acquisition.records.session import software_version
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Gap
+from jointbench.analysis.gap.model.evidence_records import Exhibit
+from jointbench.station.report.gap_figures import (
+    misfit_spectrum,
+    response_function,
+    view_grid,
+    wish_figure,
+)
+from jointbench.station.report.gap_sentences import (
+    SMALL_GAP,
+    effect_words,
+    headline,
+    next_step,
+    percent,
+    place,
+    short,
+    sure,
+    why_lost,
+)
+from jointbench.station.report.gap_summary_figure import hero
+from jointbench.station.screen.page import (
+    DataTable,
+    Item,
+    Plot,
+    Report,
+    Section,
+    Text,
+    Tile,
+)
+from jointbench.station.screen.terminal import with_sd
+
+MOST_CANDIDATES = 12
+MOST_SLICES = 3
+SMALL_SHARE = 0.05
+UNDRAWN = ("frequency", "order")
+"""Views with too many slices for bars."""
+HERO_HEIGHT = 640
+SAVE_HINT = "The camera above the picture saves it as SVG for a talk."
+
+
+def gap_report(found: Diagnosis, *, title: str) -> Report:
+    """Arrange a diagnosis as a page."""
+    sections = [
+        Section("picture", "The evidence in one picture", _picture(found)),
+        Section("effects", "What is missing", _effects(found)),
+        Section("where", "Where the gap sits", _where(found)),
+        Section("candidates", "Explanations tried", _candidates(found)),
+        Section("limits", "What could be seen, and what is left", _limits(found)),
+        Section("base", "The model at the end", (_base(found), _pulls(found))),
+    ]
+    return Report(
+        title=headline(found),
+        lead=_lead(found, title),
+        software=f"{software_version()}: gap",
+        simulated=False,
+        tiles=_tiles(found),
+        sections=tuple(section for section in sections if section.items),
+    )
+
+
+def _lead(found: Diagnosis, title: str) -> str:
+    text = f"Campaign {title}. Verdict: {found.verdict.value}."
+    if found.exhibit is not None and found.exhibit.where:
+        where = found.exhibit.where
+        shown = found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)
+        text += f" Without the effect, {where}." if shown else f" Base: {where}."
+    return text
+
+
+def _tiles(found: Diagnosis) -> tuple[Tile, ...]:
+    tiles = [Tile("verdict", found.verdict.value, _sure(found))]
+    before, after = found.gap_before, found.gap_after
+    note = "held out; 0 is noise"
+    tiles.append(Tile("gap before", short(before.value), note))
+    if _after(found) is not None:
+        tiles.append(Tile("gap after", short(after.value), note))
+        if before.value > SMALL_GAP:
+            tiles.append(Tile("shrinks by", percent(found.shrink)))
+    pull = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+    pulls = f"{short(pull)} sd"
+    if _after(found) is not None:
+        pulls = f"{short(pull)} → {short(after.pull)} sd"
+    tiles.append(Tile("pull of the sheet", pulls, "up to 4 is fair"))
+    return tuple(tiles)
+
+
+def _sure(found: Diagnosis) -> str:
+    if not found.effects:
+        return ""
+    if found.verdict is Finding.AMBIGUOUS:
+        return f"{len(found.explanations)} explanations fit alike"
+    return f"confidence {sure(max(e.confidence for e in found.effects))}"
+
+
+def _tried(found: Diagnosis) -> str:
+    """Return the legend of what is shown as after; empty for the base itself."""
+    if found.exhibit is None or not found.exhibit.tried:
+        return ""
+    words = effect_words(found.exhibit.tried)
+    refused = found.verdict is Finding.UNKNOWN
+    return f"closest try: {words} (refused)" if refused else f"with {words}"
+
+
+def _picture(found: Diagnosis) -> tuple[Item, ...]:
+    exhibit = found.exhibit
+    if exhibit is None:
+        return ()
+    figure = hero(
+        exhibit,
+        found.gap_before,
+        _after(found),
+        title=headline(found),
+        tried=_tried(found),
+        pulls=found.pulls,
+    )
+    return (Plot("hero", _hero_caption(found, exhibit), figure, HERO_HEIGHT),)
+
+
+def _after(found: Diagnosis) -> Gap | None:
+    """Return the gap with the effects; None where the base is all there is."""
+    shown = found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)
+    return found.gap_after if shown else None
+
+
+def _hero_caption(found: Diagnosis, exhibit: Exhibit) -> str:
+    curves = exhibit.curves
+    text = (
+        f"Record {curves.record}, {curves.condition}: channel {curves.channel}, which "
+        f"holds {100 * curves.share:.0f} % of the misfit. "
+    )
+    if not exhibit.where:
+        text = f"Record {curves.record}, {curves.condition}: channel {curves.channel}. "
+    if exhibit.tried:
+        text += "Below it the misfit before and after, and what is left, magnified. "
+    return text + "Scatter that the repeats show is taken out. " + SAVE_HINT
+
+
+def _effects(found: Diagnosis) -> tuple[Item, ...]:
+    rows = tuple(
+        (
+            f"{effect.name.replace('_', ' ')} {place(effect.site)}",
+            one.name,
+            with_sd(one.value, one.sd),
+            _interval(one.value, one.sd),
+            one.unit,
+            sure(effect.confidence),
+        )
+        for effect in found.effects
+        for one in effect.parameters
+    )
+    items: list[Item] = [Text(f"{found.verdict.value.capitalize()}: {found.reason}.")]
+    if rows:
+        columns = ("effect", "parameter", "value ± sd", "95 %", "unit", "confidence")
+        items.append(DataTable("What the model lacks.", columns, rows))
+    if found.verdict is Finding.UNKNOWN and found.exhibit is not None:
+        items.append(Text("What it looks like:"))
+        items += [Text(f"– {line}.") for line in found.exhibit.look]
+    if next_step(found):
+        items.append(Text(f"Do next: {next_step(found)}.", "notice"))
+    return tuple(items)
+
+
+def _interval(value: float, sd: float) -> str:
+    return f"{value - 1.96 * sd:.4g} to {value + 1.96 * sd:.4g}"
+
+
+def _where(found: Diagnosis) -> tuple[Item, ...]:
+    items: list[Item] = []
+    exhibit, tried = found.exhibit, _tried(found)
+    if exhibit is not None and exhibit.where:
+        items.append(Text(f"{exhibit.where[:1].upper()}{exhibit.where[1:]}."))
+        if found.verdict is not Finding.UNKNOWN:
+            items += [Text(f"– {line}.") for line in exhibit.look]
+    items.append(_where_table(found))
+    if exhibit is not None:
+        items += _spectra(exhibit, tried)
+    names = [
+        view.name
+        for view in found.gap_before.views
+        if view.name not in UNDRAWN and len(view.chi2_per_dof) > 1
+    ]
+    if names:
+        caption = "Every view: chi2 per sample of each slice; 1 is noise."
+        grid = view_grid(names, found.gap_before, _after(found))
+        items.append(Plot("views", caption, grid, 60 + 270 * -(-len(names) // 2)))
+    return tuple(items)
+
+
+def _spectra(exhibit: Exhibit, tried: str) -> list[Item]:
+    items: list[Item] = [
+        Plot(
+            "spectrum",
+            "By frequency: rms misfit of all records over the noise; 1 is noise.",
+            misfit_spectrum(exhibit.spectra, tried=tried),
+            340,
+        ),
+        Plot(
+            "response",
+            f"Response over force, {exhibit.spectra.condition}.",
+            response_function(exhibit.spectra, tried=tried),
+            340,
+        ),
+    ]
+    if exhibit.wishes is not None:
+        against = "preload" if exhibit.view == "preload" else "level"
+        items.append(
+            Plot(
+                "wishes",
+                "The stiffness and damping of the joint that each record would choose "
+                "by itself, as a change from the model; a right model leaves 0.",
+                wish_figure(
+                    exhibit.wishes,
+                    against=against,
+                    tried=tried,
+                    unit=exhibit.force_unit,
+                ),
+                320,
+            )
+        )
+    return items
+
+
+def _where_table(found: Diagnosis) -> DataTable:
+    gap = _after(found)
+    after = {view.name: view for view in gap.views} if gap is not None else {}
+    rows = []
+    for view in found.gap_before.views:
+        ordered = sorted(view.share.items(), key=lambda item: -item[1])[:MOST_SLICES]
+        for label, share in ordered:
+            if share >= SMALL_SHARE:
+                left = [after[view.name].chi2_per_dof[label]] if after else []
+                values = [view.chi2_per_dof[label], *left]
+                cells = (short(value) for value in values)
+                rows.append((view.name, label, f"{100 * share:.0f} %", *cells))
+    columns = ("view", "slice", "share", "chi2/dof before", "chi2/dof after")
+    shown = columns if after else columns[:-1]
+    return DataTable("The largest slices of each view.", shown, tuple(rows))
+
+
+def _candidates(found: Diagnosis) -> tuple[Item, ...]:
+    rows = tuple(
+        (
+            "base alone" if one.effects == ("none",) else " + ".join(one.effects),
+            short(one.behind),
+            f"{one.chi2_per_dof:.5g}",
+            short(one.pull),
+            why_lost(one, found),
+        )
+        for one in found.candidates[:MOST_CANDIDATES]
+    )
+    columns = ("explanation", "behind", "chi2/dof", "pull [sd]", "reason")
+    caption = (
+        "Best first. The score is chi2 with the priors' pull and a charge of 10 for "
+        "each parameter; one that is 15 behind is told apart (60 where one place "
+        "bears two effects)."
+    )
+    items: list[Item] = [DataTable(caption, columns, rows)]
+    if found.exhibit is not None and found.verdict is not Finding.NONE:
+        items.append(_tests(found.exhibit))
+    return tuple(items)
+
+
+def _tests(exhibit: Exhibit) -> DataTable:
+    rows = tuple(
+        (test.label, short(test.drop), f"{100 * test.share:.0f} %")
+        for test in exhibit.tests
+    )
+    columns = ("effect by itself", "chi2 it would take", "share of the misfit")
+    return DataTable("First look, before any fit, to first order.", columns, rows)
+
+
+def _limits(found: Diagnosis) -> tuple[Item, ...]:
+    largest, limit = found.null_statistic
+    noise = found.noise
+    force_unit = found.exhibit.force_unit if found.exhibit is not None else "N"
+    rows = [
+        (
+            "null test of the base",
+            short(largest),
+            short(limit),
+            "largest directed drop of chi2; linearised noise exceeds the limit once "
+            "in 200, an effect is looked for beyond 1.3 times it",
+        )
+    ]
+    if found.exhibit is not None:
+        limits = found.exhibit.limits
+        rows.append(
+            (
+                "chi2/dof at the end",
+                f"{limits.chi2_per_dof:.5g}",
+                f"{limits.chi2_allowed:.5g}",
+                "noise, and a small share for the model's own error",
+            )
+        )
+        if limits.remaining is not None:
+            rows.append(
+                (
+                    "directed test left",
+                    f"{limits.remaining:.4g}",
+                    f"{limits.remaining_allowed:.4g}",
+                    "chi2 that one more effect would take; the one nearest its limit",
+                )
+            )
+    table = DataTable(
+        "Tests and their limits.", ("test", "value", "limit", "detail"), tuple(rows)
+    )
+    floor = (
+        f"Noise floor: {noise['sigma_min']:.3g} to {noise['sigma_max']:.3g} of the "
+        f"response's unit, {noise['force_sigma_N']:.3g} {force_unit} of the force. "
+        f"Repeatability: hits scatter by {100 * noise['scatter_gain']:.2g} % in "
+        f"strength, the joint by {100 * noise['scatter_joint']:.2g} % in stiffness; "
+        "an effect that does no more than that cannot be seen."
+    )
+    return (Text(floor), table)
+
+
+def _base(found: Diagnosis) -> DataTable:
+    rows = tuple((e.name, with_sd(e.value, e.sd), e.unit) for e in found.base)
+    return DataTable("Base parameters.", ("parameter", "value", "unit"), rows)
+
+
+def _pulls(found: Diagnosis) -> DataTable:
+    rows = tuple(
+        (name, f"{before:+.2f}", f"{after:+.2f}")
+        for name, (before, after) in found.pulls.items()
+    )
+    return DataTable(
+        "Distance of each parameter from its sheet, in standard deviations.",
+        ("parameter", "before", "after"),
+        rows,
+    )

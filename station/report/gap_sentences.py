@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""A diagnosis in words: the headline, and why each rival lost."""
+
+from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Ranked
+
+PREPOSITIONS = {"link": "in", "body": "on body", "channel": "on channel"}
+ALL = "channel:all"
+NOT_WHOLE = 0.9995
+"""Shrink above which a percentage would round to a hundred."""
+NEARLY_SURE = 0.994
+MAINLY = 0.6
+SEEN = {"level": "at", "hit point": "from hits on", "preload": "at preload"}
+SMALL_GAP = 0.3
+"""Gap below which the records are nearly met: the sheet or a directed test tells."""
+SHEET = "sheet"
+"""View of a gap that only the priors see."""
+
+
+def place(site: str) -> str:
+    """Return a site in words.
+
+    >>> place("link:joint"), place("body:m2"), place("channel:all")
+    ('in the joint', 'on body m2', 'on all channels')
+    """
+    if site == ALL:
+        return "on all channels"
+    kind, _, name = site.partition(":")
+    if kind == "link":
+        return "in the joint" if name == "joint" else f"in link {name}"
+    return f"{PREPOSITIONS.get(kind, 'at ' + kind)} {name}"
+
+
+def effect_words(label: str) -> str:
+    """Return effects and sites in words.
+
+    >>> effect_words("cubic_stiffness@link:joint")
+    'cubic stiffness in the joint'
+    """
+    parts = [part.partition("@") for part in label.split(" + ")]
+    return " and ".join(
+        name.replace("_", " ") + (f" {place(site)}" if site else "")
+        for name, _, site in parts
+    )
+
+
+def headline(found: Diagnosis) -> str:
+    """Return what was found, in one sentence for the top of a page."""
+    if found.verdict is Finding.NONE:
+        return "Nothing is missing: the model explains every record to its noise"
+    if found.verdict is Finding.UNKNOWN:
+        return _unknown(found)
+    names = _names(found)
+    text = f"{names[:1].upper()}{names[1:]} {_explains(found)}"
+    if found.verdict is Finding.AMBIGUOUS:
+        text += "; these records do not tell which"
+    return text
+
+
+def _names(found: Diagnosis) -> str:
+    """Return the explanations in words, those of several effects set off by commas."""
+    sets = [effect_words(" + ".join(labels)) for labels in found.explanations]
+    several = any(len(labels) > 1 for labels in found.explanations)
+    return (", or " if several else " or ").join(sets)
+
+
+def _unknown(found: Diagnosis) -> str:
+    if len(found.explanations) > 1:
+        return "Several explanations fit alike, and these records do not tell which"
+    if found.explanations:
+        return "These records cannot show what is missing, if anything is"
+    if found.gap_before.value < SMALL_GAP:
+        return "The sheet and the records disagree, and no effect says why"
+    return "Something is missing that no effect of the catalogue explains"
+
+
+def _explains(found: Diagnosis) -> str:
+    several = found.verdict is Finding.NAMED and len(found.effects) > 1
+    verb = "explain" if several else "explains"
+    sheet = found.exhibit is None or found.exhibit.view == SHEET
+    if not found.foretold:
+        return f"{verb} the records, but one condition alone shows it"
+    if found.gap_before.value < SMALL_GAP and not sheet:
+        largest, limit = found.null_statistic
+        return (
+            f"{verb} what little is missing: a directed test takes {largest:.0f} "
+            f"units of chi2, noise alone seldom more than {limit:.0f}"
+        )
+    if found.gap_before.value < SMALL_GAP:
+        before = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+        verb = "bring" if several else "brings"
+        return (
+            f"{verb} the model back to its sheet: largest pull {before:.2g} sd "
+            f"before, {found.gap_after.pull:.2g} sd after"
+        )
+    whole = found.shrink >= 1.0
+    size = "the whole" if whole else percent(found.shrink) + " of the"
+    return f"{verb} {size} gap{_seen(found)}"
+
+
+def _seen(found: Diagnosis) -> str:
+    """Say in which slice of the telling view the gap is seen, where it is one."""
+    name = found.exhibit.view if found.exhibit is not None else ""
+    view = next((v for v in found.gap_before.views if v.name == name), None)
+    if view is None or name not in SEEN or len(view.share) < 2:
+        return ""
+    top = max(view.share, key=lambda label: view.share[label])
+    if view.share[top] < MAINLY:
+        return ""
+    if name == "level":
+        hardest = max(view.share, key=lambda label: float(label.partition(" ")[0]))
+        return ", seen at high level" if top == hardest else f", seen at {top}"
+    return f", seen {SEEN[name]} {top}"
+
+
+def percent(share: float) -> str:
+    """Return a share, never rounded up to the whole.
+
+    >>> percent(0.9721), percent(0.99999), percent(1.0)
+    ('97.2 %', 'over 99.9 %', '100 %')
+    """
+    if share >= 1.0:
+        return "100 %"
+    return "over 99.9 %" if share > NOT_WHOLE else f"{100 * share:.1f} %"
+
+
+def short(value: float) -> str:
+    """Write a number in few characters, without an exponent where it can be.
+
+    >>> short(1.234), short(190.4), short(20312.0)
+    ('1.23', '190', '20312')
+    """
+    return f"{value:.3g}" if abs(value) < 1e3 or abs(value) >= 1e6 else f"{value:.0f}"
+
+
+def sure(confidence: float) -> str:
+    """Return a confidence, never rounded up to certainty.
+
+    >>> sure(0.981), sure(0.9999)
+    ('98 %', 'over 99 %')
+    """
+    return "over 99 %" if confidence > NEARLY_SURE else f"{100 * confidence:.0f} %"
+
+
+def next_step(found: Diagnosis) -> str:
+    """Return what to do next."""
+    if found.verdict is Finding.NAMED:
+        return f"use it; {found.experiment}"
+    return found.experiment
+
+
+def why_lost(one: Ranked, found: Diagnosis) -> str:
+    """Return why an explanation is not the answer, or what it is.
+
+    Args:
+        one: explanation that was tried.
+        found: the diagnosis it belongs to.
+    """
+    faults = _faults(one, found)
+    best = found.candidates[0]
+    if found.verdict is Finding.NONE and one.effects == ("none",):
+        return "nothing more is needed"
+    if one is best and found.verdict is not Finding.UNKNOWN:
+        return "the best" if not faults else "the best, although: " + faults
+    if faults:
+        return faults
+    if found.verdict is Finding.UNKNOWN:
+        return _not_told(one, found)
+    if one.effects in found.explanations:
+        return "not told apart from the best"
+    if set(best.effects) < set(one.effects):
+        return "the best and one more that earns nothing"
+    return "fits, but less well"
+
+
+def _not_told(one: Ranked, found: Diagnosis) -> str:
+    if one.effects in found.explanations:
+        return "fits, but these records cannot show it"
+    if found.explanations:
+        return "fits less well"
+    closest = one is found.candidates[0]
+    return "the closest try, refused" if closest else "behind the closest try"
+
+
+def _faults(one: Ranked, found: Diagnosis) -> str:
+    limits = found.exhibit.limits if found.exhibit is not None else None
+    faults = []
+    if limits is not None and one.chi2_per_dof > limits.chi2_allowed:
+        faults.append(f"chi2/dof above {limits.chi2_allowed:.4g}")
+    if limits is not None and one.pull > limits.pull_allowed:
+        faults.append(f"sheet pulled above {limits.pull_allowed:g} sd")
+    return ", ".join(faults)

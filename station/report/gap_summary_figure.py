@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: MIT
+"""The one picture of a gap: the telling record beside the telling view."""
+
+import textwrap
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from jointbench.analysis.gap.model.diagnosis_record import Gap
+from jointbench.analysis.gap.model.evidence_records import Curves, Exhibit
+from jointbench.station.report.gap_figures import (
+    AFTER,
+    BEFORE,
+    LEGEND,
+    MEASURED,
+    bar_axes,
+    bars,
+    pretty,
+    spectrum,
+    spectrum_axes,
+)
+from jointbench.station.report.gap_sentences import SHEET
+from jointbench.station.screen.figures import Figure, Trace, axis, band, figure, line
+
+Pulls = Mapping[str, tuple[float, float]]
+NOISE = "rgba(42, 157, 143, 0.22)"
+TITLE_WIDTH = 76
+SHOWN = 0.6
+"""Share of the misfit of the record that the first look holds; zoom out for more."""
+SHORTEST_LOOK = 0.012
+LONGEST_LOOK = 0.05
+HALF_WIDTH = 0.62
+
+
+def hero(
+    exhibit: Exhibit,
+    before: Gap,
+    after: Gap | None,
+    *,
+    title: str,
+    tried: str,
+    pulls: Pulls,
+) -> Figure:
+    """Return the one picture of a gap.
+
+    Args:
+        exhibit: evidence of the diagnosis.
+        before: gap of the base.
+        after: gap with the effects; None where nothing was named.
+        title: what was found, in words.
+        tried: legend of the model with the effects; empty where there is none.
+        pulls: of each base parameter, before and after [sd].
+    """
+    curves = exhibit.curves
+    x, y, left = _panels(curves, tried)
+    view = exhibit.view
+    lines = textwrap.wrap(title, TITLE_WIDTH)
+    traces = [*_response(curves, tried), *_misfit(curves, tried), *_left(curves, tried)]
+    if view == "frequency":
+        traces += spectrum(exhibit.spectra, tried, axes=("x4", "y4"))
+        x4, y4 = spectrum_axes(exhibit.spectra)
+    elif view == SHEET:
+        traces += _pull_bars(pulls, shown=after is not None)
+        x4, y4 = axis("base parameter", type="category"), axis("pull [sd]")
+    else:
+        traces += bars(view, before, after, axes=("x4", "y4"))
+        x4, y4 = bar_axes(view, before)
+    return figure(
+        traces,
+        x,
+        y,
+        **left,
+        xaxis4=x4 | {"domain": [0.72, 1.0], "anchor": "y4"},
+        yaxis4=y4 | {"domain": [0.0, 0.94], "anchor": "x4"},
+        annotations=_headings(curves, view),
+        title={
+            "text": "<br>".join(lines),
+            "font": {"size": 19},
+            "pad": {"t": 16},
+            **{"x": 0.0, "xanchor": "left", "y": 1.0, "yanchor": "top"},
+        },
+        margin={"l": 76, "r": 24, "t": 62 + 25 * len(lines), "b": 54},
+        legend=LEGEND | {"y": 1.0},
+    )
+
+
+def _panels(
+    curves: Curves, tried: str
+) -> tuple[dict[str, object], dict[str, object], dict[str, object]]:
+    """Return the axes of response, misfit and what is left, one above the other."""
+    look = _first_look(curves)
+    times: dict[str, Any] = {"domain": [0.0, HALF_WIDTH], "range": look}
+    unit = pretty(curves.unit)
+    heights = ([0.63, 0.94], [0.30, 0.55], [0.0, 0.21])
+    if not tried:
+        heights = ([0.52, 0.94], [0.0, 0.40], [0.0, 0.0])
+    x = axis("", **times, anchor="y", showticklabels=False)
+    y = axis(f"{curves.channel} [{unit}]", domain=heights[0])
+    more: dict[str, object] = {
+        "xaxis2": axis(
+            "" if tried else "time [ms]",
+            **times,
+            matches="x",
+            anchor="y2",
+            showticklabels=not tried,
+        ),
+        "yaxis2": axis(f"misfit [{unit}]", domain=heights[1], anchor="x2"),
+    }
+    if tried:
+        more["xaxis3"] = axis("time [ms]", **times, matches="x", anchor="y3")
+        more["yaxis3"] = axis(f"what is left [{unit}]", domain=heights[2], anchor="x3")
+    return x, y, more
+
+
+def _first_look(curves: Curves) -> list[float]:
+    """Return the span of time that is shown at first [ms]."""
+    power = np.cumsum(curves.misfit_before**2)
+    start = float(curves.time[0])
+    reach = start + SHORTEST_LOOK
+    if power[-1] > 0:
+        reach = float(curves.time[int(np.searchsorted(power, SHOWN * power[-1]))])
+    span = min(max(1.3 * (reach - start), SHORTEST_LOOK), LONGEST_LOOK)
+    return [1e3 * start, 1e3 * min(start + span, float(curves.time[-1]))]
+
+
+def _response(curves: Curves, tried: str) -> list[Trace]:
+    time = 1e3 * curves.time
+    traces = [
+        line(time, curves.measured, "measured", color=MEASURED, width=3.4),
+        line(time, curves.before, "base model", color=BEFORE, width=1.7),
+    ]
+    if tried:
+        traces.append(
+            line(time, curves.after, tried, color=AFTER, width=1.7, dash="dot")
+        )
+    return traces
+
+
+def _misfit(curves: Curves, tried: str) -> list[Trace]:
+    time, axes = 1e3 * curves.time, ("x2", "y2")
+    traces = [] if tried else _noise_band(curves, axes)
+    traces.append(
+        line(time, curves.misfit_before, "", color=BEFORE, axes=axes, legend=False)
+    )
+    if tried:
+        traces.append(
+            line(time, curves.misfit_after, "", color=AFTER, axes=axes, legend=False)
+        )
+    return traces
+
+
+def _left(curves: Curves, tried: str) -> list[Trace]:
+    if not tried:
+        return []
+    axes = ("x3", "y3")
+    after = line(
+        1e3 * curves.time,
+        curves.misfit_after,
+        "",
+        color=AFTER,
+        width=1.2,
+        axes=axes,
+        legend=False,
+    )
+    return [*_noise_band(curves, axes), after]
+
+
+def _noise_band(curves: Curves, axes: tuple[str, str]) -> list[Trace]:
+    ends = 1e3 * curves.time[[0, -1]]
+    wide = np.full(2, 2.0 * curves.sigma)
+    place = {"xaxis": axes[0], "yaxis": axes[1]}
+    return [
+        {**trace, **place}
+        for trace in band(ends, -wide, wide, "noise (± 2 sd)", color=NOISE)
+    ]
+
+
+def _headings(curves: Curves, view: str) -> list[dict[str, object]]:
+    shared: dict[str, object] = {
+        "xref": "paper",
+        "yref": "paper",
+        "showarrow": False,
+        "xanchor": "left",
+    }
+    shared |= {"y": 0.95, "yanchor": "bottom"}
+    shared |= {"font": {"size": 13, "color": "#5b6b7b"}}
+    left = f"record {curves.record}: {curves.channel}, {curves.condition}"
+    right = "misfit over noise, by frequency"
+    if view == SHEET:
+        right = "how far the sheet is bent; up to 4 is fair"
+    elif view != "frequency":
+        right = f"chi2/dof by {view}, all records"
+    return [{**shared, "x": 0.0, "text": left}, {**shared, "x": 0.70, "text": right}]
+
+
+def _pull_bars(pulls: Pulls, *, shown: bool) -> list[Trace]:
+    """Return how far each base parameter is off its sheet, before and after."""
+    columns = ((0, BEFORE), (1, AFTER)) if shown else ((0, BEFORE),)
+    return [
+        {
+            "type": "bar",
+            "x": list(pulls),
+            "y": [float(f"{abs(pull[column]):.4g}") for pull in pulls.values()],
+            "text": [f"{abs(pull[column]):.2g}" for pull in pulls.values()],
+            "textposition": "outside",
+            "cliponaxis": False,
+            "showlegend": False,
+            "marker": {"color": color},
+            "xaxis": "x4",
+            "yaxis": "y4",
+        }
+        for column, color in columns
+    ]

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: MIT
+"""The report's sections on FRFs, stabilisation and modes."""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.station.models.geometry_file import Geometry
+from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.pipeline.modal_summary import (
+    STAGE_COLUMNS,
+    stage_cells,
+    synthesis_error,
+)
+from jointbench.station.report.checks_section import checks_section, systematic_words
+from jointbench.station.report.shapes_section import shapes_section
+from jointbench.station.screen.figures import (
+    GREY,
+    PALETTE,
+    Figure,
+    Trace,
+    axis,
+    figure,
+    line,
+    markers,
+    thin,
+)
+from jointbench.station.screen.page import DataTable, Plot, Section, Text
+from jointbench.station.screen.terminal import with_sd
+
+MOST_POINTS = 4000
+HALF_TURN = 180.0
+UNITS = {
+    FrfKind.RECEPTANCE: "m/N",
+    FrfKind.MOBILITY: "m/(N s)",
+    FrfKind.ACCELERANCE: "m/(N s²)",
+}
+
+
+def modal_sections(
+    chain: ModalChain, geometry: Geometry | None = None
+) -> tuple[Section, ...]:
+    """Return the sections FRF, stabilisation, modes, shapes and checks."""
+    return (
+        Section("frf", "Frequency response", (_frf_plot(chain), Text(_window(chain)))),
+        Section("stabilisation", "Stabilisation", (_stabilisation_plot(chain),)),
+        Section(
+            "modes",
+            "Modes",
+            (modes_table(chain), Text(_misfit(chain)), Text(_kalman(chain))),
+        ),
+        shapes_section(chain, geometry),
+        checks_section(chain),
+    )
+
+
+def shown_band(frf: Frf) -> IntArray:
+    """Return the indices of the lines worth showing: the excited band and a rim."""
+    low, high = frf.usable_band or (frf.frequency[0], frf.frequency[-1])
+    return np.flatnonzero(
+        (frf.frequency >= 0.9 * low)
+        & (frf.frequency <= 1.05 * high)
+        & (frf.frequency > 0)
+    )
+
+
+def _frf_plot(chain: ModalChain) -> Plot:
+    frf, synthesis = chain.frf, chain.result.synthesis
+    lines = shown_band(frf)
+    traces: list[Trace] = []
+    for number, (output, column) in enumerate(np.ndindex(frf.response.shape[:2])):
+        color = PALETTE[number % len(PALETTE)]
+        label = f"{frf.outputs[output].rstrip('@')} / hit {frf.inputs[column]}"
+        pair = (output, column)
+        traces += _one_frf(frf, synthesis, lines, pair, label, color)
+    plot = figure(
+        traces,
+        axis("frequency [Hz]", anchor="y3"),
+        axis(f"|H| [{UNITS[frf.kind]}]", log=True, domain=[0.46, 1.0]),
+        yaxis2=axis(
+            "phase [deg]",
+            domain=[0.22, 0.42],
+            range=[-185, 185],
+            tickvals=[-180, 0, 180],
+        ),
+        yaxis3=axis("coherence [-]", domain=[0.0, 0.18], range=[0, 1.05]),
+    )
+    caption = (
+        f"{frf.kind.value.capitalize()} from {frf.averages} accepted hits a point "
+        f"({_estimator(chain)}): measured as lines, synthesised from the identified "
+        "modes as dashes; phase; ordinary coherence."
+    )
+    return Plot("frf-plot", caption, plot, 620)
+
+
+def _estimator(chain: ModalChain) -> str:
+    detail = next(dict(s.detail) for s in chain.provenance if s.name == "estimate_frf")
+    return f"{detail['estimator']}, {detail['bias']}"
+
+
+def _one_frf(
+    frf: Frf,
+    synthesis: Frf,
+    lines: IntArray,
+    pair: tuple[int, int],
+    label: str,
+    color: str,
+) -> list[Trace]:
+    frequency = frf.frequency[lines]
+    response = frf.response[pair][lines]
+    x, magnitude = thin(frequency, np.abs(response), MOST_POINTS)
+    traces = [line(x, magnitude, label, color=color, width=1.2)]
+    inside = np.isin(synthesis.frequency, frequency)
+    fitted, shape = synthesis.frequency[inside], synthesis.response[pair][inside]
+    x, magnitude = thin(fitted, np.abs(shape), MOST_POINTS)
+    traces.append(
+        line(x, magnitude, f"{label}, synthesis", color="#1c2733", dash="dash")
+    )
+    traces.append(
+        line(
+            *_phase(frequency, response),
+            label,
+            color=color,
+            width=1,
+            axes=("x", "y2"),
+            legend=False,
+        )
+    )
+    if frf.coherence is not None:
+        x, coherence = thin(frequency, frf.coherence[pair][lines], MOST_POINTS // 2)
+        traces.append(
+            line(
+                x,
+                coherence,
+                label,
+                color=color,
+                width=1,
+                axes=("x", "y3"),
+                legend=False,
+            )
+        )
+    return traces
+
+
+def _phase(
+    frequency: FloatArray, response: ComplexArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return frequency and phase [deg], with a gap wherever the phase wraps."""
+    every = max(1, frequency.size // MOST_POINTS)
+    phase = np.degrees(np.angle(response[::every]))
+    wraps = np.flatnonzero(np.abs(np.diff(phase)) > HALF_TURN)
+    phase[wraps] = np.nan
+    return frequency[::every], phase
+
+
+def _stabilisation_plot(chain: ModalChain) -> Plot:
+    table = chain.result.stabilisation
+    frf = chain.frf
+    lines = shown_band(frf)
+    total = np.sqrt(np.mean(np.abs(frf.response[:, :, lines]) ** 2, axis=(0, 1)))
+    x, y = thin(frf.frequency[lines], total, MOST_POINTS)
+    loose = ~table.stable
+    traces = [
+        line(x, y, "mean |H|", color="#c2ccd6", width=1.2, axes=("x", "y2")),
+        markers(
+            table.frequency[loose],
+            table.order[loose],
+            "not stable",
+            color=GREY,
+            symbol="x-thin-open",
+            size=4,
+        ),
+        markers(
+            table.frequency[table.stable],
+            table.order[table.stable],
+            "stable in frequency, damping and shape",
+            color=PALETTE[2],
+            size=5,
+        ),
+    ]
+    plot = figure(
+        traces,
+        axis("frequency [Hz]", range=[float(x[0]), float(x[-1])]),
+        axis("model order"),
+        yaxis2=axis(
+            f"mean |H| [{UNITS[frf.kind]}]",
+            log=True,
+            overlaying="y",
+            side="right",
+            showgrid=False,
+        ),
+        shapes=[_mode_line(f) for f in chain.result.model.natural_frequency],
+    )
+    caption = (
+        "Poles of every model order of the least-squares complex frequency estimator. "
+        "Vertical lines: the modes that were chosen."
+    )
+    return Plot("stabilisation-plot", caption, plot, 440)
+
+
+def _mode_line(frequency: float) -> Figure:
+    return {
+        "type": "line",
+        "x0": float(frequency),
+        "x1": float(frequency),
+        "y0": 0,
+        "y1": 1,
+        "yref": "paper",
+        "layer": "below",
+        "line": {"color": PALETTE[1], "width": 1},
+    }
+
+
+def modes_table(chain: ModalChain) -> DataTable:
+    """Return the table of modes with standard deviations and the Kalman gain there."""
+    model = chain.result.model
+    rows = tuple(
+        (
+            str(number + 1),
+            with_sd(model.natural_frequency[number], model.frequency_sd[number]),
+            with_sd(
+                100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
+            ),
+            *stage_cells(chain, number),
+            "hand" if model.by_hand[number] else "program",
+        )
+        for number in range(len(model.natural_frequency))
+    )
+    return DataTable(
+        "Identified modes with one standard deviation; gain and phase of the Kalman "
+        "stage at each mode.",
+        ("mode", "frequency [Hz]", "damping ratio [%]", *STAGE_COLUMNS, "chosen by"),
+        rows,
+    )
+
+
+def _window(chain: ModalChain) -> str:
+    detail = next(dict(s.detail) for s in chain.provenance if s.name == "estimate_frf")
+    added = chain.frf.added_decay_rate
+    text = f"Windows: {detail['window_reason']}."
+    if added > 0:
+        text += (
+            f" The exponential window adds {added:.4g} 1/s to every pole's decay; "
+            "that much is taken off again, exactly."
+        )
+    missed = 100 * synthesis_error(chain)
+    return f"{text} The synthesis misses {missed:.2g} % of the FRF (rms over the band)."
+
+
+def _misfit(chain: ModalChain) -> str:
+    """Say which intervals rest on misfit; results of earlier versions do not tell."""
+    if np.isnan(chain.result.model.misfit).all():
+        return "The results file does not say how much of the intervals is noise."
+    return systematic_words(chain)
+
+
+def _kalman(chain: ModalChain) -> str:
+    gain = chain.result.stage_gain
+    if gain is None:
+        if any(step.name == "kalman_stage" for step in chain.provenance):
+            return "The results file does not keep what the Kalman stage did to a mode."
+        return "No Kalman stage was used."
+    return (
+        f"Kalman stage: {gain.settings.model.value.replace('_', ' and ')} smoother of "
+        "zero phase, run on force and responses alike, so that its gain W cancels in "
+        "the FRF and biases neither frequency nor damping."
+    )

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""What ``jointbench modal`` prints: verdicts, modes by confidence, and what to know."""
+
+import numpy as np
+from rich.console import Console
+from rich.text import Text
+
+from jointbench.acquisition.basics.arrays import BoolArray
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.modal.mode_confidence import (
+    FEW_ORDERS,
+    Grade,
+    ModeConfidence,
+    rate_modes,
+)
+from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.pipeline.modal_notes import ModalNotes
+from jointbench.station.screen.terminal import console, table, with_sd
+
+COLUMNS = (
+    "mode",
+    "natural frequency [Hz]",
+    "of it systematic",
+    "damping ratio [%]",
+    "of it",
+    "orders",
+    "rank",
+    "confidence",
+    "remark",
+)
+
+
+def show_modal(chain: ModalChain, notes: ModalNotes, json_target: str | None) -> None:
+    """Print verdicts, modes and notes."""
+    screen = console(json_target)
+    for recording in chain.recordings:
+        for line in _hit_lines(recording):
+            screen.print(line)
+    for words in notes.limits:
+        screen.print(Text(f"warning: {words}"))
+    model = chain.result.model
+    orders = chain.result.stabilisation.orders.size
+    rated = rate_modes(model, orders)
+    doubtful = np.array([grade is Grade.DOUBTFUL for grade in rated.grades], bool)
+    apart: BoolArray = doubtful & ~model.by_hand
+    low, high = chain.result.band
+    title = f"Modes between {low:.0f} and {high:.0f} Hz (± one standard deviation)"
+    _show_modes(screen, title, chain, rated, ~apart)
+    _show_modes(
+        screen,
+        f"Found at less than {100 * FEW_ORDERS:.0f} % of {orders} orders, or doubtful",
+        chain,
+        rated,
+        apart,
+    )
+    screen.print()
+    for line in (*_legend(chain), *(f"note: {words}" for words in notes.remarks())):
+        screen.print(Text(line))
+    _show_beyond(screen, notes)
+
+
+def _show_modes(
+    screen: Console,
+    title: str,
+    chain: ModalChain,
+    rated: ModeConfidence,
+    shown: BoolArray,
+) -> None:
+    if not shown.any():
+        return
+    rows = [_row(chain, rated, int(i)) for i in np.flatnonzero(shown)]
+    last = len(COLUMNS) if any(row[-1] for row in rows) else len(COLUMNS) - 1
+    screen.print(table(title, COLUMNS[:last], [row[:last] for row in rows]))
+
+
+def _row(chain: ModalChain, rated: ModeConfidence, number: int) -> tuple[str, ...]:
+    model = chain.result.model
+    frequency, ratio = model.natural_frequency[number], model.damping_ratio[number]
+    error = rated.frequency_error[number]
+    return (
+        str(number + 1),
+        with_sd(frequency, model.frequency_sd[number]),
+        f"{error:.2g} Hz, {100 * error / frequency:.1g} %",
+        with_sd(100 * ratio, 100 * model.damping_ratio_sd[number]),
+        f"{100 * rated.damping_error[number] / abs(ratio):.2g} %",
+        f"{model.stable_orders[number]}",
+        f"{rated.rank[number]}",
+        rated.grades[number].value,
+        remark(chain, rated, number),
+    )
+
+
+def remark(chain: ModalChain, rated: ModeConfidence, number: int) -> str:
+    """Say who chose a mode, if not the program, and whether it may be no mode."""
+    words = ["kept by hand"] if chain.result.model.by_hand[number] else []
+    if rated.broad[number]:
+        words.append("broad: background?")
+    return ", ".join(words)
+
+
+def _show_beyond(screen: Console, notes: ModalNotes) -> None:
+    rows = [
+        (
+            f"{peak.frequency:.1f}",
+            f"{peak.height:.2g}",
+            "-" if peak.coherence is None else f"{peak.coherence:.3f}",
+            f"{peak.force_drop:.0f}",
+        )
+        for peak in notes.beyond.peaks
+    ]
+    if rows:
+        columns = (
+            "peak [Hz]",
+            "height [x the highest within]",
+            "coherence [-]",
+            "force [dB]",
+        )
+        screen.print(table("Above the band, not fitted", columns, rows))
+
+
+def _legend(chain: ModalChain) -> tuple[str, ...]:
+    gain = chain.result.stage_gain
+    words = (
+        "systematic: the part of the ± that comes of misfit around a mode (leakage, a "
+        "neighbour left out, a structure that is not linear); more hits do not help"
+    )
+    if gain is None:
+        return (words,)
+    least, most, phase = gain.gain.min(), gain.gain.max(), np.abs(gain.phase).max()
+    stage = (
+        f"Kalman stage at the modes: |W| {least:.4f} to {most:.4f}, phase within "
+        f"{np.degrees(phase):.1f} deg; alike on all channels, it cancels in the FRF"
+    )
+    return (words, stage)
+
+
+def _hit_lines(recording: Recording) -> list[str]:
+    good = sum(hit.verdict == "ok" for hit in recording.hits)
+    bad = [
+        f"  hit {number} {hit.verdict.value}: {hit.reason}"
+        for number, hit in enumerate(recording.hits, 1)
+        if hit.verdict != "ok"
+    ]
+    line = f"{recording.name}: {good} of {len(recording.hits)} hits accepted"
+    return [line, *bad]

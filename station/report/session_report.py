@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: MIT
+"""``jointbench report``: one offline page about a session."""
+
+from pathlib import Path
+
+from jointbench.acquisition.records.recordings import Step, Verdict
+from jointbench.acquisition.session_file.store import read_session
+from jointbench.analysis.lumped.identified import JointParameter
+from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.files.toml_file import read_toml
+from jointbench.station.models.bench_model import BenchModel
+from jointbench.station.models.geometry_file import Geometry
+from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.pipeline.preloads import at_words
+from jointbench.station.pipeline.stage_store import StageRun
+from jointbench.station.report.hits_section import hits_section
+from jointbench.station.report.joint_section import joint_section
+from jointbench.station.report.modal_section import modal_sections
+from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session
+from jointbench.station.report.surface_section import surface_section
+from jointbench.station.results.results_beside import stored_results
+from jointbench.station.screen.joint_text import interval_text
+from jointbench.station.screen.page import (
+    DataTable,
+    Report,
+    Section,
+    Text,
+    Tile,
+    placed_sections,
+    write_report,
+)
+from jointbench.station.screen.terminal import console, engineering, with_sd, write_json
+
+MODES_IN_TILE = 3
+LONGEST_DETAIL = 300
+
+
+def run_report(
+    session: Path,
+    *,
+    out: Path | None,
+    model: Path | None,
+    geometry: Path | None = None,
+    results: Path | None = None,
+    json_target: str | None,
+    run: StageRun | None = None,
+) -> Path:
+    """Write the page of `session` beside it, or to `out`.
+
+    Modes are those of the results that exist, see `stored_results`; where there are
+    none, they are looked for now, by stages that `run` keeps.
+    """
+    target = out or session.with_suffix(".html")
+    given = (session, model, geometry, results)
+    read = [path for path in given if path is not None]
+    check_outputs(read, [target, json_target])
+    points = None if geometry is None else read_toml(geometry, Geometry)
+    content = read_session(session)
+    bench = None if model is None else read_toml(model, BenchModel)
+    stored = stored_results(session, content.recordings, results)
+    analysis = analyse_session(content, bench, stored, run)
+    write_report(compose(analysis, bench, title=session.stem, geometry=points), target)
+    console(json_target).print(f"report: {target}")
+    runs = [
+        {"preload_n": one.preload, "results": one.run or None}
+        for one in analysis.preloads
+    ]
+    page = {"report": str(target), "remarks": list(analysis.remarks), "modes": runs}
+    write_json(json_target, page)
+    return target
+
+
+def compose(
+    analysis: SessionAnalysis,
+    bench: BenchModel | None,
+    *,
+    title: str,
+    extra: tuple[Section, ...] = (),
+    geometry: Geometry | None = None,
+) -> Report:
+    """Arrange an analysis as a page; `extra` sections come first.
+
+    Shapes are drawn on the `geometry`, or on a row of points without one.
+    """
+    session = analysis.session
+    sections = list(extra)
+    if analysis.remarks:
+        notes = tuple(Text(remark, "notice") for remark in analysis.remarks)
+        sections.append(Section("remarks", "Remarks", notes))
+    if analysis.recordings:
+        sections.append(hits_section(analysis.recordings))
+    several = len(analysis.preloads) > 1
+    for one in analysis.preloads:
+        own = modal_sections(one.modal, geometry)
+        at = at_words(one.preload) if several else ""
+        sections += placed_sections(own, at)
+    if analysis.surfaces:
+        sections.append(surface_section(analysis.surfaces))
+    if analysis.contact is not None or analysis.joint is not None:
+        sections += _joint_sections(analysis, joint_link(bench))
+    sections.append(_provenance(analysis))
+    return Report(
+        title=title,
+        lead=_lead(analysis),
+        software=session.software,
+        simulated=session.simulated,
+        tiles=_tiles(analysis, bench),
+        sections=tuple(sections),
+    )
+
+
+def _joint_sections(analysis: SessionAnalysis, link: str) -> list[Section]:
+    """Return a section for each preload with links; one where there is but one."""
+    known = [one for one in analysis.preloads if one.joint is not None]
+    if len(known) < 2:
+        return [joint_section(analysis.contact, analysis.joint, link)]
+    return [
+        section
+        for one in known
+        for section in placed_sections(
+            (joint_section(analysis.contact, one.joint, link),), at_words(one.preload)
+        )
+    ]
+
+
+def joint_link(bench: BenchModel | None) -> str:
+    """Return the link that the contact law speaks of, else the last one."""
+    if bench is None:
+        return ""
+    return bench.contact.link if bench.contact else list(bench.links)[-1]
+
+
+def _lead(analysis: SessionAnalysis) -> str:
+    session = analysis.session
+    parts = [session.notes, f"Recorded {session.created}", f"Source {session.source}"]
+    if session.operator:
+        parts.append(f"Operator {session.operator}")
+    parts.append(f"Session {session.uuid}")
+    return ". ".join(part.rstrip(".") for part in parts if part) + "."
+
+
+def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, ...]:
+    tiles: list[Tile] = []
+    if analysis.recordings:
+        tiles += [_hits_tile(analysis), *_mode_tiles(analysis)]
+    for chain in analysis.surfaces:
+        scaling = chain.fit.scaling
+        value = (
+            "-" if scaling is None else with_sd(scaling.dimension, scaling.dimension_sd)
+        )
+        tiles.append(Tile(f"D of {chain.surface.name}", value, chain.fit.verdict.value))
+    if analysis.joint is not None:
+        stiffness = analysis.joint.parameter(f"{joint_link(bench)}.stiffness")
+        tiles.append(_joint_tile(stiffness))
+    if analysis.contact is not None:
+        state = analysis.contact.at.state
+        value = engineering(state.normal_stiffness, "N/m")
+        tiles.append(Tile("joint stiffness, contact law", value, state.model))
+    return tuple(tiles)
+
+
+def _joint_tile(stiffness: JointParameter) -> Tile:
+    title = "joint stiffness, from modes"
+    if not stiffness.identifiable:
+        return Tile(title, f"{interval_text(stiffness.interval)} N/m", "not determined")
+    sd = "" if stiffness.sd is None else f"± {engineering(stiffness.sd, 'N/m')}"
+    return Tile(title, engineering(stiffness.value, "N/m"), sd)
+
+
+def _hits_tile(analysis: SessionAnalysis) -> Tile:
+    verdicts = [
+        hit.verdict for recording in analysis.recordings for hit in recording.hits
+    ]
+    good = sum(verdict is Verdict.OK for verdict in verdicts)
+    return Tile("hits accepted", f"{good} of {len(verdicts)}", _why_not(verdicts))
+
+
+def _why_not(verdicts: list[Verdict]) -> str:
+    bad = [verdict.value for verdict in verdicts if verdict is not Verdict.OK]
+    return ", ".join(f"{bad.count(word)} {word}" for word in dict.fromkeys(bad))
+
+
+def _mode_tiles(analysis: SessionAnalysis) -> list[Tile]:
+    several = len(analysis.preloads) > 1
+    return [
+        tile
+        for one in analysis.preloads
+        for tile in _tiles_of(one.modal, at_words(one.preload) if several else "")
+    ]
+
+
+def _tiles_of(chain: ModalChain, at: str) -> list[Tile]:
+    model = chain.result.model
+    count = model.natural_frequency.size
+    tiles = [
+        Tile(
+            f"mode {number + 1}{at}",
+            f"{frequency:.2f} Hz",
+            f"± {model.frequency_sd[number]:.2g} Hz, "
+            f"damping {100 * model.damping_ratio[number]:.3g} %",
+        )
+        for number, frequency in enumerate(model.natural_frequency[:MODES_IN_TILE])
+    ]
+    if count > MODES_IN_TILE:
+        more = str(count - MODES_IN_TILE)
+        tiles.append(Tile(f"further modes{at}", more, "see the table"))
+    return tiles
+
+
+def _provenance(analysis: SessionAnalysis) -> Section:
+    records = [*analysis.session.recordings, *analysis.session.surfaces]
+    rows = [
+        (record.name, step.name, _detail(step))
+        for record in records
+        for step in record.provenance
+    ]
+    for one in analysis.preloads:
+        of = f"modes{at_words(one.preload)}" if len(analysis.preloads) > 1 else "modes"
+        run = one.run or "found for this report, with settings chosen by the data"
+        rows.append((of, "run", run))
+        rows += [(of, step.name, _detail(step)) for step in one.modal.provenance]
+    for chain in analysis.surfaces:
+        rows += [
+            (f"{chain.surface.name}, fit", step.name, _detail(step))
+            for step in chain.fit.provenance
+        ]
+    table = DataTable(
+        "Every step from the instrument to the numbers above.",
+        ("of", "step", "detail"),
+        tuple(dict.fromkeys(rows)),
+    )
+    return Section("provenance", "Provenance", (table,))
+
+
+def _detail(step: Step) -> str:
+    text = ", ".join(
+        f"{key} {value:.6g}" if isinstance(value, float) else f"{key} {value}"
+        for key, value in step.detail
+    )
+    return text if len(text) <= LONGEST_DETAIL else text[: LONGEST_DETAIL - 3] + "..."

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: MIT
+"""The page about a structure's joints: numbers, likelihoods, shapes to turn around."""
+
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.records.session import software_version
+from jointbench.analysis.lumped.identified import JointParameter
+from jointbench.analysis.structures.identification.joint_result import (
+    StateFit,
+    StructureIdentification,
+)
+from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.meshes.elements import ELEMENTS
+from jointbench.analysis.structures.meshes.mesh import outer_faces
+from jointbench.analysis.structures.reduction.reduced_model import (
+    ReducedModel,
+    solve_reduced,
+)
+from jointbench.station.screen.figures import (
+    PALETTE,
+    Figure,
+    axis,
+    figure,
+    line,
+    numbers,
+)
+from jointbench.station.screen.joint_text import interval_text
+from jointbench.station.screen.page import (
+    DataTable,
+    Item,
+    Plot,
+    Report,
+    Section,
+    Text,
+    Tile,
+    write_report,
+)
+from jointbench.station.screen.terminal import with_sd
+
+SHAPES_SHOWN = 6
+SHARE_OF_SIZE = 0.06
+"""Largest displacement drawn, as a share of the structure's size."""
+
+
+def write_structure_report(
+    path: Path,
+    name: str,
+    structure: Structure,
+    model: ReducedModel,
+    result: StructureIdentification,
+    theory: Section | None = None,
+) -> None:
+    """Write one offline HTML page about identified joints."""
+    sections = [
+        Section("parameters", "Joints", (_parameters(result), *_reasons(result))),
+        *([theory] if theory is not None else []),
+        Section("states", "Modes", tuple(_state(one, model) for one in result.states)),
+        Section("profiles", "Profile likelihood", tuple(_profiles(result))),
+        Section("solutions", "Distinct solutions", (_solutions(result),)),
+        Section("shapes", "Mode shapes", tuple(_shapes(structure, model, result))),
+    ]
+    report = Report(
+        title=f"Joints of {name}",
+        lead=f"{structure.size} degrees of freedom, reduced to {model.size}.",
+        software=software_version(),
+        simulated=False,
+        tiles=tuple(
+            Tile(one.name, f"{_tile(one)} {one.unit}", _sure(one.identifiable))
+            for one in result.parameters[:6]
+        ),
+        sections=tuple(section for section in sections if section.items),
+    )
+    write_report(report, path)
+
+
+def _tile(one: JointParameter) -> str:
+    return f"{one.value:.4g}" if one.identifiable else interval_text(one.interval)
+
+
+def _sure(identifiable: bool) -> str:
+    return "identifiable" if identifiable else "not identifiable"
+
+
+def _parameters(result: StructureIdentification) -> DataTable:
+    rows = tuple(
+        (
+            one.name,
+            with_sd(one.value, one.sd) if one.identifiable else "-",
+            one.unit,
+            interval_text(one.interval),
+            _sure(one.identifiable),
+        )
+        for one in result.parameters
+    )
+    columns = ("parameter", "value ± sd", "unit", "95 % interval", "verdict")
+    return DataTable(
+        f"{result.verdict.value}; standard deviations from the measured covariance. "
+        "Where a parameter is not identifiable, the interval holds all admissible "
+        "solutions.",
+        columns,
+        rows,
+        frozenset({"not identifiable"}),
+    )
+
+
+def _reasons(result: StructureIdentification) -> tuple[Item, ...]:
+    return tuple(Text(reason, "notice") for reason in result.reasons)
+
+
+def _state(state: StateFit, model: ReducedModel) -> DataTable:
+    shares = state.energy_share
+    rows = tuple(
+        (
+            f"{state.measured[at]:.5g}" if at < state.measured.size else "-",
+            f"{frequency:.5g}",
+            f"{100 * state.damping_ratio[at]:.3g}",
+            f"{state.mac[at]:.3f}" if at < state.mac.size else "-",
+            *(f"{100 * share:.1f}" for share in shares[at]),
+        )
+        for at, frequency in enumerate(state.predicted)
+    )
+    columns = (
+        "measured [Hz]",
+        "predicted [Hz]",
+        "damping [%]",
+        "MAC",
+        *(f"energy in {name} [%]" for name in model.names),
+    )
+    return DataTable(f"State {state.label}", columns, rows)
+
+
+def _profiles(result: StructureIdentification) -> list[Item]:
+    found: list[Item] = []
+    for number, (name, profile) in enumerate(result.profiles.items()):
+        rise = profile.chi2 - profile.chi2.min()
+        limit = np.full(profile.value.size, 3.84)
+        curves = [
+            line(profile.value, rise, "chi2 above the best"),
+            line(profile.value, limit, "95 %", color=PALETTE[1], dash="dash"),
+        ]
+        plot = figure(curves, axis(name, log=True), axis("rise of chi2"))
+        found.append(Plot(f"profile-{number}", f"Profile of {name}", plot, 280))
+    return found
+
+
+def _solutions(result: StructureIdentification) -> DataTable:
+    names = tuple(one.name for one in result.parameters)
+    rows = tuple(
+        (
+            f"{one.chi2:.4g}",
+            "stands" if one.admissible else "falls",
+            *(f"{one.parameters[name]:.4g}" for name in names),
+        )
+        for one in result.solutions
+    )
+    return DataTable(
+        "Ends of all searches, the best first.", ("chi2", "", *names), rows
+    )
+
+
+def _shapes(
+    structure: Structure, model: ReducedModel, result: StructureIdentification
+) -> list[Item]:
+    """Return the lowest elastic shapes of the best solution as turnable bodies."""
+    found = solve_reduced(model, _stiffness(model, result))
+    elastic = np.flatnonzero(found.natural_frequency > 0)[:SHAPES_SHOWN]
+    items: list[Item] = []
+    for at in elastic:
+        motion = np.zeros(3 * structure.nodes.shape[0])
+        motion[structure.free] = model.basis @ found.shapes[:, at]
+        frequency = float(found.natural_frequency[at])
+        plot = shape_figure(structure, motion.reshape(-1, 3))
+        items.append(
+            Plot(f"shape-{at}", f"{frequency:.1f} Hz; drag to turn", plot, 420)
+        )
+    return items
+
+
+def _stiffness(model: ReducedModel, result: StructureIdentification) -> FloatArray:
+    """Return the best stiffnesses of the first state; what was not sought is left."""
+    best = result.solutions[0].parameters
+    values = []
+    for name in model.names:
+        hits = [v for k, v in best.items() if k.endswith(f"{name}_stiffness")]
+        values.append(hits[0] if hits else 1.0)
+    return np.array(values)
+
+
+def shape_figure(structure: Structure, motion: FloatArray) -> Figure:
+    """Return bodies bent by a shape, coloured by how far each point moves.
+
+    Args:
+        structure: bodies and joints.
+        motion: of all nodes, of any scale, shape (n_nodes, 3).
+    """
+    size = float(np.linalg.norm(np.ptp(structure.nodes, axis=0)))
+    largest = float(np.linalg.norm(motion, axis=1).max())
+    place = structure.nodes + motion * (SHARE_OF_SIZE * size / max(largest, 1e-300))
+    moved = np.linalg.norm(motion, axis=1) / max(largest, 1e-300)
+    traces: list[dict[str, object]] = []
+    for at, body in enumerate(structure.bodies):
+        begin = int(structure.first_node[at])
+        triangles = _triangles(structure, at)
+        used, corner = np.unique(triangles, return_inverse=True)
+        corner = corner.reshape(triangles.shape)
+        traces.append(
+            {
+                "type": "mesh3d",
+                "name": body.name,
+                **{key: numbers(place[begin + used, k]) for k, key in enumerate("xyz")},
+                **{key: corner[:, k].tolist() for k, key in enumerate("ijk")},
+                "intensity": numbers(moved[begin + used]),
+                "cmin": 0,
+                "cmax": 1,
+                "colorscale": "Viridis",
+                "showscale": False,
+                "flatshading": True,
+            }
+        )
+    scene = {
+        "aspectmode": "data",
+        **{f"{key}axis": {"title": {"text": f"{key} [m]"}} for key in "xyz"},
+    }
+    return {
+        "data": traces,
+        "layout": {"scene": scene, "margin": dict.fromkeys("lrtb", 0)},
+    }
+
+
+def _triangles(structure: Structure, at: int) -> IntArray:
+    mesh = structure.bodies[at].mesh
+    corners = outer_faces(mesh).nodes[:, : ELEMENTS[mesh.kind].face_corners]
+    halves = [corners[:, [0, 1, 2]]]
+    if corners.shape[1] > 3:
+        halves.append(corners[:, [0, 2, 3]])
+    return np.concatenate(halves)

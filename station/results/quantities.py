@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""Results as one table of quantities: what archives, trends and comparisons read.
+
+One row a number: which part of the result, of what, which quantity, its value with its
+standard deviation, or a word in place of a number.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from jointbench.acquisition.records.recordings import Verdict
+from jointbench.station.pipeline.process_session import PreloadModes, ProcessedSession
+from jointbench.station.pipeline.surface_stages import SurfaceChain
+
+NAN = float("nan")
+# A 95 % interval of a normal quantity is this many standard deviations wide.
+_WIDTH_95 = 3.919927969080108
+
+
+@dataclass(frozen=True, slots=True)
+class ResultQuantity:
+    """One number of a result.
+
+    Attributes:
+        part: ``hits``, ``modes``, ``surface``, ``contact``, ``joint`` or ``gap``.
+        item: which mode, surface, link; empty where there is but one.
+        name: of the quantity, for example ``natural_frequency``.
+        unit: SI; ``1`` for a plain number.
+        value: [unit]; NaN where there is a word in its place.
+        sd: its standard deviation [unit]; NaN where none is known.
+        word: a verdict, where the quantity is one.
+        preload: at which it was found [N]; NaN where nobody said.
+    """
+
+    part: str
+    item: str
+    name: str
+    unit: str
+    value: float = NAN
+    sd: float = NAN
+    word: str = ""
+    preload: float = NAN
+
+
+def quantities_of(result: ProcessedSession) -> tuple[ResultQuantity, ...]:
+    """Return all numbers of a result, in the order of the chain."""
+    return (
+        *_hits(result),
+        *(
+            q
+            for modes in result.modal
+            for q in _modes(modes, _preload(result, modes.preload))
+        ),
+        *(q for chain in result.surfaces for q in _surface(chain)),
+        *_contact(result.contact or {}),
+        *(
+            q
+            for preload, page in result.joints
+            for q in _joint(page, _preload(result, preload))
+        ),
+        *_gap(result.gap or {}),
+    )
+
+
+def _preload(result: ProcessedSession, own: float | None) -> float:
+    """Return the preload of a part, else of the session [N]; NaN where nobody said."""
+    joint = result.session.joint
+    stored = None if joint is None else joint.preload
+    preload = own if own is not None else stored
+    return NAN if preload is None else preload
+
+
+def _hits(result: ProcessedSession) -> Iterator[ResultQuantity]:
+    hits = [hit for own in result.hits for hit in own]
+    if not hits:
+        return
+    good = sum(hit.verdict is Verdict.OK for hit in hits)
+    for name, count in (
+        ("found", len(hits)),
+        ("accepted", good),
+        ("verdicts_changed", len(result.changes)),
+    ):
+        yield ResultQuantity("hits", "", name, "1", float(count))
+
+
+def _modes(modes: PreloadModes, preload: float) -> Iterator[ResultQuantity]:
+    model = modes.chain.result.model
+    for index in range(model.natural_frequency.size):
+        for name, unit, values, sds in (
+            ("natural_frequency", "Hz", model.natural_frequency, model.frequency_sd),
+            ("damping_ratio", "1", model.damping_ratio, model.damping_ratio_sd),
+        ):
+            numbers = float(values[index]), float(sds[index])
+            item = str(index + 1)
+            yield ResultQuantity("modes", item, name, unit, *numbers, preload=preload)
+
+
+def _surface(chain: SurfaceChain) -> Iterator[ResultQuantity]:
+    fit, name = chain.fit, chain.surface.name
+    yield ResultQuantity("surface", name, "verdict", "", word=fit.verdict.value)
+    if fit.scaling is None:
+        return
+    dimension, sd = fit.scaling.dimension, fit.scaling.dimension_sd
+    yield ResultQuantity("surface", name, "dimension", "1", dimension, sd)
+    # G spans decades: its logarithm is what is normal, and what has a deviation.
+    low, high = np.log(fit.scaling.roughness_interval)
+    ln_sd = float(high - low) / _WIDTH_95
+    value = float(np.log(fit.scaling.roughness))
+    yield ResultQuantity("surface", name, "ln_roughness_in_m", "1", value, ln_sd)
+
+
+def _contact(page: Mapping[str, Any]) -> Iterator[ResultQuantity]:
+    for model in page.get("models", ()):
+        low, high = model["normal_stiffness_interval"]
+        where = ("contact", model["name"])
+        preload = float(model["preload"])
+        value, sd = float(model["normal_stiffness"]), (high - low) / _WIDTH_95
+        yield ResultQuantity(
+            *where, "normal_stiffness", "N/m", value, sd, preload=preload
+        )
+        value = float(model["tangential_stiffness"])
+        yield ResultQuantity(
+            *where, "tangential_stiffness", "N/m", value, preload=preload
+        )
+
+
+def _joint(page: Mapping[str, Any], preload: float) -> Iterator[ResultQuantity]:
+    verdict = str(page["verdict"])
+    yield ResultQuantity("joint", "", "verdict", "", word=verdict, preload=preload)
+    for name, one in page["parameters"].items():
+        link, _, quantity = name.rpartition(".")
+        sd = NAN if one["sd"] is None else float(one["sd"])
+        numbers = float(one["value"]), sd
+        yield ResultQuantity(
+            "joint", link, quantity, one["unit"], *numbers, preload=preload
+        )
+
+
+def _gap(page: Mapping[str, Any]) -> Iterator[ResultQuantity]:
+    if not page:
+        return
+    yield ResultQuantity("gap", "", "verdict", "", word=str(page["verdict"]))
+    for name in ("gap_before", "gap_after"):
+        yield ResultQuantity("gap", "", name, "1", float(page[name]))
+    for effect in page["effects"]:
+        item = f"{effect['name']} on {effect['site']}"
+        for name, one in effect["parameters"].items():
+            sd = NAN if one["sd"] is None else float(one["sd"])
+            value = float(one["value"])
+            yield ResultQuantity("gap", item, name, str(one["unit"]), value, sd)

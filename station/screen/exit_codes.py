@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""Exit codes: which family of errors leaves with which, and its one line."""
+
+import sys
+import traceback
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from types import TracebackType
+
+import typer
+from typer.exceptions import TyperException
+
+from jointbench.acquisition.basics.errors import (
+    InstrumentError,
+    JointbenchError,
+    UsageError,
+)
+from jointbench.acquisition.file_access.text_files import visible
+from jointbench.station.screen.interrupt import interruptible
+
+EXIT_INTERNAL = 1
+EXIT_USAGE = 2
+EXIT_BAD_DATA = 3
+EXIT_INSTRUMENT = 4
+EXIT_QUALITY = 5
+EXIT_INTERRUPTED = 130
+
+
+def exit_code(command: Callable[..., object], *, debug: bool) -> int:
+    """Call `command` and turn what it raises into the contract's exit code."""
+    with interruptible():
+        if debug:
+            result = command(standalone_mode=False)
+            return result if isinstance(result, int) else 0
+        with warnings.catch_warnings():
+            # What a warning of a library means to the user is said by our own checks.
+            warnings.simplefilter("ignore")
+            return _quiet_exit_code(command)
+
+
+def _quiet_exit_code(command: Callable[..., object]) -> int:
+    try:
+        result = command(standalone_mode=False)
+    except TyperException as error:
+        return _fail(error.format_message(), EXIT_USAGE)
+    except JointbenchError as error:
+        return _fail(str(error), code_of(error))
+    except (KeyboardInterrupt, typer.Abort):
+        return _fail("interrupted; finished files are whole", EXIT_INTERRUPTED)
+    except OSError as error:
+        return _fail(_system_words(error), EXIT_BAD_DATA)
+    except Exception as error:  # noqa: BLE001 - a traceback helps no operator
+        kind = type(error).__name__
+        return _fail(
+            f"internal error ({kind}: {error}); run again with --debug and report it",
+            EXIT_INTERNAL,
+        )
+    return result if isinstance(result, int) else 0
+
+
+def _system_words(error: OSError) -> str:
+    """Return what the system refused, and of which file where it says so."""
+    reason = error.strerror or str(error)
+    return reason if error.filename is None else f"{reason}: {error.filename}"
+
+
+def code_of(error: JointbenchError) -> int:
+    """Return the exit code of an error's family."""
+    if isinstance(error, UsageError):
+        return EXIT_USAGE
+    return EXIT_INSTRUMENT if isinstance(error, InstrumentError) else EXIT_BAD_DATA
+
+
+def show_traceback(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
+    """Write what ``--debug`` lets through; messages may quote names from files."""
+    text = "".join(traceback.format_exception(kind, error, trace))
+    sys.stderr.write("".join(f"{visible(line)}\n" for line in text.split("\n")))
+
+
+def _fail(message: str, code: int) -> int:
+    line = visible(" ".join(message.split()))
+    with suppress(OSError):  # the terminal may be gone
+        sys.stderr.write(f"jointbench: error: {line}\n")
+    return code

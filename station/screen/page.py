@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: MIT
+"""A report as data, and its rendering to one HTML file that needs no network."""
+
+import json
+import re
+import secrets
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from importlib.resources import files
+from pathlib import Path
+from typing import Literal
+
+from jointbench.acquisition.file_access.text_files import visible
+from jointbench.station.files.output_paths import write_text
+from jointbench.station.screen.figures import Figure
+
+PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
+"""Columns of words, which read from the left."""
+# plotly.js reads tags in texts, links among them; ours have no attributes.
+_FOREIGN_TAG = re.compile(r"<(?!/?(?:br|b|i|sub|sup|extra)/?>)")
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """One headline number."""
+
+    label: str
+    value: str
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """One paragraph; a notice is set apart."""
+
+    text: str
+    kind: Literal["text", "notice"] = "text"
+
+
+@dataclass(frozen=True, slots=True)
+class DataTable:
+    """A table; cells found in `bad_words` are shown as failures."""
+
+    caption: str
+    columns: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    bad_words: frozenset[str] = frozenset()
+    kind: Literal["table"] = "table"
+
+
+@dataclass(frozen=True, slots=True)
+class Plot:
+    """A figure under an identifier that is unique within the page."""
+
+    identifier: str
+    caption: str
+    figure: Figure
+    height: int = 380
+    kind: Literal["figure"] = "figure"
+
+
+Item = Text | DataTable | Plot
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A titled part of the page."""
+
+    anchor: str
+    title: str
+    items: tuple[Item, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """Everything that a page shows."""
+
+    title: str
+    lead: str
+    software: str
+    simulated: bool
+    tiles: tuple[Tile, ...]
+    sections: tuple[Section, ...] = field(default=())
+
+
+def placed_sections(sections: Sequence[Section], at: str) -> list[Section]:
+    """Return sections that may stand beside others of their kind.
+
+    Args:
+        sections: of one preload, for example.
+        at: words that set them apart, with a blank before; empty to leave them as
+            they are.
+    """
+    if not at:
+        return list(sections)
+    mark = re.sub(r"\W+", "-", at)
+    return [
+        Section(
+            f"{one.anchor}{mark}",
+            f"{one.title}{at}",
+            tuple(
+                replace(item, identifier=f"{item.identifier}{mark}")
+                if isinstance(item, Plot)
+                else item
+                for item in one.items
+            ),
+        )
+        for one in sections
+    ]
+
+
+def render(report: Report) -> str:
+    """Return `report` as one self-contained HTML page."""
+    from jinja2 import Environment
+    from plotly.offline import get_plotlyjs
+
+    room = files("jointbench.station.screen")
+    environment = Environment(
+        autoescape=True, trim_blocks=True, lstrip_blocks=True, finalize=_seen
+    )
+    template = environment.from_string(
+        room.joinpath("report.html.j2").read_text(encoding="utf-8")
+    )
+    return template.render(
+        report=report,
+        prose=PROSE_COLUMNS,
+        style=room.joinpath("report.css").read_text(encoding="utf-8"),
+        plotly=get_plotlyjs(),
+        figures=_script_safe(_figures(report)),
+        nonce=secrets.token_urlsafe(16),
+    )
+
+
+def write_report(report: Report, path: Path) -> None:
+    """Write the rendered page to `path`."""
+    write_text(path, render(report))
+
+
+def _figures(report: Report) -> str:
+    plots = [
+        item
+        for section in report.sections
+        for item in section.items
+        if isinstance(item, Plot)
+    ]
+    return json.dumps({plot.identifier: _seen_below(plot.figure) for plot in plots})
+
+
+def _seen(value: object) -> object:
+    """Return what the template prints: texts visible, our own markup as it is."""
+    if isinstance(value, str) and not hasattr(value, "__html__"):
+        return visible(value)
+    return value
+
+
+def _seen_below(value: object) -> object:
+    """Return a figure whose texts are visible and link to nowhere."""
+    if isinstance(value, str):
+        return _FOREIGN_TAG.sub("&lt;", visible(value))
+    if isinstance(value, Mapping):
+        return {visible(str(key)): _seen_below(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_seen_below(one) for one in value]
+    return value
+
+
+def _script_safe(text: str) -> str:
+    """Escape what could end a script element early, whatever a file's texts hold."""
+    return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""The sheet of a simulated campaign as a bench model file: nominal values, 1-sigma."""
+
+from jointbench.simulators.hidden.campaign_design import NOMINAL_SIGMA, CampaignDesign
+
+HEAD = "# Two bodies, weighed, on a support and a joint known from their drawings."
+"""How every sheet begins."""
+TEMPLATE = (
+    f"{HEAD}\n"
+    + """\
+# Serves `jointbench identify` and `jointbench gap` alike; sd is one sigma.
+[bodies.m1]
+mass = "{m1:.6g} kg"
+mass_sd = "{m1_sd:.3g} kg"
+channel = "a0"
+points = ["1"]
+
+[bodies.m2]
+mass = "{m2:.6g} kg"
+mass_sd = "{m2_sd:.3g} kg"
+channel = "a1"
+points = ["2"]
+
+[links.ground]
+between = ["ground", "m1"]
+stiffness = "{k0:.6g} N/m"
+stiffness_sd = "{k0_sd:.3g} N/m"
+damping = "{c0:.6g} N s/m"
+damping_sd = "{c0_sd:.3g} N s/m"
+
+[links.joint]
+between = ["m1", "m2"]
+stiffness = "{kj:.6g} N/m"
+stiffness_sd = "{kj_sd:.3g} N/m"
+damping = "{cj:.6g} N s/m"
+damping_sd = "{cj_sd:.3g} N s/m"
+joint = true
+
+[gap]
+output = "acceleration"
+preload_reference = "{preload:.6g} N"
+"""
+)
+
+
+def sheet_text(design: CampaignDesign) -> str:
+    """Write what an operator would know of the specimen of a design.
+
+    Args:
+        design: of a campaign; its true values stay out.
+
+    Returns:
+        TOML, as `jointbench.station.models.bench_model` reads it.
+    """
+    sds = {
+        f"{name}_sd": NOMINAL_SIGMA[name] * value
+        for name, value in design.nominal.items()
+    }
+    return TEMPLATE.format(**design.nominal, **sds, preload=design.preload_reference)

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: MIT
+"""Open a source of samples by its URL: the one place that knows the simulators.
+
+Whatever is simulated comes through NI's client from a simulated chassis, so that every
+session that is recorded went the way that a session at the bench goes.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.records.recordings import Channel
+from jointbench.acquisition.records.source import Run, Source
+
+SCHEMES = ("sim",)
+
+
+@dataclass(frozen=True, slots=True)
+class Visit:
+    """A visit to a bench: one run after another, each under a setting of its own.
+
+    Attributes:
+        source: the URL that opens it again.
+        simulated: True where no hardware is behind it.
+        runs: in the order in which they are recorded.
+        sheet: bench model with priors as TOML, where the source brings one.
+        truth: what a simulated bench hides, for whoever compares; never an input.
+    """
+
+    source: str
+    simulated: bool
+    runs: tuple[Run, ...]
+    sheet: str | None = None
+    truth: Mapping[str, object] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class WholeStream:
+    """A plain source as the only run of a visit.
+
+    Attributes:
+        source: what it streams.
+        preload: on the joint meanwhile [N], None where nobody says.
+        start_time: of its first sample [s].
+    """
+
+    source: Source
+    preload: float | None
+    start_time: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """Of the recording."""
+        return "stream"
+
+    @property
+    def simulated(self) -> bool:
+        """As the source says."""
+        return self.source.simulated
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """Of the source."""
+        return self.source.channels
+
+    @property
+    def sample_rate(self) -> float:
+        """Of the source [Hz]."""
+        return self.source.sample_rate
+
+    def blocks(self) -> Iterator[FloatArray]:
+        """Yield the blocks of the source."""
+        return self.source.blocks()
+
+
+def is_url(text: str) -> bool:
+    """Tell a source's URL from the path of a file."""
+    return text.partition(":")[0] in SCHEMES and ":" in text
+
+
+def open_source(url: str) -> Source:
+    """Open the source that `url` names.
+
+    Args:
+        url: ``sim:two-body?seed=1&hits=10`` for the embedded simulated bench.
+
+    Returns:
+        A source whose blocks can be recorded.
+
+    Raises:
+        UsageError: the scheme is unknown.
+    """
+    _require_scheme(url)
+    from jointbench.simulators.two_body.bench_url import bench_from_url
+    from jointbench.station.sources.chassis_source import ChassisSource
+
+    bench = bench_from_url(url)
+    return ChassisSource(bench, samples=bench.samples)
+
+
+def open_visit(url: str) -> Visit:
+    """Open what `url` names as a visit: runs, and the sheet if there is one.
+
+    Args:
+        url: as for `open_source`, or ``sim:two-body-campaign?seed=1&hide=jenkins``
+            for points x levels x preloads with hidden effects.
+
+    Raises:
+        UsageError: the scheme is unknown, or the bench cannot be as asked.
+    """
+    _require_scheme(url)
+    from jointbench.simulators.campaigns.write_campaign import campaign_truth
+    from jointbench.simulators.two_body.bench import TwoBodyBench
+    from jointbench.simulators.two_body.bench_url import specimen_from_url
+    from jointbench.simulators.two_body.campaign_bench import campaign_runs
+    from jointbench.station.sources.campaign_sheet import sheet_text
+    from jointbench.station.sources.chassis_source import ChassisRun, ChassisSource
+
+    bench = specimen_from_url(url)
+    if isinstance(bench, TwoBodyBench):
+        source = ChassisSource(bench, samples=bench.samples)
+        stream = WholeStream(source, bench.truth.preload)
+        return Visit(bench.name, bench.simulated, (stream,))
+    campaign = bench.simulate()
+    return Visit(
+        bench.name,
+        bench.simulated,
+        tuple(
+            ChassisRun(run, samples=run.samples.shape[1])
+            for run in campaign_runs(campaign)
+        ),
+        sheet_text(campaign.design),
+        campaign_truth(campaign),
+    )
+
+
+def _require_scheme(url: str) -> None:
+    scheme = url.partition(":")[0]
+    if scheme in SCHEMES:
+        return
+    near = get_close_matches(scheme, SCHEMES)
+    hint = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(SCHEMES)}"
+    raise UsageError(f"source {url!r} has the unknown scheme {scheme!r}; {hint}")

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: MIT
+"""Read a roughness tester, and put what it measured where it belongs."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import InstrumentError, UsageError
+from jointbench.acquisition.basics.units import parse_value
+from jointbench.acquisition.formats.heights.height_facts import cautions, checked
+from jointbench.acquisition.records.surfaces import Profile
+from jointbench.acquisition.serial_lines import diavite, mitutoyo
+from jointbench.acquisition.serial_lines.line import ProfileBroken, SerialLine
+from jointbench.acquisition.session_file.add_surface import add_surface, require_addable
+from jointbench.acquisition.session_file.replaceable import fresh_path
+from jointbench.station.files.output_paths import (
+    check_outputs,
+    require_mark,
+    write_text,
+)
+from jointbench.station.pipeline.roughness_words import caution_lines
+from jointbench.station.screen.terminal import console, engineering, table, write_json
+from jointbench.station.sources.serial_port import line_name
+
+TABLE_HEAD = "x [um],z [um]"
+"""How the table of a profile begins."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProfileRequest:
+    """What is asked of which instrument.
+
+    Attributes:
+        instrument: ``"diavite"`` or ``"mitutoyo"``.
+        line: name of its serial line, or of a twin.
+        name: of the profile.
+        traverse: length that a DH-8 traced, with its unit, as text.
+        baud: bits per second, None for what is usual.
+        filtered: the roughness profile of a DH-8.
+        signed: whether heights of a DH-8 have a sign.
+    """
+
+    instrument: str
+    line: str
+    name: str
+    traverse: str | None = None
+    baud: int | None = None
+    filtered: bool = False
+    signed: bool = True
+
+
+def run_profile(
+    wanted: ProfileRequest,
+    *,
+    out: Path | None,
+    session: Path | None,
+    overwrite: bool,
+    json_target: str | None,
+) -> Profile:
+    """Fetch a profile into a table, a session, or both.
+
+    Args:
+        wanted: what to ask of which instrument.
+        out: table to write, ``*.csv``.
+        session: file that the profile is added to.
+        overwrite: replace a table that is there.
+        json_target: where the JSON goes.
+
+    Raises:
+        UsageError: there is nowhere to put it, or something is there already.
+        InstrumentError: the line breaks; what had come by then is in a table beside
+            the one asked for, ``*.broken.csv``.
+    """
+    _check_places(wanted, out, session, overwrite=overwrite, json_target=json_target)
+    try:
+        with line_name(wanted.line) as line:
+            profile = read_profile(wanted, line)
+    except ProfileBroken as error:
+        place = out or (session or Path("profile")).with_suffix(".csv")
+        saved = fresh_path(place, "broken")
+        write_text(saved, _table(error.heights, error.spacing))
+        raise InstrumentError(
+            f"{error}; {error.heights.size} heights are in '{saved}'"
+        ) from error
+    if out is not None:
+        write_text(out, _table(profile.heights, profile.spacing))
+    if session is not None:
+        add_surface(session, profile)
+    _show(profile, out, session, json_target)
+    return profile
+
+
+def read_profile(wanted: ProfileRequest, line: str) -> Profile:
+    """Read a profile from a line by its name.
+
+    Raises:
+        UsageError: the length of a DH-8's traverse is not given.
+        InstrumentError: the line cannot be opened, or breaks.
+        FormatError: the answer is not what the instrument's notes say.
+    """
+    if wanted.instrument == "mitutoyo":
+        port = SerialLine(line, baud=wanted.baud or mitutoyo.BAUD)
+    else:
+        port = SerialLine(line, baud=wanted.baud or diavite.BAUD)
+    try:
+        if wanted.instrument == "mitutoyo":
+            return _checked(mitutoyo.read_profile(port, name=wanted.name), line)
+        found = diavite.read_profile(
+            port,
+            name=wanted.name,
+            traverse=_traverse(wanted),
+            filtered=wanted.filtered,
+            signed=wanted.signed,
+        )
+        return _checked(found, line)
+    finally:
+        port.close()
+
+
+def _checked(profile: Profile, line: str) -> Profile:
+    """Refuse a length that no tester traces, and note what looks wrong."""
+    found = checked(profile, line)
+    return replace(profile, provenance=found.provenance)
+
+
+def _traverse(wanted: ProfileRequest) -> float:
+    if wanted.traverse is None:
+        raise UsageError(
+            "a DH-8 does not say how long its traverse was; add --traverse '4.8 mm'"
+        )
+    length = parse_value(wanted.traverse, "length")
+    if not length > 0:
+        raise UsageError(f"traverse is {wanted.traverse!r}; give a length above zero")
+    return length
+
+
+def _check_places(
+    wanted: ProfileRequest,
+    out: Path | None,
+    session: Path | None,
+    *,
+    overwrite: bool,
+    json_target: str | None,
+) -> None:
+    if out is None and session is None:
+        raise UsageError("nowhere to put the profile; add --out face.csv or --session")
+    if wanted.instrument == "diavite":
+        _traverse(wanted)
+    if out is not None:
+        if out.suffix.lower() != ".csv":
+            raise UsageError(f"'{out}' is no table; name it *.csv")
+        if out.is_file() and not overwrite:
+            raise UsageError(f"'{out}' is there already; add --force to overwrite it")
+        require_mark(out, TABLE_HEAD.encode(), "profile")
+    check_outputs([], [json_target, None if out is None or out.is_file() else out])
+    if session is not None:
+        require_addable(session, wanted.name)
+
+
+def _table(heights: FloatArray, spacing: float | None) -> str:
+    """Return heights as text; without x where the spacing is not known."""
+    if spacing is None:
+        rows = [f"{1e6 * z:.6f}" for z in heights]
+        return "\n".join(["z [um]", *rows, ""])
+    along = 1e6 * spacing * np.arange(heights.size)
+    rows = [f"{x:.6f},{1e6 * z:.6f}" for x, z in zip(along, heights, strict=True)]
+    return "\n".join([TABLE_HEAD, *rows, ""])
+
+
+def _show(
+    profile: Profile, out: Path | None, session: Path | None, json_target: str | None
+) -> None:
+    deviation = float(np.abs(profile.heights - profile.heights.mean()).mean())
+    rows = [
+        ("instrument", profile.instrument.name),
+        ("points", f"{profile.heights.size}"),
+        ("length", engineering(profile.length, "m")),
+        ("mean deviation (unfiltered)", engineering(deviation, "m")),
+    ]
+    screen = console(json_target)
+    screen.print(table(profile.name, ("profile", ""), rows))
+    said = cautions(profile.provenance)
+    for text in caution_lines(profile.name, said):
+        screen.print(f"  {text}", markup=False)
+    places = [str(place) for place in (out, session) if place is not None]
+    screen.print(f"in {' and '.join(places)}", soft_wrap=True)
+    screen.print(f"\nnext: jointbench surface {places[0]}", soft_wrap=True)
+    write_json(
+        json_target,
+        {
+            "profile": profile.name,
+            "points": profile.heights.size,
+            "spacing_m": profile.spacing,
+            "mean_deviation_m": deviation,
+            "cautions": list(said),
+            "files": places,
+        },
+    )

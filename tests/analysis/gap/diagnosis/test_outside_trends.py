@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""What an effect is worth is read under one noise, not from the noise of before."""
+
+import gap_bench as made
+import numpy as np
+import pytest
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.diagnosis_record import Finding
+from jointbench.analysis.gap.residuals.make_bench import make_bench
+
+NOISE = 0.02
+BASE = made.BASE
+
+
+def softening_campaign(seed: int) -> Campaign:
+    """Return hits on a joint that grows softer by 1 in 7,000 from first to last."""
+    bench = make_bench(made.quiet_campaign())
+    clean = [
+        bench.response(BASE + softer * np.eye(6)[3], [])[k]
+        for k, softer in enumerate(
+            -1.4e-4 * np.linspace(0.0, 1.0, len(bench.campaign.hit))
+        )
+    ]
+    rng = np.random.default_rng(seed)
+    records: FloatArray = np.stack(clean)
+    return made.quiet_campaign(records + NOISE * rng.standard_normal(records.shape))
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_trend_outside_the_catalogue_lends_its_worth_to_no_other(seed: int) -> None:
+    """With loosening taken out nothing is named, with it loosening is."""
+    campaign = softening_campaign(seed)
+    assert diagnose(campaign, without=frozenset({"loosening"})).effects == ()
+    found = diagnose(campaign)
+    assert found.verdict is Finding.NAMED
+    assert [e.name for e in found.effects] == ["loosening"]

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: MIT
+"""Forward models against another integrator, noise against its own statistics."""
+
+from dataclasses import replace
+
+import gap_bench as made
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.residuals.noise_models import (
+    channel_sigma,
+    gain_scatter,
+    whitening_basis,
+    without_trend,
+)
+from jointbench.analysis.gap.response.dynamic_stiffness import invert
+from jointbench.analysis.gap.response.predict_records import respond
+from jointbench.analysis.gap.response.slider_integration import slide, slider_tables
+
+
+def integrate(k3: float) -> FloatArray:
+    """Return both accelerations of the hardest hit by solve_ivp, shape (2, n)."""
+    m1, m2, k0, c0, kj, cj = (
+        made.NOMINAL[k] for k in ("m1", "m2", "k0", "c0", "kj", "cj")
+    )
+
+    def force(t: float) -> float:
+        return float(1000.0 * np.exp(-0.5 * ((t - 0.008) / 2.5e-4) ** 2))
+
+    def rate(t: float, x: FloatArray) -> list[float]:
+        r, v = x[1] - x[0], x[3] - x[2]
+        joint = kj * r + cj * v + k3 * r**3
+        return [
+            x[2],
+            x[3],
+            (joint - k0 * x[0] - c0 * x[2]) / m1,
+            (force(t) - joint) / m2,
+        ]
+
+    time = np.arange(made.SAMPLES) / made.RATE
+    run = solve_ivp(
+        rate,
+        (0, time[-1]),
+        np.zeros(4),
+        t_eval=time,
+        rtol=1e-9,
+        atol=1e-14,
+        method="DOP853",
+        max_step=2e-4,
+    )
+    return np.array([rate(t, x)[2:] for t, x in zip(time, run.y.T, strict=True)]).T
+
+
+@pytest.mark.parametrize("k3", [0.0, 1.5e16])
+def test_the_response_agrees_with_another_integrator(k3: float) -> None:
+    """Linear and cubic joints within 5e-5 of the peak."""
+    bench = make_bench(made.quiet_campaign())
+    terms = [made.term_of(bench, "cubic_stiffness", "link:joint", [k3])] if k3 else []
+    y = bench.response(np.zeros(6), terms, 8)[2]
+    reference = integrate(k3)
+    error = np.abs(y - reference)[:, :-64].max()
+    assert error < 5e-5 * np.abs(reference).max()
+
+
+@pytest.mark.parametrize("bodies", [1, 2, 3])
+def test_the_inverse_holds_for_any_number_of_bodies(bodies: int) -> None:
+    """The product with the matrix itself is one, at every record and line."""
+    rng = np.random.default_rng(bodies)
+    shape = (bodies, bodies, 4, 5)
+    z = rng.standard_normal(shape) + 1j * rng.standard_normal(shape)
+    product = np.einsum("ij...,jk...->ik...", z, invert(z))
+    one = np.eye(bodies)[:, :, None, None]
+    assert np.abs(product - one).max() < 1e-12
+
+
+def test_a_delay_moves_the_response_by_whole_samples() -> None:
+    """Two samples of delay are a shift by two rows."""
+    bench = make_bench(made.quiet_campaign())
+    late = made.term_of(bench, "delay", "channel:a1", [2 / made.RATE])
+    plain = bench.response(np.zeros(6), ())
+    moved = bench.response(np.zeros(6), (late,))
+    size = np.abs(plain).max()
+    assert np.abs(moved[:, 1, 2:] - plain[:, 1, :-2]).max() < 1e-6 * size
+    assert np.array_equal(moved[:, 0], plain[:, 0])
+
+
+def test_a_slider_loads_along_its_curve_and_unloads_elastically() -> None:
+    """Loading saturates at 1; stepping back by d lowers u by d."""
+    tables, tops = slider_tables(1.0, 0.0, 12.0)
+    top, loading = slide(0.0, 0.0, 5.0, tables, tops)
+    assert top == pytest.approx(1.0, abs=1e-4)
+    back, _ = slide(top, loading, -0.5, tables, tops)
+    assert back == pytest.approx(top - 0.5, abs=1e-9)
+
+
+def test_a_slider_loads_again_along_its_loading_curve() -> None:
+    """After unloading it goes on from the point of the curve at which it stands."""
+    tables, tops = slider_tables(1.0, 0.0, 12.0)
+    u, loading = slide(0.0, 0.0, 0.9, tables, tops)
+    low, _ = state = slide(u, loading, -0.2, tables, tops)
+    grid = np.linspace(0, 1, tables.shape[1]) * (tables.shape[1] - 1)
+    curve = np.interp(low, grid / tops[1], tables[1]) + 0.2
+    again, _ = slide(*state, 0.2, tables, tops)
+    assert again == pytest.approx(np.interp(curve, grid / tops[0], tables[0]), rel=1e-9)
+
+
+def test_many_small_steps_move_a_slider_as_far_as_one() -> None:
+    """The state does not depend on the number of steps of a monotone path."""
+    tables, tops = slider_tables(0.3, 0.9, 1.0)
+    once, _ = slide(0.0, 0.0, 1.7, tables, tops)
+    state = (0.0, 0.0)
+    for _ in range(100):
+        state = slide(*state, 0.017, tables, tops)
+    assert state[0] == pytest.approx(once, rel=1e-9)
+
+
+def test_white_noise_is_estimated_from_the_top_of_the_spectrum() -> None:
+    """Within 2 % for 16 records, whatever the low-frequency residual."""
+    rng = np.random.default_rng(5)
+    time = np.arange(2048) / made.RATE
+    misfit = 3.0 * np.sin(2 * np.pi * 300 * time)
+    residual = 0.2 * rng.standard_normal((16, 2, 2048)) + misfit
+    sigma = channel_sigma(residual, np.ones((16, 2)))
+    assert sigma == pytest.approx(0.2 * np.ones((16, 2)), rel=0.02)
+
+
+def test_scatter_is_found_when_repeats_differ_by_more_than_noise() -> None:
+    """A scatter of 0.15 % with noise of 0.01 % comes out within 40 %."""
+    rng = np.random.default_rng(8)
+    gains = 1e-4 * rng.standard_normal(16)
+    gains += np.repeat([1.5e-3, -1.5e-3], 8)
+    groups = [np.array([i, i + 8]) for i in range(8)]
+    found = gain_scatter(gains, np.full(16, 1e-8), groups)
+    assert found == pytest.approx(1.5e-3, rel=0.4)
+
+
+PRELOADS = np.log([2e3, 2e3, 2e3, 2e3, 2e3, 2e3, 8e3, 8e3])
+
+
+def test_no_joint_repeats_better_than_a_scatter_that_counts() -> None:
+    """Three times the noise, but 3 parts in a million: a misfit, and no scatter."""
+    rng = np.random.default_rng(7)
+    noise = rng.standard_normal(16)
+    groups = [np.arange(8), np.arange(8, 16)]
+    assert gain_scatter(3e-6 * noise, np.full(16, 1e-12), groups) == 0.0
+    assert gain_scatter(3e-4 * noise, np.full(16, 1e-8), groups) > 1e-4
+
+
+def test_a_trend_is_seen_past_a_record_that_says_hardly_anything() -> None:
+    """Seven sharp records make the law; the soft hit among them is no evidence."""
+    sd = np.array([1e-4, 9e-6, 2e-6, 9e-6, 2e-5, 4e-6, 9e-6, 2e-5])
+    drawn = sd * np.random.default_rng(3).standard_normal(8)
+    values = drawn - 7e-5 * (PRELOADS - PRELOADS.mean())
+    left = without_trend(values, sd**2, PRELOADS[None, :])
+    assert np.polyfit(PRELOADS[1:], left[1:], 1)[0] == pytest.approx(0, abs=1e-5)
+
+
+def test_scatter_alone_is_rarely_taken_for_a_trend() -> None:
+    """2,000 draws of pure scatter over unequal noise: about 3e-4 may be changed."""
+    rng = np.random.default_rng(4)
+    sd = np.array([1e-3, 1e-4, 2e-5, 1e-4, 2e-4, 4e-5, 1e-4, 2e-4])
+    changed = 0
+    for _ in range(2000):
+        values = rng.standard_normal(8) * np.sqrt(sd**2 + 1.5e-3**2)
+        left = without_trend(values, sd**2, PRELOADS[None, :])
+        changed += not np.array_equal(left, values)
+    assert changed <= 4
+
+
+def test_whitening_leaves_unit_noise_where_a_direction_was_loud() -> None:
+    """I + b b^T becomes the identity along b."""
+    b = np.zeros((1, 50))
+    b[0, :10] = 2.0
+    basis, shrink = whitening_basis(b)
+    unit = b[0] / np.linalg.norm(b)
+    spread = np.sqrt(1 + np.sum(b**2))
+    loud = spread * unit
+    left = loud - basis.T @ (shrink * (basis @ loud))
+    assert np.linalg.norm(left) == pytest.approx(1.0, rel=1e-9)
+
+
+def test_prediction_is_silent_without_force() -> None:
+    """No force, no response."""
+    bench = make_bench(made.quiet_campaign())
+    still = replace(bench.excitation, spectrum=0 * bench.excitation.spectrum)
+    y = respond(bench.campaign.model, bench.theta(np.zeros(6)), still)
+    assert not np.any(y)

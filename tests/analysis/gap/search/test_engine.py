@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: MIT
+"""The engine on a bench without any dynamics: it must not know the difference."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+import scipy.optimize
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate, judged
+from jointbench.analysis.gap.judgement import judging
+from jointbench.analysis.gap.judgement.held_out import hold_out
+from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
+from jointbench.analysis.gap.model.effect import (
+    PROBE_FAMILY,
+    Candidate,
+    Effect,
+    Parameter,
+    Site,
+    Term,
+    Transform,
+    labels_of,
+)
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit, Stage
+from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.exchange import exchanged
+from jointbench.analysis.gap.search.restarts import caught_up, crossed
+from jointbench.analysis.gap.search.screening import null_threshold
+
+ROWS, GROUPS = 4000, 8
+POWERS = {"square": 2, "cube": 3, "fifth": 5}
+
+
+def effect(name: str) -> Candidate:
+    """Return a toy effect: a power of the load."""
+    amplitude = Parameter("a", "-", "one", -50.0, 50.0, off=0.0)
+    return Candidate(Effect(name, "toy", (amplitude,), "made up"), Site("curve", "y"))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curve:
+    """A straight line through the origin, measured with unit noise of 0.01."""
+
+    measured: FloatArray
+    candidates: tuple[Candidate, ...]
+    base_names: tuple[str, ...] = ("slope",)
+    probes: tuple[Candidate, ...] = ()
+
+    @property
+    def base_sd(self) -> FloatArray:
+        """10 % of the slope."""
+        return np.array([0.1])
+
+    @property
+    def blocks(self) -> Blocks:
+        """Eight groups of rows."""
+        group = np.repeat(np.arange(GROUPS), ROWS // GROUPS)
+        labels = tuple({"group": str(i)} for i in range(GROUPS))
+        return Blocks(group, labels, ROWS, (GROUPS, 1, ROWS // GROUPS))
+
+    def scale(self, word: str) -> float:
+        """Everything is of order one."""
+        return 1.0
+
+    @property
+    def expanded(self) -> bool:
+        """Tell that the curve is exact everywhere."""
+        return False
+
+    def phases(self, candidate: Candidate) -> int:
+        """No effect has a phase."""
+        return 0
+
+    def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
+        """A curve suggests nothing."""
+        return []
+
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "Curve":
+        """The noise is known."""
+        return self
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01."""
+        y = LOAD * np.exp(base[0])
+        for term in terms:
+            y = y + term.coordinates[0] * LOAD ** POWERS[term.candidate.effect.name]
+        return np.asarray((y - self.measured) / 0.01)
+
+
+LOAD = np.tile(np.linspace(-1, 1, ROWS // GROUPS), GROUPS)
+
+
+def curve(square: float = 0.0, cube: float = 0.0, seed: int = 3) -> Curve:
+    """Return a measured curve with hidden powers."""
+    noise = 0.01 * np.random.default_rng(seed).standard_normal(ROWS)
+    measured = 1.05 * LOAD + square * LOAD**2 + cube * LOAD**3 + noise
+    return Curve(measured, (effect("square"), effect("cube")))
+
+
+def run(bench: Curve) -> SearchOutcome:
+    """Run the loop in silence."""
+    return investigate(bench, lambda line: None)
+
+
+def names(outcome: SearchOutcome) -> list[str]:
+    """Return the names of the winner."""
+    return sorted(c.effect.name for c in outcome.best.candidates)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_curve_with_nothing_missing_has_no_effect(seed: int) -> None:
+    """Noise alone passes the null test."""
+    outcome = run(curve(seed=seed))
+    assert outcome.gate.passed
+    assert names(outcome) == []
+
+
+def test_a_single_effect_is_found_with_its_size() -> None:
+    """A square of 0.02 is found within 4 sd."""
+    outcome = run(curve(square=0.02))
+    assert outcome.gate.passed
+    assert names(outcome) == ["square"]
+    assert outcome.best.x[-1] == pytest.approx(0.02, abs=0.0015)
+
+
+def test_two_effects_are_found_one_after_the_other() -> None:
+    """A square and a cube are both named, in whichever order."""
+    outcome = run(curve(square=0.05, cube=0.1))
+    assert outcome.gate.passed
+    assert names(outcome) == ["cube", "square"]
+
+
+def test_an_effect_outside_the_catalogue_is_left_unexplained() -> None:
+    """A square with only a cube to offer does not pass the gate."""
+    bench = replace(curve(square=0.05), candidates=(effect("cube"),))
+    assert not run(bench).gate.passed
+
+
+def test_what_a_wrong_effect_leaves_is_told_by_its_shape() -> None:
+    """A cube that rides on a square is seen by a probe, and never named."""
+    bench = replace(curve(square=0.05, cube=0.006), candidates=(effect("square"),))
+    cube = effect("cube")
+    probe = replace(cube, effect=replace(cube.effect, family=PROBE_FAMILY))
+    outcome = run(replace(bench, probes=(probe,)))
+    assert "look like: cube, curve:y" in outcome.gate.reason
+    assert names(outcome) == ["square"]
+
+
+def test_half_a_pair_is_exchanged() -> None:
+    """A cube in the place of a fifth power gives way once its partner is in."""
+    noise = 0.01 * np.random.default_rng(8).standard_normal(ROWS)
+    measured = 1.05 * LOAD + 0.2 * LOAD**2 + 0.3 * LOAD**5 + noise
+    bench = Curve(measured, tuple(effect(name) for name in POWERS))
+    wrong = (effect("square"), effect("cube"))
+    fit = minimise(make_problem(bench, wrong), np.array([0.0, 0.1, 0.1]))
+    best = min(exchanged(bench, fit, (), lambda line: None), key=lambda f: f.cost)
+    assert {c.effect.name for c in best.candidates} == {"square", "fifth"}
+    assert best.cost < 0.9 * fit.cost
+    known = {labels_of(best.candidates)}
+    rest = exchanged(bench, fit, known, lambda line: None)
+    assert rest
+    assert all(labels_of(f.candidates) not in known for f in rest)
+
+
+def test_a_fit_that_went_astray_catches_up_from_the_base_of_the_best() -> None:
+    """From a slope of e^3 the way down is long; from the best's base it is short."""
+    bench = curve(cube=0.2)
+    best = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
+    astray = replace(best, x=np.array([3.0, -15.0]), cost=1e9)
+    again = crossed(bench, [best, astray], lambda line: None)[1]
+    assert again.cost == pytest.approx(best.cost, rel=1e-6)
+    assert caught_up(bench, astray, best, lambda line: None).cost == pytest.approx(
+        best.cost, rel=1e-6
+    )
+
+
+def test_the_null_threshold_of_one_direction_is_the_quantile_of_chi_square() -> None:
+    """One two-sided direction: 99.5 % of chi2 with one degree of freedom is 7.88."""
+    one = np.ones((1, 1))
+    limit = null_threshold(one, np.array([False]), np.ones(1), seed=1)
+    assert limit == pytest.approx(7.88, abs=1.2)
+
+
+def test_holding_out_agrees_with_a_refit_without_the_group() -> None:
+    """The Newton step equals an explicit refit for a model linear in its parameter."""
+    bench = curve()
+    fit = minimise(make_problem(bench, (effect("square"),)), np.array([0.0, 0.1]))
+    held = hold_out(fit, bench)
+    out = bench.blocks.group == 2
+    keep = np.stack([LOAD * np.exp(fit.x[0]), LOAD**2], axis=1)[~out] / 0.01
+    normal = keep.T @ keep + np.diag(fit.prior)
+    start = bench.residual(fit.base, fit.terms, Stage())
+    step = -np.linalg.solve(normal, keep.T @ start[~out] + fit.prior * fit.x)
+    moved = start + fit.jacobian @ step
+    assert held.chi2[2] == pytest.approx(float(moved[out] @ moved[out]), rel=1e-4)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kinked(Curve):
+    """A curve that bends beyond a load which only the last group passes by much."""
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01."""
+        y = FAR_LOAD * np.exp(base[0])
+        for term in terms:
+            y = y + term.coordinates[0] * np.maximum(
+                FAR_LOAD - np.exp(term.coordinates[1]), 0.0
+            )
+        return np.asarray((y - self.measured) / 0.01)
+
+
+FAR_LOAD = np.concatenate([LOAD[: -ROWS // GROUPS], 2.0 * LOAD[: ROWS // GROUPS]])
+KINK = Candidate(
+    Effect(
+        "kink",
+        "toy",
+        (
+            Parameter("a", "-", "one", -50.0, 50.0, off=0.0),
+            Parameter("s", "-", "one", 0.1, 5.0, (1.0,), Transform.LOG),
+        ),
+        "made up",
+    ),
+    Site("curve", "y"),
+)
+
+
+def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
+    """As far off as scipy's fit to the others; the linear step errs twofold."""
+    noise = 0.01 * np.random.default_rng(2).standard_normal(ROWS)
+    bend = 0.5 * np.maximum(FAR_LOAD - 0.97, 0.0)
+    bench = Kinked(1.05 * FAR_LOAD + bend + noise, (KINK,))
+    fit = minimise(make_problem(bench, (KINK,)), np.array([0.0, 0.4, 0.0]))
+    assert fit.chi2 == pytest.approx(ROWS, rel=0.1)
+    rows = bench.blocks.group == GROUPS - 1
+
+    def seen(x: FloatArray) -> FloatArray:
+        r = bench.residual(x[:1], (Term(KINK, x[1:]),), Stage())
+        return np.append(r[~rows], x[0] / 0.1)
+
+    other = scipy.optimize.least_squares(seen, fit.x).x
+    left = bench.residual(other[:1], (Term(KINK, other[1:]),), Stage())[rows]
+    held = hold_out(fit, bench).chi2[-1]
+    j, r = fit.jacobian[rows], fit.residual[rows]
+    hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
+    first = r + j @ np.linalg.solve(hessian - j.T @ j, j.T @ r)
+    assert held == pytest.approx(float(left @ left), rel=0.05)
+    assert not 0.5 < float(first @ first) / held < 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Unsure(Curve):
+    """A curve whose noise is thought a tenth of what it is until a fit is at hand."""
+
+    sure: bool = False
+
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "Unsure":
+        """Know the noise."""
+        return replace(self, sure=True)
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01, or / 0.001."""
+        return Curve.residual(self, base, terms, stage) * (1.0 if self.sure else 10.0)
+
+
+def test_what_is_needless_once_the_noise_is_known_is_taken_back() -> None:
+    """A square of no amplitude earned its place by noise alone."""
+    plain = curve(cube=0.2)
+    bench = Unsure(plain.measured, plain.candidates)
+    base = minimise(make_problem(bench, ()), np.zeros(1))
+    both = minimise(make_problem(bench, plain.candidates), np.zeros(3))
+    found = judged(bench, [both], base, lambda line: None)
+    assert [c.effect.name for c in found.fits[0].candidates] == ["cube"]
+    assert found.gate.passed
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Torn(Curve):
+    """A curve that seems half as noisy from each fit to the next, and back."""
+
+    quiet: bool = False
+    rounds: list[bool] = field(default_factory=list)
+
+    def refine(
+        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+    ) -> "Torn":
+        """Change the noise once more."""
+        self.rounds.append(not self.quiet)
+        return replace(self, quiet=not self.quiet)
+
+    def residual(
+        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+    ) -> FloatArray:
+        """Return (model - measurement) / 0.01, or / 0.005."""
+        return Curve.residual(self, base, terms, stage) * (2.0 if self.quiet else 1.0)
+
+
+def test_noise_that_goes_to_and_fro_ends_where_it_is_least() -> None:
+    """A few rounds show that it will never settle, and more would show no more."""
+    plain = curve(cube=0.2)
+    bench = Torn(plain.measured, plain.candidates)
+    base = minimise(make_problem(bench, ()), np.zeros(1))
+    fit = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
+    last, _, _ = judging.judge(bench, [fit], base, lambda line: None)
+    assert isinstance(last, Torn)
+    assert last.quiet
+    assert len(bench.rounds) <= 4
+
+
+def test_confidence_never_falls_with_more_evidence() -> None:
+    """A wider margin, more slack and one effect instead of two are never less sure."""
+    poor = Evidence(15.0, 0.1, 5.0, 2)
+    better = (
+        replace(poor, margin=1e4),
+        replace(poor, slack=1.0),
+        replace(poor, amplitude=100.0),
+        replace(poor, effects=1),
+    )
+    sure = [confidence_of(evidence) for evidence in better]
+    assert all(0.5 < confidence_of(poor) <= c < 1.0 for c in sure)
+    assert max(sure) > confidence_of(poor) + 0.02
+
+
+def test_what_is_left_is_what_the_winner_leaves(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A pair that overtakes in the last round is judged by its own directed tests."""
+    monkeypatch.setattr(judging, "OVERTAKEN", 1)
+    bench = curve(square=0.05, cube=0.1)
+    cube, square = effect("cube"), effect("square")
+    base = minimise(make_problem(bench, ()), np.zeros(1))
+    alone = minimise(make_problem(bench, (cube,)), np.zeros(2))
+    both = minimise(make_problem(bench, (cube, square)), np.zeros(3))
+    _, ranked, gate = judging.judge(bench, [alone, both], base, lambda line: None)
+    assert names_of(ranked[0]) == ["cube", "square"]
+    assert gate.left is not None
+    assert all(d.shift.shape == ranked[0].x.shape for d in gate.left.directions)
+    assert gate.passed
+
+
+def names_of(fit: Fit) -> list[str]:
+    """Return the names of a fit's effects."""
+    return sorted(c.effect.name for c in fit.candidates)

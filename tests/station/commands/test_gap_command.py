@@ -1,0 +1,67 @@
+"""``jointbench gap`` on campaigns of the simulators' own physics."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.simulators.campaigns.campaign_records import make_campaign
+from jointbench.simulators.campaigns.write_campaign import write_campaign
+from jointbench.station.commands.gap_command import run_gap
+
+KEYS = {
+    "verdict",
+    "effects",
+    "candidates",
+    "where",
+    "gap_before",
+    "gap_after",
+    "shrink",
+    "experiment",
+}
+
+
+def diagnosis(
+    folder: Path, *effects: str, without: str | None = None
+) -> dict[str, Any]:
+    """Hide effects in a fresh campaign and return what the command says."""
+    path, target = folder / "campaign.h5", folder / "gap.json"
+    write_campaign(make_campaign(77, effects=effects, margin=3000.0), path)
+    page = folder / "gap.html"
+    run_gap(path, without=without, report=page, json_target=str(target))
+    assert "</html>" in page.read_text(encoding="utf-8")
+    content: dict[str, Any] = json.loads(target.read_text())
+    return content
+
+
+def test_a_hidden_cubic_spring_is_named_and_the_gap_shrinks(tmp_path: Path) -> None:
+    """Name, site, shrink and the contract's keys."""
+    found = diagnosis(tmp_path, "cubic_stiffness")
+    assert set(found) >= KEYS
+    assert found["verdict"] == "named"
+    (effect,) = found["effects"]
+    assert (effect["name"], effect["site"]) == ("cubic_stiffness", "link:joint")
+    assert effect["parameters"]["k3"]["unit"] == "N/m^3"
+
+
+def test_where_nothing_is_missing_nothing_is_named(tmp_path: Path) -> None:
+    """A model that explains the records is left alone."""
+    found = diagnosis(tmp_path)
+    assert found["verdict"] == "none"
+    assert found["effects"] == []
+
+
+def test_an_unknown_effect_in_without_is_a_usage_error(tmp_path: Path) -> None:
+    """A typing error must not silently leave the catalogue whole."""
+    with pytest.raises(UsageError, match="jenkin"):
+        diagnosis(tmp_path, without="jenkin")
+
+
+def test_a_file_that_is_no_campaign_is_bad_data(tmp_path: Path) -> None:
+    """One line, code three."""
+    path = tmp_path / "campaign.h5"
+    path.write_bytes(b"not a campaign")
+    with pytest.raises(BadData, match=r"campaign\.h5"):
+        run_gap(path, without=None, report=None, json_target=None)

@@ -1,0 +1,128 @@
+"""``jointbench identify`` of meshed bodies, from the command line."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from jointbench.station.main import app
+from jointbench.station.screen.exit_codes import EXIT_BAD_DATA, EXIT_USAGE, exit_code
+from jointbench.station.screen.joint_text import interval_text
+
+BLOCKS = """
+[materials.marble]
+youngs_modulus = "55 GPa"
+poisson_ratio = 0.25
+density = "2600 kg/m^3"
+
+[bodies.block]
+box = ["200 mm", "100 mm", "50 mm"]
+cells = [2, 1, 1]
+material = "marble"
+
+[joints.bed]
+between = ["block", "ground"]
+face = "z-"
+
+[measured]
+frequencies = ["195 Hz", "480 Hz", "520 Hz"]
+relative_sd = "0.2 %"
+
+[identify]
+data = "frequencies"
+modes = 6
+stiffness_box = ["1 MN/m", "1 GN/m"]
+"""
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
+    """Run the command line and return its exit code."""
+    monkeypatch.setattr("sys.argv", ["jointbench", *words])
+    return exit_code(app, debug=False)
+
+
+def test_printed_frequencies_give_joints_a_page_and_the_contracts_keys(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Parameters, solutions, full_check; shapes to turn in an offline page."""
+    model = tmp_path / "block.toml"
+    model.write_text(BLOCKS, encoding="utf-8")
+    page, target = tmp_path / "joints.html", tmp_path / "joints.json"
+    code = run(
+        monkeypatch,
+        "identify",
+        str(model),
+        "--report",
+        str(page),
+        "--json",
+        str(target),
+        "--cache",
+        str(tmp_path / "cache"),
+    )
+    content = json.loads(target.read_text(encoding="utf-8"))
+    assert code == 0
+    assert content["full_check"][0]["agrees"]
+    assert content["solutions"][0]["chi2"] < 1.0
+    assert set(content["parameters"]["bed.normal_stiffness"]) >= {
+        "value",
+        "sd",
+        "unit",
+        "identifiable",
+    }
+    assert '"mesh3d"' in page.read_text(encoding="utf-8")
+
+
+def test_what_is_open_is_shown_as_the_range_of_all_admissible(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """One frequency for three directions: no sd on the screen, the page, in JSON."""
+    model = tmp_path / "block.toml"
+    text = BLOCKS.replace('["195 Hz", "480 Hz", "520 Hz"]', '["195 Hz"]')
+    model.write_text(text, encoding="utf-8")
+    page, target = tmp_path / "joints.html", tmp_path / "joints.json"
+    run(
+        monkeypatch,
+        "identify",
+        str(model),
+        "--report",
+        str(page),
+        "--json",
+        str(target),
+    )
+    screen, html = capsys.readouterr().out, page.read_text(encoding="utf-8")
+    told = json.loads(target.read_text(encoding="utf-8"))["parameters"]
+    open_ones = {name: one for name, one in told.items() if not one["identifiable"]}
+    assert open_ones
+    for name, one in open_ones.items():
+        assert one["sd"] is None
+        line = next(row for row in screen.splitlines() if row.startswith(f"{name} "))
+        assert "±" not in line
+        shown = interval_text((one["interval_95"][0], one["interval_95"][1]))
+        assert shown in line
+        assert shown in html
+
+
+def test_a_joint_in_the_air_ends_with_bad_data(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Exit code 3 and one line that names the joint."""
+    model = tmp_path / "block.toml"
+    text = (
+        BLOCKS + '\n[[joints.bed.patches]]\ncentre = ["9 m", "9 m"]\nradius = "1 mm"\n'
+    )
+    model.write_text(text, encoding="utf-8")
+    assert run(monkeypatch, "identify", str(model)) == EXIT_BAD_DATA
+    assert "'bed' touches nothing" in capsys.readouterr().err
+
+
+def test_a_lumped_bench_without_a_session_is_a_usage_error(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Only structures may bring their frequencies in the model file."""
+    model = tmp_path / "bench.toml"
+    model.write_text("[bodies.m1]\nmass = '1 kg'\n", encoding="utf-8")
+    assert run(monkeypatch, "identify", str(model)) == EXIT_USAGE

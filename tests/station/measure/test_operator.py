@@ -1,0 +1,218 @@
+"""What the operator says while a session runs, and what interrupts it."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pytest
+
+from jointbench.acquisition.ni.driver import Chassis
+from jointbench.acquisition.records.recordings import Hit, Verdict
+from jointbench.acquisition.session_file.store import read_session
+from jointbench.simulators.chassis.server import ChassisSetup, SimulatedChassis
+from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
+from jointbench.simulators.plates.plates_bench import PlatesBench
+from jointbench.station.commands.verify_command import run_verify
+from jointbench.station.measure.bench_session import Measured, measure
+from jointbench.station.measure.chassis import OpenChassis, SimulatedHand
+from jointbench.station.measure.observer import Command, HitNews
+from jointbench.station.measure.observer import Operator as Striker
+from jointbench.station.measure.plan import Condition, read_plan
+from jointbench.station.measure.text_screen import TextScreen
+from jointbench.station.screen.terminal import console
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "plates.toml"
+HITS = """
+points = ["1", "2"]
+torques = ["20 N m"]
+repeats = 2
+trial_hits = 0
+length = "0.3 s"
+levels = ["150 N"]
+"""
+
+
+@dataclass
+class Operator(TextScreen):
+    """Says one thing after each of some hits; keeps what was told."""
+
+    after: dict[int, tuple[Command, ...]] = field(default_factory=dict)
+    heard: list[str] = field(default_factory=list)
+    on_hit: Callable[[int], None] = lambda number: None
+    _waiting: list[Command] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        """Say at once what is to be said before the first hit."""
+        self._waiting += self.after.pop(0, ())
+
+    def hit(self, news: HitNews) -> None:
+        """Think of what to say."""
+        self._waiting += self.after.pop(news.number, ())
+        self.on_hit(news.number)
+
+    def command(self) -> Command | None:
+        """Say it, one thing a block."""
+        return self._waiting.pop(0) if self._waiting else None
+
+    def _print(self, line: str) -> None:
+        self.heard.append(line)
+
+
+@dataclass(eq=False)
+class Wandering:
+    """Strikes point 3 the first time, whatever it is asked for."""
+
+    chassis: Chassis
+    asked: int = 0
+
+    def ask(self, condition: Condition) -> None:
+        """Ask for one stroke, once at the wrong place."""
+        place = condition if self.asked else replace(condition, point="3")
+        self.asked += 1
+        SimulatedHand(self.chassis).ask(place)
+
+
+def session(
+    folder: Path,
+    after: dict[int, tuple[Command, ...]],
+    *,
+    fates: tuple[Fate, ...] = (Fate.GOOD,),
+    on_hit: Callable[[int], None] = lambda number: None,
+    hand: Callable[[Chassis], Striker] = SimulatedHand,
+) -> tuple[Measured, Operator]:
+    """Measure two points, two hits each, with an operator who says things."""
+    text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")
+    head, _, rest = text.partition("[hits]")
+    _, _, tail = rest.partition("[joint]")
+    path = folder / "plan.toml"
+    path.write_text(f"{head}[hits]\n{HITS}\n[joint]{tail}", encoding="utf-8")
+    operator = Operator(console("-"), after=dict(after), on_hit=on_hit)
+    setup = ChassisSetup(
+        bench=PlatesBench(hand=SimulatedOperator(fates=fates)), speed=math.inf
+    )
+    with SimulatedChassis(setup) as server:
+        chassis = Chassis(server.address)
+        opened = OpenChassis(chassis, "sim:", True, hand(chassis))
+        measured = measure(read_plan(path), opened, folder / "s.h5", operator)
+        chassis.close()
+    return measured, operator
+
+
+def stored(folder: Path) -> list[Hit]:
+    """Return the hits as the file has them."""
+    return [h for r in read_session(folder / "s.h5").recordings for h in r.hits]
+
+
+def points(folder: Path, verdict: Verdict = Verdict.OK) -> list[str]:
+    """Return the points of the hits of a verdict."""
+    return [hit.point for hit in stored(folder) if hit.verdict is verdict]
+
+
+def test_a_hit_rejected_by_the_operator_is_made_up_for(tmp_path: Path) -> None:
+    """It stays in the file, with who said so and what it was before."""
+    measured, _ = session(tmp_path, {1: (Command.REJECT,)})
+    hits = stored(tmp_path)
+    assert measured.whole
+    assert hits[0].verdict is Verdict.OPERATOR
+    assert hits[0].reason.startswith("rejected by the operator; was ok")
+    assert points(tmp_path) == ["1", "1", "2", "2"]
+
+
+def test_a_bad_hit_accepted_by_the_operator_counts(tmp_path: Path) -> None:
+    """A double hit, kept: no hit more than the plan wants."""
+    measured, _ = session(
+        tmp_path, {1: (Command.ACCEPT,)}, fates=(Fate.DOUBLE, *[Fate.GOOD] * 9)
+    )
+    hits = stored(tmp_path)
+    assert measured.whole
+    assert len(hits) == 4
+    assert hits[0].reason.startswith("accepted by the operator; was double")
+
+
+def test_undo_takes_the_last_word_back(tmp_path: Path) -> None:
+    """Rejected and undone: the hit has its own verdict again, word for word."""
+    measured, _ = session(tmp_path, {1: (Command.REJECT, Command.UNDO)})
+    assert measured.whole
+    assert len(stored(tmp_path)) == 4
+    assert stored(tmp_path)[0].reason.startswith("single clean pulse")
+
+
+def test_undo_without_a_word_takes_the_last_hit_out(tmp_path: Path) -> None:
+    """The hand slipped, and nothing was said before."""
+    session(tmp_path, {1: (Command.UNDO,)})
+    assert stored(tmp_path)[0].reason.startswith("taken back by the operator")
+
+
+def test_rejecting_the_hit_that_ended_a_point_goes_back_to_it(tmp_path: Path) -> None:
+    """Hit 2 ends point 1; rejected, point 1 is struck once more before point 2."""
+    measured, _ = session(tmp_path, {2: (Command.REJECT,)})
+    assert measured.whole
+    assert [hit.point for hit in stored(tmp_path)] == ["1", "1", "1", "2", "2"]
+
+
+def test_repeat_sets_the_hits_of_the_point_aside(tmp_path: Path) -> None:
+    """After the first hit at point 2 that point begins anew; point 1 stays."""
+    measured, _ = session(tmp_path, {3: (Command.REPEAT,)})
+    assert measured.whole
+    assert points(tmp_path) == ["1", "1", "2", "2"]
+    assert points(tmp_path, Verdict.OPERATOR) == ["2"]
+
+
+def test_repeat_before_the_first_hit_repeats_the_point_before(tmp_path: Path) -> None:
+    """Point 1 is just done; both its hits are set aside and it is struck again."""
+    measured, _ = session(tmp_path, {2: (Command.REPEAT,)})
+    assert measured.whole
+    assert points(tmp_path, Verdict.OPERATOR) == ["1", "1"]
+    assert points(tmp_path) == ["1", "1", "2", "2"]
+
+
+def test_next_leaves_a_point_that_is_not_done_and_says_so(tmp_path: Path) -> None:
+    """One hit at point 1, two at point 2; the session is not whole."""
+    measured, _ = session(tmp_path, {1: (Command.NEXT,)})
+    assert measured.record.incomplete == ["20 Nm, point 1, 150 N"]
+    assert not measured.whole
+    assert points(tmp_path) == ["1", "2", "2"]
+
+
+def test_quit_ends_with_a_valid_file(tmp_path: Path) -> None:
+    """What was recorded until then is whole, and says that it was interrupted."""
+    measured, _ = session(tmp_path, {2: (Command.QUIT,)})
+    ends = [dict(s.detail) for s in read_session(tmp_path / "s.h5").provenance]
+    assert measured.record.interrupted
+    assert run_verify(tmp_path / "s.h5", json_target=None)
+    assert any(end.get("interrupted") is True for end in ends)
+    assert len(stored(tmp_path)) == 2
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_ctrl_c_at_a_hit_ends_with_a_valid_file(tmp_path: Path, number: int) -> None:
+    """All hits judged so far are in it."""
+
+    def interrupt(count: int) -> None:
+        if count == number:
+            raise KeyboardInterrupt
+
+    measured, _ = session(tmp_path, {}, on_hit=interrupt)
+    assert measured.record.interrupted
+    assert run_verify(tmp_path / "s.h5", json_target=None)
+    assert len(stored(tmp_path)) == number
+
+
+def test_a_word_before_the_first_hit_says_that_there_is_none(tmp_path: Path) -> None:
+    """And nothing else comes of it."""
+    measured, operator = session(tmp_path, {0: (Command.ACCEPT,)})
+    assert "accept: there is no hit yet" in operator.heard
+    assert measured.whole
+
+
+def test_a_hit_at_another_point_is_found_out_though_it_came_first(
+    tmp_path: Path,
+) -> None:
+    """The first of three is struck at point 3: the other two agree, it is taken out."""
+    measured, _ = session(tmp_path, {}, hand=Wandering)
+    verdicts = [hit.verdict for hit in stored(tmp_path)]
+    assert measured.whole
+    assert verdicts[0] is Verdict.POOR_COHERENCE
+    assert stored(tmp_path)[0].measure < 0.9
+    assert verdicts.count(Verdict.OK) == 4

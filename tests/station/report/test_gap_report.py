@@ -1,0 +1,212 @@
+"""The page and the words of a gap, for each verdict."""
+
+import re
+from dataclasses import replace
+from functools import cache
+
+import gap_outcomes as outcomes
+import pytest
+from rich.console import Console
+
+from jointbench.analysis.gap.diagnosis.diagnose import conclude
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Finding,
+    diagnosis_json,
+)
+from jointbench.station.gap import gap_output
+from jointbench.station.gap.gap_output import show_diagnosis
+from jointbench.station.report.gap_report import gap_report
+from jointbench.station.report.gap_sentences import (
+    effect_words,
+    headline,
+    next_step,
+    why_lost,
+)
+from jointbench.station.screen.page import DataTable, Plot, render
+
+VERDICTS = ("none", "named", "ambiguous", "unknown")
+LATE = ("delay", "channel:a1", [4e-5])
+LOWPASS, DELAY = ("sensor_lowpass", "channel:a1"), ("delay", "channel:a1")
+
+
+@cache
+def found(verdict: str) -> Diagnosis:
+    """Return a diagnosis of that verdict."""
+    hidden, tried, rivals = {
+        "none": ([], (), 1),
+        "named": ([LATE], (DELAY, LOWPASS), 1),
+        "ambiguous": ([LATE], (DELAY, LOWPASS), 2),
+        "unknown": ([LATE], (("extra_damping", "body:m2"),), 1),
+    }[verdict]
+    outcome, bench = outcomes.outcome_of(hidden, *tried, rivals=rivals)
+    diagnosis = conclude(outcome, bench)
+    assert diagnosis.verdict.value == verdict
+    return diagnosis
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+def test_a_page_has_the_picture_first_and_loads_nothing(verdict: str) -> None:
+    """The hero comes before any other figure; no address is asked for anything."""
+    report = gap_report(found(verdict), title="made")
+    plots = [i for s in report.sections for i in s.items if isinstance(i, Plot)]
+    assert plots[0].identifier == "hero"
+    assert len({plot.identifier for plot in plots}) == len(plots)
+    page = render(report)
+    assert "default-src 'none'" in page
+    assert not re.search(r"<(script|link|img)[^>]+(src|href)=", page)
+
+
+def test_the_title_says_in_words_what_was_found_and_how_much_it_takes() -> None:
+    """Effect, place and share of the gap."""
+    title = gap_report(found("named"), title="made").title
+    assert title.startswith("Delay on channel a1 explains ")
+    assert "of the gap" in title or "the whole gap" in title
+
+
+def test_rivals_that_are_not_told_apart_are_both_in_the_title() -> None:
+    """An ambiguous verdict names both and says so."""
+    title = headline(found("ambiguous"))
+    assert "Delay on channel a1 or sensor lowpass on channel a1" in title
+    assert "do not tell which" in title
+
+
+def test_an_unknown_for_what_the_campaign_cannot_show_blames_no_effect() -> None:
+    """One level only: the delay fits, but no headline says that nothing does."""
+    outcome, bench = outcomes.outcome_of([LATE], DELAY, LOWPASS)
+    diagnosis = conclude(outcome, bench, limits="all hits have one level")
+    assert diagnosis.verdict is Finding.UNKNOWN
+    assert headline(diagnosis).startswith("These records cannot show what is missing")
+    assert why_lost(diagnosis.candidates[0], diagnosis).startswith("fits, but")
+
+
+def test_an_unknown_among_many_rivals_says_that_they_fit_alike() -> None:
+    """Four or more explanations are no answer, and none of them was refused."""
+    labels = tuple((f"{name}@channel:a1",) for name in ("a", "b", "c", "d"))
+    diagnosis = replace(found("unknown"), explanations=labels)
+    assert headline(diagnosis).startswith("Several explanations fit alike")
+
+
+def test_rival_pairs_are_joined_by_or_and_their_effects_by_and() -> None:
+    """What both hold is in both, and nothing is an alternative to itself."""
+    pairs = (
+        ("delay@channel:a1", "iwan@link:joint"),
+        ("delay@channel:a1", "jenkins@link:joint"),
+    )
+    title = headline(replace(found("ambiguous"), explanations=pairs))
+    assert title.startswith(
+        "Delay on channel a1 and iwan in the joint, or delay on channel a1 and "
+        "jenkins in the joint explains"
+    )
+
+
+def test_what_one_condition_alone_shows_is_not_told_by_a_shrink() -> None:
+    """A gap that stays when held out is no share of a gap explained."""
+    named = found("named")
+    diagnosis = replace(named, gap_before=named.gap_before, gap_after=named.gap_before)
+    assert "one condition alone shows it" in headline(diagnosis)
+    assert "%" not in headline(diagnosis)
+
+
+def test_an_unknown_says_what_it_looks_like_and_what_to_do() -> None:
+    """Level, channel and time; the refused try is called refused."""
+    report = gap_report(found("unknown"), title="made")
+    page = render(report)
+    assert "closest try" in page and "refused" in page
+    assert "recurs in softer ones by 10" in page
+    assert next_step(found("unknown")) == found("unknown").exhibit.advice  # type: ignore[union-attr]
+
+
+def test_a_rival_far_behind_needs_no_experiment() -> None:
+    """Only what is not told apart is worth one; a name says how far the next is."""
+    far = next_step(found("named"))
+    assert re.fullmatch(
+        r"use it; no experiment needed: the nearest rival is \d+ behind, 15 tell it "
+        "apart",
+        far,
+    )
+    assert next_step(found("ambiguous")).startswith(("delay@", "sensor_lowpass@"))
+
+
+def test_every_explanation_that_was_tried_has_its_reason() -> None:
+    """No row of the ranking ends without a word."""
+    diagnosis = found("named")
+    reasons = [why_lost(one, diagnosis) for one in diagnosis.candidates]
+    assert all(reasons)
+    assert reasons[0] == "the best"
+    assert reasons[-1].startswith("chi2/dof above")
+
+
+def test_before_and_after_stand_in_the_table_of_where() -> None:
+    """Five columns where something was named, four where nothing was."""
+    tables = {
+        verdict: next(
+            item
+            for section in gap_report(found(verdict), title="made").sections
+            if section.anchor == "where"
+            for item in section.items
+            if isinstance(item, DataTable)
+        )
+        for verdict in ("named", "unknown")
+    }
+    assert tables["named"].columns[-2:] == ("chi2/dof before", "chi2/dof after")
+    assert tables["unknown"].columns[-1] == "chi2/dof before"
+    assert all(len(row) == 5 for row in tables["named"].rows)
+
+
+@pytest.mark.parametrize("verdict", VERDICTS)
+@pytest.mark.parametrize("width", [80, 120])
+def test_the_terminal_never_runs_over_its_width(
+    verdict: str, width: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every line fits, and the verdict is the first of them."""
+    screen = Console(width=width, record=True, highlight=False, markup=False)
+    monkeypatch.setattr(gap_output, "console", lambda target: screen)
+    show_diagnosis(found(verdict), None)
+    lines = screen.export_text().splitlines()
+    assert lines[0] == f"verdict: {verdict}"
+    assert max(len(line.rstrip()) for line in lines) <= width
+    assert any(line.startswith("next:") for line in lines)
+
+
+def test_an_effect_that_only_the_sheet_sees_is_told_by_its_pull() -> None:
+    """An added mass leaves no gap: the title tells the pulls instead."""
+    hidden = [("added_mass", "body:m2", [0.3])]
+    outcome, bench = outcomes.outcome_of(hidden, ("added_mass", "body:m2"))
+    diagnosis = conclude(outcome, bench)
+    assert diagnosis.verdict is Finding.NAMED
+    assert "brings the model back to its sheet" in headline(diagnosis)
+    labels = [tile.label for tile in gap_report(diagnosis, title="made").tiles]
+    assert "shrinks by" not in labels
+
+
+def test_a_weak_effect_is_told_by_the_test_that_sees_it() -> None:
+    """A delay of 0.2 us leaves hardly a gap and the sheet in peace."""
+    outcome, bench = outcomes.outcome_of(
+        [("delay", "channel:a0", [2e-7])], ("delay", "channel:a0")
+    )
+    diagnosis = conclude(outcome, bench)
+    assert diagnosis.gap_before.value < 0.3
+    largest, limit = diagnosis.null_statistic
+    assert largest > limit
+    assert f"a directed test takes {largest:.0f} units" in headline(diagnosis)
+    assert "off its sheet" not in (diagnosis.exhibit.where if diagnosis.exhibit else "")
+
+
+def test_names_out_of_a_file_cannot_break_out_of_the_page() -> None:
+    """A channel called like a script stays text."""
+    diagnosis = replace(found("named"), reason="<script>alert(1)</script>")
+    assert "<script>alert(1)" not in render(gap_report(diagnosis, title="<b>x</b>"))
+
+
+def test_a_diagnosis_without_an_exhibit_still_makes_a_page() -> None:
+    """The picture is left out, the rest stays."""
+    report = gap_report(replace(found("named"), exhibit=None), title="made")
+    assert report.sections[0].anchor == "effects"
+    assert diagnosis_json(replace(found("named"), exhibit=None))["exhibit"] is None
+
+
+def test_pairs_are_put_into_words() -> None:
+    """Names lose their underscores, sites become places."""
+    words = effect_words("preload_stiffness@link:joint + hidden_mode@body:m2")
+    assert words == "preload stiffness in the joint and hidden mode on body m2"
