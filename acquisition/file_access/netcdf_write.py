@@ -27,10 +27,10 @@ from jointbench.acquisition.basics.arrays import ComplexArray
 from jointbench.acquisition.basics.errors import BadData, ShapeError, UsageError
 from jointbench.acquisition.file_access.text_files import named, shown
 
-CONVENTIONS = "CF-1.11"
+_CONVENTIONS = "CF-1.11"
 # What netCDF-4 calls a dimension that has no coordinate variable.
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
-MAX_ATTRIBUTE_BYTES = 60_000  # HDF5 keeps at most 64 KiB beside an object
+_MAX_ATTRIBUTE_BYTES = 60_000  # HDF5 keeps at most 64 KiB beside an object
 _GROWTH = 2**22  # bytes by which a file in memory grows
 _IN_MEMORY: dict[str, Any] = {
     "driver": "core",
@@ -80,7 +80,7 @@ def new_file(
         # HDF5 that meets a full disk crashes the process when it ends: it writes to
         # memory, and what it made goes to the disk in one piece.
         with h5py.File(part, "w", **(_IN_MEMORY if memory else {})) as file:
-            attributes = {"Conventions": CONVENTIONS, "title": title, "schema": schema}
+            attributes = {"Conventions": _CONVENTIONS, "title": title, "schema": schema}
             write_attributes(file, attributes)
             yield file
             file.flush()
@@ -111,10 +111,10 @@ def write_attributes(
     for name, value in values.items():
         if isinstance(value, str):
             data = _encode(value, name)
-            if len(data) > MAX_ATTRIBUTE_BYTES:
+            if len(data) > _MAX_ATTRIBUTE_BYTES:
                 raise BadData(
                     f"{name!r} has {len(data)} bytes of text, at most "
-                    f"{MAX_ATTRIBUTE_BYTES} are stored; shorten it"
+                    f"{_MAX_ATTRIBUTE_BYTES} are stored; shorten it"
                 )
             kind = h5py.string_dtype("utf-8", max(1, len(data)))
             target.attrs.create(name, np.array(data, dtype=kind), dtype=kind)

@@ -10,11 +10,11 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
 
 # A text takes up to six times its size in memory, a line 60 bytes beside its own.
-MAX_TEXT_BYTES = 100_000_000
+_MAX_TEXT_BYTES = 100_000_000
 MAX_LINES = 3_000_000
-BYTES_A_LINE = 100
+_BYTES_A_LINE = 100
 """A larger text may have one more line for so many of its characters."""
-MAX_LINE_CHARACTERS = 2**20
+_MAX_LINE_CHARACTERS = 2**20
 _SHOWN = 60
 _SHOWN_PATH = 160
 _BOMS = (
@@ -99,7 +99,7 @@ def file_digest(path: Path | str) -> str:
         raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
 
 
-def read_bytes(path: Path | str, *, limit: int = MAX_TEXT_BYTES) -> bytes:
+def read_bytes(path: Path | str, *, limit: int = _MAX_TEXT_BYTES) -> bytes:
     """Return the content of a file that is not larger than `limit` [bytes].
 
     Raises:
@@ -165,7 +165,7 @@ def text_lines(text: str, path: Path | str) -> list[str]:
         HostileFile: a line has more than a million characters, or there are more
             lines than any table of measured values has.
     """
-    count, most = text.count("\n"), MAX_LINES + len(text) // BYTES_A_LINE
+    count, most = text.count("\n"), MAX_LINES + len(text) // _BYTES_A_LINE
     if count > most:
         raise HostileFile(
             f"{named(path)} has {count} lines, at most {most} are read of a text of "
@@ -173,10 +173,10 @@ def text_lines(text: str, path: Path | str) -> list[str]:
         )
     lines = text.split("\n")
     lengths = list(map(len, lines))
-    if max(lengths) > MAX_LINE_CHARACTERS:
+    if max(lengths) > _MAX_LINE_CHARACTERS:
         raise HostileFile(
             f"{named(path)}: line {lengths.index(max(lengths)) + 1} has {max(lengths)} "
-            f"characters; at most {MAX_LINE_CHARACTERS} are read: write one row a line"
+            f"characters; at most {_MAX_LINE_CHARACTERS} are read: write one row a line"
         )
     return lines
 

@@ -23,13 +23,13 @@ from jointbench.acquisition.file_access.text_files import (
     text_lines,
 )
 
-MAX_ROWS = 20_000_000
-MAX_COLUMNS = 512
+_MAX_ROWS = 20_000_000
+_MAX_COLUMNS = 512
 MAX_CELLS = 100_000_000
-MAX_HEADER_LINES = 1000
+_MAX_HEADER_LINES = 1000
 # Beyond what any instrument reads, and its powers still fit a double [SI unit].
-LARGEST_VALUE = 1e30
-NPY_MAGIC = b"\x93NUMPY"
+_LARGEST_VALUE = 1e30
+_NPY_MAGIC = b"\x93NUMPY"
 # What NumPy lets through where the header of an array is no Python literal.
 _HEADER_ERRORS = (EOFError, SyntaxError, tokenize.TokenError, RecursionError)
 _DELIMITERS = ("\t", ";", ",", "|", None)
@@ -42,11 +42,11 @@ _TEXT_NEEDED, _CELL_NEEDED = 3, 20
 """Of each character of a text, and of each number in it [bytes]."""
 _NEEDED = 24
 """Of each number of an array: as it is read, laid in rows, and in its unit [bytes]."""
-MAX_SLOW_CELLS = 3_000_000
+_MAX_SLOW_CELLS = 3_000_000
 """Cells in rows that must be read one by one, at about a microsecond each."""
-MISSING_WORDS = frozenset({"", "nan", "bad", "n/a", "na", "null", "-", "--", "---"})
+_MISSING_WORDS = frozenset({"", "nan", "bad", "n/a", "na", "null", "-", "--", "---"})
 _MISSING_WORD = re.compile(
-    r"(?<!\S)(?:" + "|".join(sorted(MISSING_WORDS - {""}, reverse=True)) + r")(?!\S)",
+    r"(?<!\S)(?:" + "|".join(sorted(_MISSING_WORDS - {""}, reverse=True)) + r")(?!\S)",
     re.I,
 )
 NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.I)
@@ -89,20 +89,20 @@ class Table:
     def require_sane(
         self, column: int, factor: float, what: str, *, skip: BoolArray | None = None
     ) -> None:
-        """Raise `FormatError` where |value * factor| exceeds `LARGEST_VALUE`.
+        """Raise `FormatError` where |value * factor| exceeds `_LARGEST_VALUE`.
 
         `what` names the quantity; rows in `skip`, shape (n_rows,), hold no value.
         """
         values = self.values[column]
         with np.errstate(over="ignore"):
-            beyond = np.isfinite(values) & (np.abs(values * factor) > LARGEST_VALUE)
+            beyond = np.isfinite(values) & (np.abs(values * factor) > _LARGEST_VALUE)
         if skip is not None:
             beyond &= ~skip
         if np.any(beyond):
             row = int(np.argmax(beyond))
             raise FormatError(
                 f"{named(self.path)}: {self.where(row)}: {what} is {values[row]:g}, "
-                f"beyond {LARGEST_VALUE:g} in SI; correct the number or its unit"
+                f"beyond {_LARGEST_VALUE:g} in SI; correct the number or its unit"
             )
 
     def printed_units(self, column: int) -> FloatArray:
@@ -160,7 +160,7 @@ def load_table(path: Path | str, *, columns: int | None = None) -> Table:
 def is_array_file(path: Path) -> bool:
     """Tell by its first bytes whether a file is a .npy array."""
     file_size(path)
-    return read_head(path, len(NPY_MAGIC)) == NPY_MAGIC
+    return read_head(path, len(_NPY_MAGIC)) == _NPY_MAGIC
 
 
 def read_head(path: Path, count: int) -> bytes:
@@ -174,15 +174,15 @@ def read_head(path: Path, count: int) -> bytes:
 
 def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
     """Find the numbers in the lines of a text and read them; see `read_table`."""
-    if any('"' in line for line in lines[: MAX_HEADER_LINES + 1]):
+    if any('"' in line for line in lines[: _MAX_HEADER_LINES + 1]):
         lines = [_QUOTED.sub(r"\1.\2", line) for line in lines]
     start = _find_start(lines, path)
     below = range(start.line, len(lines))
     numbers = np.fromiter((i for i in below if _is_row(lines[i])), np.int64)
-    if len(numbers) > MAX_ROWS or len(numbers) * start.columns > MAX_CELLS:
+    if len(numbers) > _MAX_ROWS or len(numbers) * start.columns > MAX_CELLS:
         raise HostileFile(
             f"{named(path)} has {len(numbers)} rows of {start.columns} columns; "
-            f"at most {MAX_ROWS} rows and {MAX_CELLS} cells are read: cut it"
+            f"at most {_MAX_ROWS} rows and {MAX_CELLS} cells are read: cut it"
         )
     text = sum(map(len, lines))
     require_room(
@@ -248,7 +248,7 @@ def _last_digit(cell: str) -> float:
 def _find_start(lines: Sequence[str], path: Path) -> _Start:
     """Find the first two lines of numbers in a row that agree in layout."""
     seen: _Start | None = None
-    for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
+    for i, line in enumerate(lines[: _MAX_HEADER_LINES + 1]):
         if not _is_row(line):
             continue
         start = _numeric_layout(i, line)
@@ -258,7 +258,7 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
         seen = start
     if seen is not None:  # a table of one row
         return seen
-    for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
+    for i, line in enumerate(lines[: _MAX_HEADER_LINES + 1]):
         if _GROUPED.search(line):
             raise FormatError(
                 f"{named(path)}: line {i + 1}: {shown(line.strip())} has signs between "
@@ -266,7 +266,8 @@ def _find_start(lines: Sequence[str], path: Path) -> _Start:
             )
     raise FormatError(
         f"{named(path)} holds no table of numbers: no line of its first "
-        f"{MAX_HEADER_LINES} is numbers only; its first reads {shown(lines[0].strip())}"
+        f"{_MAX_HEADER_LINES} is numbers only; its first reads "
+        f"{shown(lines[0].strip())}"
     )
 
 
@@ -296,8 +297,8 @@ def _numeric_layout(index: int, line: str) -> _Start | None:
             continue
         cells = split_row(line, delimiter)
         numeric = sum(_is_number(cell, delimiter) for cell in cells)
-        missing = sum(cell.lower() in MISSING_WORDS for cell in cells)
-        if numeric and numeric + missing >= len(cells) and len(cells) <= MAX_COLUMNS:
+        missing = sum(cell.lower() in _MISSING_WORDS for cell in cells)
+        if numeric and numeric + missing >= len(cells) and len(cells) <= _MAX_COLUMNS:
             return _Start(index, delimiter, len(cells))
     return None
 
@@ -334,10 +335,10 @@ def _parse(rows: list[str], numbers: IntArray, start: _Start, path: Path) -> Flo
 
 
 def _require_few(cells: int, path: Path) -> None:
-    if cells > MAX_SLOW_CELLS:
+    if cells > _MAX_SLOW_CELLS:
         raise HostileFile(
-            f"{named(path)} holds more than {MAX_SLOW_CELLS} cells in rows that are no "
-            "plain numbers; export it with numbers only"
+            f"{named(path)} holds more than {_MAX_SLOW_CELLS} cells in rows that are "
+            "no plain numbers; export it with numbers only"
         )
 
 
@@ -346,7 +347,7 @@ def _with_nan(rows: list[str], start: _Start) -> list[str]:
     if start.delimiter is None:
         return [_MISSING_WORD.sub("nan", row) for row in rows]
     parted = re.escape(start.delimiter)
-    words = "|".join(map(re.escape, sorted(MISSING_WORDS, key=len, reverse=True)))
+    words = "|".join(map(re.escape, sorted(_MISSING_WORDS, key=len, reverse=True)))
     cell = re.compile(
         rf'(^|{parted})[ ]*+"?[ ]*+(?:{words})[ ]*+"?[ ]*+(?={parted}|$)', re.I
     )
@@ -389,7 +390,7 @@ def parse_cell(cell: str, line: int, path: Path) -> float:
     """
     if NUMBER.fullmatch(cell):
         return float(cell)
-    if cell.lower() in MISSING_WORDS:
+    if cell.lower() in _MISSING_WORDS:
         return float("nan")
     if DECIMAL_COMMA.fullmatch(cell):
         raise FormatError(
@@ -432,10 +433,10 @@ def _load_array(path: Path, columns: int | None) -> Table:
         raise FormatError(
             f"{named(path)} holds values of type {array.dtype}, real numbers are needed"
         )
-    if array.ndim not in {1, 2} or not array.size or _columns(array) > MAX_COLUMNS:
+    if array.ndim not in {1, 2} or not array.size or _columns(array) > _MAX_COLUMNS:
         raise FormatError(
             f"{named(path)} has shape {array.shape}; a table has shape "
-            f"(n_columns, n_rows) or (n_rows, n_columns) with at most {MAX_COLUMNS} "
+            f"(n_columns, n_rows) or (n_rows, n_columns) with at most {_MAX_COLUMNS} "
             "columns"
         )
     if array.size > MAX_CELLS:

@@ -42,11 +42,11 @@ class Remedy(StrEnum):
     """Only the operator can help."""
 
 
-OVERRUN = DAQmxErrors.SAMPLES_NO_LONGER_AVAILABLE
+_OVERRUN = DAQmxErrors.SAMPLES_NO_LONGER_AVAILABLE
 
 RETRY = frozenset(
     {
-        OVERRUN,
+        _OVERRUN,
         DAQmxErrors.SAMPLES_NOT_YET_AVAILABLE,
         DAQmxErrors.WAIT_UNTIL_DONE_DOES_NOT_INDICATE_DONE,
         DAQmxErrors.TIMEOUT_EXCEEDED,
@@ -167,7 +167,7 @@ def named_errors(address: str | None) -> Iterator[None]:
     except DaqError as error:
         words = str(error).split("\n\nStatus Code")[0]
         message = f"NI-DAQmx {error.error_code}: {words}"
-        if error.error_code == OVERRUN:
+        if error.error_code == _OVERRUN:
             raise Overrun(message) from error
         raise _RAISED[remedy(error.error_code)](message) from error
     except DaqFunctionNotSupportedError as error:

@@ -24,7 +24,7 @@ else:
     # pyserial lets an error of the terminal through, and trips over a closed port.
     _BROKEN = (serial.SerialException, OSError, TypeError, termios.error)
 
-Answer = TypeVar("Answer")
+_Answer = TypeVar("_Answer")
 TRIES = 3
 """Times that an answer which cannot be read is asked for."""
 _QUIET = 0.05  # [s], 48 characters at 9600 baud
@@ -91,7 +91,7 @@ class Line(Protocol):
         ...
 
 
-def ask_again(line: Line, ask: Callable[[], Answer], *, tries: int = TRIES) -> Answer:
+def ask_again(line: Line, ask: Callable[[], _Answer], *, tries: int = TRIES) -> _Answer:
     """Return an answer that can be read; one that cannot is asked for again.
 
     Args:

@@ -49,7 +49,7 @@ _INSTRUMENT_NUMBERS = (
     "cutoff_short",
     "cutoff_long",
 )
-Owner = tuple[str, str]
+_Owner = tuple[str, str]
 
 
 def write_surface(file: h5py.File, surface: Surface, position: int) -> None:
@@ -199,7 +199,7 @@ def write_provenance(file: h5py.File, session: Session) -> None:
         write_texts(group, name, texts, "step", long_name=long_name)
 
 
-def read_provenance(file: h5py.File) -> dict[Owner, Provenance]:
+def read_provenance(file: h5py.File) -> dict[_Owner, Provenance]:
     """Return the steps by what they belong to, for example ("recording", "hit 1").
 
     Raises:
@@ -208,7 +208,7 @@ def read_provenance(file: h5py.File) -> dict[Owner, Provenance]:
     group = find_group(file, "provenance")
     if group is None:
         return {}
-    steps: dict[Owner, list[Step]] = {}
+    steps: dict[_Owner, list[Step]] = {}
     require_rows(group["owner_kind"])
     details = read_texts(group["detail"])
     require_short_json(*details)
@@ -223,7 +223,7 @@ def read_provenance(file: h5py.File) -> dict[Owner, Provenance]:
     return {owner: tuple(found) for owner, found in steps.items()}
 
 
-def _all_steps(session: Session) -> Iterator[tuple[Owner, Step]]:
+def _all_steps(session: Session) -> Iterator[tuple[_Owner, Step]]:
     for step in session.provenance:
         yield ("session", ""), step
     for recording in session.recordings:

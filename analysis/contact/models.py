@@ -175,7 +175,7 @@ KOGUT_ETSION_1 = PowerLaw(1.03, 1.425)
 KOGUT_ETSION_2 = PowerLaw(1.40, 1.263)
 PRINTED_STAGE_2 = PowerLaw(1.40, 1.236)
 # The papers' share of the interference that an interacting asperity keeps.
-PRINTED_SHARE = 3 * math.pi / 16
+_PRINTED_SHARE = 3 * math.pi / 16
 PLASTIC_PROFILE = FullyPlastic(1.0)
 # In the surface geometry `a` is half the truncated area: full plasticity bears 2 H a.
 PLASTIC_SURFACE = FullyPlastic(2.0)
@@ -307,7 +307,7 @@ def interaction_share(model: ContactModel) -> float:
     if model.interaction is Interaction.NONE:
         return 1.0
     if model.interaction is Interaction.AS_PRINTED:
-        return PRINTED_SHARE
+        return _PRINTED_SHARE
     return _balanced_share(model.topography.shape)
 
 
@@ -345,6 +345,6 @@ def _printed_interaction(elastic: PowerLaw, shape: float) -> PowerLaw:
     """Return the elastic law of eqs. (18) and (30): load and stiffness disagree."""
     # P = E a^(3/2) (1 - 3 pi/16)/(pi R) and k = (sqrt 3 / 2) E sqrt(a), as multiples
     # of Hertz's 4/3 E R^(1/2) delta^(3/2) and 2 E sqrt(a/g), with a = g R delta.
-    load = 3 / (4 * math.pi) * shape**1.5 * (1 - PRINTED_SHARE)
+    load = 3 / (4 * math.pi) * shape**1.5 * (1 - _PRINTED_SHARE)
     slope = math.sqrt(3 * shape) / 4 * elastic.exponent
     return PowerLaw(elastic.coefficient * load, elastic.exponent, slope)

@@ -8,20 +8,20 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 
-MOST_STEPS = 40
+_MOST_STEPS = 40
 """Steps of one search; fits of a surface take about 10, hopeless ones go on [-]."""
-MOST_TRIALS = 12
+_MOST_TRIALS = 12
 """Trial dampings of one step [-]."""
-SETTLED = 1e-7
+_SETTLED = 1e-7
 """Relative change of the sum of squares that ends a search [-]."""
-DIFFERENCE = 1e-6
+_DIFFERENCE = 1e-6
 """Step of the numerical derivatives of parameters of order one [-]."""
-FIRST_DAMPING = 1e-3
+_FIRST_DAMPING = 1e-3
 """Damping of the first step over the curvature [-]."""
-EASE, TIGHTEN = 0.2, 5.0
+_EASE, _TIGHTEN = 0.2, 5.0
 """Factors on the damping after a step that helped, and after one that did not [-]."""
 
-Residual = Callable[[FloatArray], FloatArray]
+_Residual = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +40,7 @@ class Found:
 
 
 def search(
-    residual: Residual, start: FloatArray, lower: FloatArray, upper: FloatArray
+    residual: _Residual, start: FloatArray, lower: FloatArray, upper: FloatArray
 ) -> Found:
     """Find the parameters within bounds with the least sum of squares.
 
@@ -59,11 +59,11 @@ def search(
     """
     here = np.clip(start, lower, upper)
     gap = residual(here)
-    squares, damping = float(gap @ gap), FIRST_DAMPING
-    for _ in range(MOST_STEPS):
+    squares, damping = float(gap @ gap), _FIRST_DAMPING
+    for _ in range(_MOST_STEPS):
         jacobian = _jacobian(residual, here, gap, upper)
         best = squares
-        for _ in range(MOST_TRIALS):
+        for _ in range(_MOST_TRIALS):
             there = np.clip(
                 here + _step(jacobian, gap, damping, here, lower, upper), lower, upper
             )
@@ -71,21 +71,21 @@ def search(
             cost = float(trial @ trial)
             if cost < squares:
                 here, gap, squares = there, trial, cost
-                damping *= EASE
+                damping *= _EASE
                 break
-            damping *= TIGHTEN
-        if best - squares <= SETTLED * best:
+            damping *= _TIGHTEN
+        if best - squares <= _SETTLED * best:
             break
     return Found(here, _jacobian(residual, here, gap, upper), squares)
 
 
 def _jacobian(
-    residual: Residual, at: FloatArray, gap: FloatArray, upper: FloatArray
+    residual: _Residual, at: FloatArray, gap: FloatArray, upper: FloatArray
 ) -> FloatArray:
     """Return the derivatives of the residuals by differences inside the bounds."""
     columns = np.empty((gap.size, at.size))
     for i in range(at.size):
-        step = DIFFERENCE * max(1.0, abs(float(at[i])))
+        step = _DIFFERENCE * max(1.0, abs(float(at[i])))
         step = -step if at[i] + step > upper[i] else step
         moved = at.copy()
         moved[i] += step

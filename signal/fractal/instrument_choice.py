@@ -19,25 +19,25 @@ from jointbench.signal.fractal.self_affine import InstrumentModel, tip_radius
 
 ACCEPT_PROBABILITY = 0.01
 """A model is accepted if a true one would fit worse at least this often [-]."""
-HOPELESS_PROBABILITY = 1e-6
+_HOPELESS_PROBABILITY = 1e-6
 """Where the richest model fits with a smaller chance, simpler ones need no trial."""
-ONE_MORE = 7.88
+_ONE_MORE = 7.88
 """Gain of chi2 by one more parameter that chance brings in half a percent [-], so that
 all tests together take a larger model by chance in 1 % at the most."""
-TWO_MORE = 11.4
+_TWO_MORE = 11.4
 """The same for two more parameters, in a third of a percent [-]."""
-CAST_DOUBT = {1: 1.5, 2: 5.0}
+_CAST_DOUBT = {1: 1.5, 2: 5.0}
 """Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
 limits cover more of the noise that cannot be proven, and widen more clean profiles."""
-EVEN = {1: 8.0, 2: 14.0}
+_EVEN = {1: 8.0, 2: 14.0}
 """Gain by so many more parameters at which both models weigh alike in D [-]. With
 Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
-BLUNTEST_TIP = 100e-6
+_BLUNTEST_TIP = 100e-6
 """Radius beyond which no stylus is [m]: twice that of the bluntest in use, as it is
 known within a factor of two only."""
-NOISE_START = 0.02
+_NOISE_START = 0.02
 """Noise from which a tip is looked for, over the smallest value of S [-]."""
-SETTLED_WEIGHT = 0.999
+_SETTLED_WEIGHT = 0.999
 """Weight of the larger model in D from which the smaller has no say [-]."""
 
 
@@ -70,8 +70,8 @@ def choose_instrument(
     noisy = fit_model(problem, Model(kinds.NOISE, rolls_off), own)
     both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
     gains = (plain.chi2 - noisy.chi2, plain.chi2 - both.chi2)
-    if gains[0] < ONE_MORE and gains[1] < TWO_MORE:
-        doubt = _doubt(plain, noisy if gains[0] > CAST_DOUBT[1] else both)
+    if gains[0] < _ONE_MORE and gains[1] < _TWO_MORE:
+        doubt = _doubt(plain, noisy if gains[0] > _CAST_DOUBT[1] else both)
         return by_own_weights(problem, plain), doubt
     best, doubt = _without_tip(problem, plain, noisy, both)
     strict = problem.tolerance == 0 and problem.axes == 1 and not rolls_off
@@ -86,7 +86,7 @@ def _without_tip(
     """Take the smallest of the models with a Gaussian blur, a limit or noise."""
     kinds, rolls_off = InstrumentModel, plain.model.rolls_off
     richest = settle(problem, both.model, both.seen)
-    if richest.probability < HOPELESS_PROBABILITY:
+    if richest.probability < _HOPELESS_PROBABILITY:
         return richest, no_doubt()
     single = [
         settle(problem, Model(kind, rolls_off), start.seen)
@@ -100,7 +100,7 @@ def _without_tip(
     for fit in single:
         small, rival = _with_rival(problem, fit, richest)
         more = richest.parameters.size - fit.parameters.size
-        stands = small.chi2 - rival.chi2 < (ONE_MORE if more == 1 else TWO_MORE)
+        stands = small.chi2 - rival.chi2 < (_ONE_MORE if more == 1 else _TWO_MORE)
         better = fit.likelihood_criterion < best.likelihood_criterion
         accepted = fit.probability >= ACCEPT_PROBABILITY
         if stands and accepted and (better or best is richest):
@@ -122,7 +122,7 @@ def _or_tip(
     path has, and be one that a stylus can have.
     """
     kinds = InstrumentModel
-    begin = [*blurred.parameters[:2], NOISE_START, blurred.seen.psf_width]
+    begin = [*blurred.parameters[:2], _NOISE_START, blurred.seen.psf_width]
     own = weigh(problem, blurred.seen)
     glance = fit_model(
         problem, Model(kinds.STYLUS_AND_NOISE), own, start=np.array(begin)
@@ -134,13 +134,13 @@ def _or_tip(
     # Where the Gaussian is far off its weights say nothing of how well a tip fits.
     own = weigh(problem, glance.seen)
     glance = fit_model(problem, glance.model, own, start=glance.parameters)
-    if glance.probability < HOPELESS_PROBABILITY:
+    if glance.probability < _HOPELESS_PROBABILITY:
         return blurred, doubt
     large = settle(problem, glance.model, glance.seen)
     fit = settle(problem, Model(kinds.STYLUS), glance.seen)
     small, rival = _with_rival(problem, fit, large)
     found = (large, no_doubt())
-    if small.chi2 - rival.chi2 < ONE_MORE and fit.probability >= ACCEPT_PROBABILITY:
+    if small.chi2 - rival.chi2 < _ONE_MORE and fit.probability >= ACCEPT_PROBABILITY:
         found = (fit, _doubt(small, rival))
     tip = found[0]
     holds = tip.probability >= ACCEPT_PROBABILITY and _sharp_enough(problem, tip)
@@ -150,7 +150,7 @@ def _or_tip(
 def _sharp_enough(problem: FractalProblem, fit: GlsFit) -> bool:
     """Return whether a stylus could have made the blur that was found."""
     spacing = problem.estimate.spacing
-    return tip_radius(fit.seen) * spacing**2 < BLUNTEST_TIP
+    return tip_radius(fit.seen) * spacing**2 < _BLUNTEST_TIP
 
 
 def _with_rival(
@@ -182,7 +182,7 @@ def _doubt(small: GlsFit, large: GlsFit) -> Doubt:
     """
     more = large.parameters.size - small.parameters.size
     gain = small.chi2 - large.chi2
-    if gain < CAST_DOUBT[more]:
+    if gain < _CAST_DOUBT[more]:
         return no_doubt()
     weight = _weight(small, large)
     apart = large.parameters[:2] - small.parameters[:2]
@@ -205,7 +205,7 @@ def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: Doubt) -> Doub
     """
     weight = _weight(plain, large)
     # Where `plain` is far off its weights tell nothing of the larger model either.
-    if weight > SETTLED_WEIGHT or large.chi2 >= plain.chi2:
+    if weight > _SETTLED_WEIGHT or large.chi2 >= plain.chi2:
         return doubt
     back = (1 - weight) * (plain.parameters[:2] - best.parameters[:2])
     return Doubt(doubt.shift + back, doubt.covariance + np.outer(back, back))
@@ -214,5 +214,5 @@ def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: Doubt) -> Doub
 def _weight(small: GlsFit, large: GlsFit) -> float:
     """Return the weight of the larger of two models with the same weights of lags."""
     more = large.parameters.size - small.parameters.size
-    excess = small.chi2 - large.chi2 - EVEN[more]
+    excess = small.chi2 - large.chi2 - _EVEN[more]
     return float(1 / (1 + np.exp(-np.clip(excess, -100.0, 100.0) / 2)))

@@ -17,27 +17,27 @@ from jointbench.signal.fractal.bounded_search import Found, search
 from jointbench.signal.fractal.fit_problem import FractalProblem
 from jointbench.signal.fractal.self_affine import InstrumentModel, SeenSurface
 
-EXPONENT_RANGE = (0.02, 1.98)
+_EXPONENT_RANGE = (0.02, 1.98)
 """Range of s = 4 - 2D the search may enter [-]."""
-NOISE_STARTS = (0.02, 0.6)
+_NOISE_STARTS = (0.02, 0.6)
 """Noise from which the search starts, over the smallest value of S [-]."""
-PSF_STARTS = (0.3, 1.5, 6.0)
+_PSF_STARTS = (0.3, 1.5, 6.0)
 """Point spreads from which the search starts [samples]."""
-NARROWEST_PSF = 1e-2
+_NARROWEST_PSF = 1e-2
 """Point spread below which nothing is blurred [samples]."""
-WIDEST_PSF = 30.0
+_WIDEST_PSF = 30.0
 """Point spread beyond which no instrument would be sampled so finely [samples]."""
-WIDEST_PSF_SHARE = 0.25
+_WIDEST_PSF_SHARE = 0.25
 """The same as a share of the longest lag: beyond, nothing is left [-]."""
-CORNER_STARTS = (0.03, 0.5)
+_CORNER_STARTS = (0.03, 0.5)
 """Corners from which the search starts, over the longest lag [-]."""
-CORNER_RANGE = (0.5, 10.0)
+_CORNER_RANGE = (0.5, 10.0)
 """Corners searched, from so many samples to so many longest lags [-]."""
-JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
+_JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
 """Variance added on the diagonal, as a share of it [-]; the first that suffices."""
-SMALLEST_INFORMATION = 1e-6
+_SMALLEST_INFORMATION = 1e-6
 """Singular value of the scaled Jacobian taken for smaller ones [-]."""
-RENEWALS = 2
+_RENEWALS = 2
 """How often the covariance is renewed; it settles at once [-]."""
 
 
@@ -189,7 +189,7 @@ def settle(problem: FractalProblem, model: Model, at: SeenSurface) -> GlsFit:
         another surface where the model is far off and nothing settles.
     """
     result = fit_model(problem, model, weigh(problem, at))
-    for _ in range(RENEWALS):
+    for _ in range(_RENEWALS):
         weights = weigh(problem, result.seen)
         result = fit_model(problem, model, weights, start=result.parameters)
     return by_own_weights(problem, result)
@@ -210,7 +210,7 @@ def lower_root(covariance: FloatArray) -> FloatArray:
     sums have; the added variance keeps their last digits out of the fit.
     """
     diagonal = np.diag(np.diag(covariance))
-    for jitter in JITTERS:
+    for jitter in _JITTERS:
         try:
             return np.asarray(cholesky(covariance + jitter * diagonal, lower=True))
         except LinAlgError:
@@ -250,7 +250,7 @@ def _inverse(jacobian: FloatArray) -> FloatArray:
     size = np.linalg.norm(jacobian, axis=0)
     scale = np.where(size > 0, size, 1.0)
     _, values, directions = np.linalg.svd(jacobian / scale, full_matrices=False)
-    spread = directions.T / np.maximum(values, SMALLEST_INFORMATION)
+    spread = directions.T / np.maximum(values, _SMALLEST_INFORMATION)
     covariance: FloatArray = spread @ spread.T / np.outer(scale, scale)
     return covariance
 
@@ -277,20 +277,20 @@ def _unpack(
 
 def widest_psf(problem: FractalProblem) -> float:
     """Return the widest point spread of the search [samples]."""
-    return max(1.0, min(WIDEST_PSF, WIDEST_PSF_SHARE * float(problem.lag[-1])))
+    return max(1.0, min(_WIDEST_PSF, _WIDEST_PSF_SHARE * float(problem.lag[-1])))
 
 
 def _bounds(problem: FractalProblem, model: Model) -> tuple[FloatArray, FloatArray]:
     """Return the lower and upper bounds of the parameters."""
     values = np.log(problem.estimate.value)
-    bounds = [EXPONENT_RANGE, (float(values.min()) - 20, float(values.max()) + 20)]
+    bounds = [_EXPONENT_RANGE, (float(values.min()) - 20, float(values.max()) + 20)]
     if model.instrument.has_noise:
         bounds.append((0.0, 2.0))
     if model.instrument.has_psf:
-        bounds.append((NARROWEST_PSF, widest_psf(problem)))
+        bounds.append((_NARROWEST_PSF, widest_psf(problem)))
     if model.rolls_off:
-        longest = CORNER_RANGE[1] * float(problem.lag[-1])
-        bounds.append((float(np.log(CORNER_RANGE[0])), float(np.log(longest))))
+        longest = _CORNER_RANGE[1] * float(problem.lag[-1])
+        bounds.append((float(np.log(_CORNER_RANGE[0])), float(np.log(longest))))
     lower, upper = np.array(bounds).T
     return lower, upper
 
@@ -299,12 +299,12 @@ def _starts(problem: FractalProblem, model: Model) -> list[FloatArray]:
     """Return the points from which a search starts."""
     line = problem.straight()
     base = [line.exponent, np.log(line.surface(np.array(problem.pivot)))]
-    noises = [[n] for n in NOISE_STARTS] if model.instrument.has_noise else [[]]
-    widths = [[w] for w in PSF_STARTS] if model.instrument.has_psf else [[]]
+    noises = [[n] for n in _NOISE_STARTS] if model.instrument.has_noise else [[]]
+    widths = [[w] for w in _PSF_STARTS] if model.instrument.has_psf else [[]]
     if not model.rolls_off:
         return [np.array([*base, *rest]) for rest in _crossed(noises, widths)]
     starts = []
-    for corner in np.array(CORNER_STARTS) * problem.lag[-1]:
+    for corner in np.array(_CORNER_STARTS) * problem.lag[-1]:
         below = problem.straight(up_to=float(corner))
         level = np.log(below.surface(np.array(problem.pivot)))
         starts += [

@@ -23,18 +23,18 @@ from jointbench.signal.fractal.least_squares import (
 from jointbench.signal.fractal.long_lags import long_lag_probability
 from jointbench.signal.fractal.self_affine import rolled_off
 
-ACCEPT_LONG_PROBABILITY = 0.002
+_ACCEPT_LONG_PROBABILITY = 0.002
 """The same of values at long lags by themselves [-]."""
-DECADE = 10.0
+_DECADE = 10.0
 """A power law over less than this ratio of lags is no power law [-]."""
-CLEAR_CORNER = 9.0
+_CLEAR_CORNER = 9.0
 """Gain of the likelihood criterion that makes a corner of the surface clear [-]; one
 clean profile in 60 has it by chance."""
-RULE_FACTOR = 2.0
+_RULE_FACTOR = 2.0
 """The surface rules S where the instrument changes it by less than this factor [-]."""
-CORNER_SEEN = 0.5
+_CORNER_SEEN = 0.5
 """A corner is seen where it leaves less of S than this at the longest lag [-]."""
-CORNER_FACTOR = 0.8
+_CORNER_FACTOR = 0.8
 """Its power law ends where a corner leaves less of S than this share [-]."""
 
 
@@ -73,7 +73,7 @@ class Choice:
         """Whether the model describes the values within their scatter."""
         return (
             self.fit.probability >= ACCEPT_PROBABILITY
-            and self.long_probability >= ACCEPT_LONG_PROBABILITY
+            and self.long_probability >= _ACCEPT_LONG_PROBABILITY
         )
 
     @property
@@ -85,7 +85,7 @@ class Choice:
         seen, longest = self.fit.seen, self.fit.lag[-1:]
         ceiling = seen.amplitude * seen.corner**seen.exponent
         power = seen.surface(longest)
-        return bool(rolled_off(power, ceiling)[0] < CORNER_SEEN * power[0])
+        return bool(rolled_off(power, ceiling)[0] < _CORNER_SEEN * power[0])
 
     @property
     def band(self) -> tuple[float, float] | None:
@@ -93,10 +93,10 @@ class Choice:
         seen, lag = self.fit.seen, self.fit.lag
         power = seen.surface(lag)
         ratio = replace(seen, corner=np.inf).seen(lag) / power
-        rules = (ratio > 1 / RULE_FACTOR) & (ratio < RULE_FACTOR)
+        rules = (ratio > 1 / _RULE_FACTOR) & (ratio < _RULE_FACTOR)
         if self.fit.model.rolls_off:
             ceiling = seen.amplitude * seen.corner**seen.exponent
-            rules &= rolled_off(power, ceiling) > CORNER_FACTOR * power
+            rules &= rolled_off(power, ceiling) > _CORNER_FACTOR * power
         return _longest_run(lag, [bool(rule) for rule in rules])
 
     def instrument_words(self) -> str:
@@ -115,7 +115,7 @@ class Choice:
 
 def spans_decade(band: tuple[float, float] | None) -> bool:
     """Return whether a band of lags spans a decade."""
-    return band is not None and band[1] >= DECADE * band[0] * (1 - 1e-9)
+    return band is not None and band[1] >= _DECADE * band[0] * (1 - 1e-9)
 
 
 def _longest_run(lag: FloatArray, rules: list[bool]) -> tuple[float, float] | None:
@@ -157,10 +157,10 @@ def choose(problem: FractalProblem) -> Choice:
     # A plateau at long lags lies in the short tail of a skewed spread: only weights of
     # its own tell it, so likelihoods are compared, determinants included.
     glance = settle(problem, nearest, endless.fit.seen)
-    if endless.accepted and criterion - glance.likelihood_criterion < CLEAR_CORNER:
+    if endless.accepted and criterion - glance.likelihood_criterion < _CLEAR_CORNER:
         return endless
     cornered = _chosen(problem, *choose_instrument(problem, rolls_off=True))
-    clear = criterion - cornered.fit.likelihood_criterion > CLEAR_CORNER
+    clear = criterion - cornered.fit.likelihood_criterion > _CLEAR_CORNER
     better = clear or (cornered.accepted and not endless.accepted)
     return cornered if better and cornered.ends_early else endless
 

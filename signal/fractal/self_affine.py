@@ -121,10 +121,10 @@ class SeenSurface:
         if np.isfinite(self.corner):
             shape = rolled_off(shape, self.corner**self.exponent)
         seen: FloatArray = self.amplitude * shape + np.where(lag > 0, 2 * self.noise, 0)
-        return rounded(seen, self.quantum) if self.quantum > 0 else seen
+        return _rounded(seen, self.quantum) if self.quantum > 0 else seen
 
 
-def rounded(value: FloatArray, quantum: float) -> FloatArray:
+def _rounded(value: FloatArray, quantum: float) -> FloatArray:
     """Return the structure function of heights that are read in steps.
 
     A Gaussian difference d of heights whose place between two steps is random turns

@@ -10,23 +10,23 @@ from jointbench.signal.fractal.fit_problem import FractalProblem
 from jointbench.signal.fractal.self_affine import SeenSurface, tip_fall
 from jointbench.signal.surface.structure_constant import spectral_integral
 
-CLEAR_GAIN = 14.0
+_CLEAR_GAIN = 14.0
 """Gain of chi2 by a bend that is clear, the best of all places taken [-]; one clean
 profile in 100 to 200 has it by chance."""
-SMALLEST_BEND = 0.25
+_SMALLEST_BEND = 0.25
 """Change of slope that makes another law of it [-]: a change of D by an eighth."""
-LONGEST_SHARE = 0.25
+_LONGEST_SHARE = 0.25
 """Longest lag of a bend over the longest of the fit [-]: beyond, a handful of ordinates
 would make the other law."""
-KNOTS = 24
+_KNOTS = 24
 """Places tried [-]."""
-SHARPEST_BLUR = 1.0
+_SHARPEST_BLUR = 1.0
 """Frequency times point spread beyond which the surface is not seen [rad]."""
-HIGHEST = 0.5 * np.pi
+_HIGHEST = 0.5 * np.pi
 """Highest frequency of the test [rad/sample]: instruments rule beyond."""
-ALIASES = 20
+_ALIASES = 20
 """Images of the spectrum on each side that sampling folds in [-]."""
-FEWEST_BINS = 12
+_FEWEST_BINS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,36 +60,36 @@ def find_kink(problem: FractalProblem, seen: SeenSurface) -> Kink | None:
     spectrum = problem.estimate.spectrum
     if spectrum is None or problem.lag.size == 0:
         return None
-    keep = (spectrum.omega < HIGHEST) & (
-        spectrum.omega * seen.psf_width < SHARPEST_BLUR
+    keep = (spectrum.omega < _HIGHEST) & (
+        spectrum.omega * seen.psf_width < _SHARPEST_BLUR
     )
-    if np.count_nonzero(keep) < FEWEST_BINS:
+    if np.count_nonzero(keep) < _FEWEST_BINS:
         return None
     omega, count = spectrum.omega[keep], spectrum.count[keep]
-    share = spectrum.power[keep] / expected_spectrum(omega, seen)
+    share = spectrum.power[keep] / _expected_spectrum(omega, seen)
     size = np.sqrt(count)
     gap = size * (3 * (np.cbrt(share) - 1) + 1 / (3 * count))
     line = np.stack([size, size * np.log(omega)], axis=1)
-    best, found = CLEAR_GAIN, None
+    best, found = _CLEAR_GAIN, None
     straight = _left(line, gap)[0]
     for knot in _knots(problem, omega):
         hinge = size * np.maximum(0.0, np.log(omega / knot))
         left, bend = _left(np.column_stack([line, hinge]), gap)
-        if straight - left > best and abs(bend[2]) > SMALLEST_BEND:
+        if straight - left > best and abs(bend[2]) > _SMALLEST_BEND:
             best = straight - left
             below = seen.exponent - float(bend[1] + bend[2])
             found = Kink(1 / knot, below, seen.exponent - float(bend[1]))
     return found
 
 
-def expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
+def _expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
     """Return the spectrum of height differences of a surface as it is seen.
 
     Args:
         omega: [rad/sample], between 0 and pi.
         seen: surface without corner, and instrument.
     """
-    images = 0 if seen.band_limited else ALIASES
+    images = 0 if seen.band_limited else _ALIASES
     waves = omega[:, None] + 2 * np.pi * np.arange(-images, images + 1)
     power = np.abs(waves) ** (-1 - seen.exponent)
     if seen.psf_width > 0 and seen.traced:
@@ -110,8 +110,8 @@ def expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
 
 def _knots(problem: FractalProblem, omega: FloatArray) -> FloatArray:
     """Return the frequencies at which a bend is looked for, inside the fit's lags."""
-    low = max(1 / (LONGEST_SHARE * float(problem.lag[-1])), float(omega[3]))
-    return np.geomspace(low, float(omega[-4]), KNOTS)
+    low = max(1 / (_LONGEST_SHARE * float(problem.lag[-1])), float(omega[3]))
+    return np.geomspace(low, float(omega[-4]), _KNOTS)
 
 
 def _left(design: FloatArray, gap: FloatArray) -> tuple[float, FloatArray]:

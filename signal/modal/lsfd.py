@@ -105,9 +105,9 @@ def residual_terms(lines: FrfLines, fit: LinearFit) -> ResidualTerms:
     scale = np.abs(s[s.size // 2])
     powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
     # The fit has these columns made orthogonal to each other: taken apart again here.
-    columns = stacked(powers * (s**lines.derivatives)[:, None])
+    columns = _stacked(powers * (s**lines.derivatives)[:, None])
     size = np.linalg.norm(columns, axis=0)
-    terms = np.linalg.lstsq(columns / size, stacked(parts.T), rcond=None)[0].T / size
+    terms = np.linalg.lstsq(columns / size, _stacked(parts.T), rcond=None)[0].T / size
     lower = terms[:, _RESIDUAL_POWERS.index(-2)] * scale**2
     return ResidualTerms(lower, terms[:, _RESIDUAL_POWERS.index(0)])
 
@@ -163,8 +163,8 @@ def _residual_terms(s: ComplexArray, power: ComplexArray) -> ComplexArray:
     """
     scale = np.abs(s[s.size // 2])
     terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
-    rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
-    return unstacked(np.linalg.qr(rows)[0])
+    rows = _stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
+    return _unstacked(np.linalg.qr(rows)[0])
 
 
 def modal_size(pole: ComplexArray) -> int:
@@ -172,13 +172,13 @@ def modal_size(pole: ComplexArray) -> int:
     return 2 * pole.size + len(_RESIDUAL_POWERS)
 
 
-def stacked(values: ComplexArray) -> FloatArray:
+def _stacked(values: ComplexArray) -> FloatArray:
     """Return real and imaginary parts one below the other, as real rows."""
     return np.concatenate((values.real, values.imag))
 
 
-def unstacked(rows: FloatArray) -> ComplexArray:
-    """Undo `stacked`."""
+def _unstacked(rows: FloatArray) -> ComplexArray:
+    """Undo `_stacked`."""
     half = rows.shape[0] // 2
     return np.asarray(rows[:half] + 1j * rows[half:])
 
@@ -237,7 +237,7 @@ def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
         Shape (n_frf, n, n).
     """
     if weight.shape[0] <= _FEW_FRFS:
-        rows = stacked(columns)
+        rows = _stacked(columns)
         scaled = (rows * np.sqrt(np.tile(w, 2))[:, None] for w in weight)
         return np.array([part.T @ part for part in scaled])
     size = columns.shape[1]

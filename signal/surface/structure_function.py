@@ -24,15 +24,15 @@ from jointbench.signal.surface.levelling import SurfaceTooSmall, level
 from jointbench.signal.surface.quantisation_step import height_step
 from jointbench.signal.surface.texture_direction import stretch_across
 
-LAG_COUNT = 55
+_LAG_COUNT = 55
 """Logarithmic lags asked for by default; equal integers fall together [-]."""
-LARGEST_LAG_SHARE = 1 / 3
+_LARGEST_LAG_SHARE = 1 / 3
 """Largest default lag as a share of the length of a profile [-]."""
-MOST_BLOCKS = 16
+_MOST_BLOCKS = 16
 """Strips of neighbouring rows whose scatter checks the stated uncertainty [-]."""
 
 Direction = Literal["x", "y"]
-Removal = Literal["line", "mean"]
+_Removal = Literal["line", "mean"]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,7 +145,7 @@ def structure_function(
     *,
     lags: Sequence[int] | None = None,
     direction: Direction = "x",
-    remove: Removal = "line",
+    remove: _Removal = "line",
 ) -> StructureFunction:
     """Estimate the structure function of a surface by direct sums.
 
@@ -303,8 +303,8 @@ def _as_rows(
 def _lags(points: int, lags: Sequence[int] | None) -> IntArray:
     """Return the lags to take [samples]."""
     if lags is None:
-        longest = max(1, min(points - 1, int(points * LARGEST_LAG_SHARE)))
-        even = np.geomspace(1, longest, LAG_COUNT)
+        longest = max(1, min(points - 1, int(points * _LARGEST_LAG_SHARE)))
+        even = np.geomspace(1, longest, _LAG_COUNT)
         return np.unique(np.rint(even).astype(np.int64))
     wanted = np.unique(np.asarray(lags, dtype=np.int64))
     if wanted.size == 0 or wanted[0] < 1 or wanted[-1] >= points:
@@ -337,9 +337,9 @@ def _row_sums(
 
 
 def _blocks(sums: FloatArray, pairs: FloatArray) -> FloatArray:
-    """Return S of up to `MOST_BLOCKS` strips of rows; none if a strip lacks pairs."""
-    count = min(MOST_BLOCKS, sums.shape[0] // 4)
-    if count < MOST_BLOCKS // 2:
+    """Return S of up to `_MOST_BLOCKS` strips of rows; none if a strip lacks pairs."""
+    count = min(_MOST_BLOCKS, sums.shape[0] // 4)
+    if count < _MOST_BLOCKS // 2:
         return np.empty((0, sums.shape[1]))
     starts = np.linspace(0, sums.shape[0], count, endpoint=False).astype(np.int64)
     total = np.add.reduceat(pairs, starts, axis=0)

@@ -21,17 +21,17 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.signal.surface.levelling import level
 
-LOST_DIGITS = 1e-9
+_LOST_DIGITS = 1e-9
 """Relative error of S by cancellation beyond which a lag is summed directly [-]."""
-MACHINE = 8 * float(np.finfo(np.float64).eps)
+_MACHINE = 8 * float(np.finfo(np.float64).eps)
 """Relative error of a transform, over the root of the sum of squares [-]."""
-REACH = 0.1
+_REACH = 0.1
 """Longest lag of a map over its sides, by default [-]."""
-DIRECTIONS = ((0, 1), (1, 1), (1, 0), (1, -1))
+_DIRECTIONS = ((0, 1), (1, 1), (1, 0), (1, -1))
 """Steps along rows and columns of the directions that are compared [-]."""
-COMPARED_LAGS = 12
+_COMPARED_LAGS = 12
 """Lags at which directions are compared [-]."""
-CLEAR_LAY = 0.25
+_CLEAR_LAY = 0.25
 """Difference of ln S between directions that makes a lay [-]."""
 
 
@@ -57,7 +57,7 @@ class StructureMap:
         freeze(self, "value")
 
 
-def structure_map(surface: Surface, *, reach: float = REACH) -> StructureMap:
+def structure_map(surface: Surface, *, reach: float = _REACH) -> StructureMap:
     """Return S at all lags up to a share of the sides.
 
     Args:
@@ -84,7 +84,7 @@ def structure_map(surface: Surface, *, reach: float = REACH) -> StructureMap:
     ahead = _correlated(known, square, shape, lags)
     behind = _correlated(square, known, shape, lags)
     sums = ahead + behind - 2 * cross
-    lost = MACHINE * float(square.sum()) > LOST_DIGITS * np.maximum(sums, 0)
+    lost = _MACHINE * float(square.sum()) > _LOST_DIGITS * np.maximum(sums, 0)
     for place in np.argwhere(lost & (pairs > 0)):
         sums[tuple(place)] = _direct(heights, known, place, lags)
     value = np.where(pairs > 0, sums / np.maximum(pairs, 1), np.nan)
@@ -151,7 +151,7 @@ class Isotropy:
     reason: str
 
 
-def isotropy(areal: Areal, *, reach: float = REACH) -> Isotropy:
+def isotropy(areal: Areal, *, reach: float = _REACH) -> Isotropy:
     """Compare S of a map along its rows, its columns and between them.
 
     Args:
@@ -169,7 +169,7 @@ def isotropy(areal: Areal, *, reach: float = REACH) -> Isotropy:
     found = structure_map(areal, reach=reach)
     middle = (found.value.shape[1] - 1) // 2
     curves = []
-    for down, across in DIRECTIONS:
+    for down, across in _DIRECTIONS:
         ends = [found.value.shape[0] - 1] * bool(down) + [middle] * bool(across)
         most = min(ends)
         steps = np.arange(1, most + 1)
@@ -184,7 +184,7 @@ def isotropy(areal: Areal, *, reach: float = REACH) -> Isotropy:
             f"map {areal.name!r} of {rows} x {columns} points is too small or has too "
             "many gaps to compare directions; measure a larger map"
         )
-    lags = np.geomspace(low, high, COMPARED_LAGS)
+    lags = np.geomspace(low, high, _COMPARED_LAGS)
     logs = np.array(
         [
             np.interp(np.log(lags), np.log(lag), np.log(np.maximum(value, 1e-300)))
@@ -193,9 +193,9 @@ def isotropy(areal: Areal, *, reach: float = REACH) -> Isotropy:
     )
     gap = np.mean(logs - logs.mean(axis=0), axis=1)
     angle = np.array(
-        [np.arctan2(d * found.spacing[0], a * found.spacing[1]) for d, a in DIRECTIONS]
+        [np.arctan2(d * found.spacing[0], a * found.spacing[1]) for d, a in _DIRECTIONS]
     )
-    alike = bool(np.ptp(gap) < CLEAR_LAY)
+    alike = bool(np.ptp(gap) < _CLEAR_LAY)
     top = int(np.argmax(gap))
     reason = (
         f"S is largest at {np.degrees(angle[top]):.0f} degrees from the rows, "

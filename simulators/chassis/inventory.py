@@ -8,13 +8,13 @@ from jointbench.simulators.chassis.protocol import DAQmxErrors, Refusal
 from jointbench.simulators.plates.plates_bench import PluggedSensor
 
 INPUTS_PER_MODULE = 4
-PRODUCT = "NI 9234"
+_PRODUCT = "NI 9234"
 DRIVER_VERSION = {0x1272: 24, 0x1923: 5, 0x2F22: 0}
 CURRENTS = (0.002,)  # [A], of an NI 9234
-NO_SUCH_CHANNEL = DAQmxErrors.PHYSICAL_CHAN_DOES_NOT_EXIST
-NO_SUCH_DEVICE = DAQmxErrors.INVALID_DEVICE_ID
+_NO_SUCH_CHANNEL = DAQmxErrors.PHYSICAL_CHAN_DOES_NOT_EXIST
+_NO_SUCH_DEVICE = DAQmxErrors.INVALID_DEVICE_ID
 BAD_VALUE = DAQmxErrors.INVALID_ATTRIBUTE_VALUE
-NO_TEDS = DAQmxErrors.TEDS_SENSOR_NOT_DETECTED
+_NO_TEDS = DAQmxErrors.TEDS_SENSOR_NOT_DETECTED
 UNKNOWN_ATTRIBUTE = DAQmxErrors.SPECIFIED_ATTR_NOT_VALID
 _PRODUCT_TYPE, _SERIAL, _CHANNELS = 0x631, 0x632, 0x231E
 _ANALOG_TRIGGER, _SIMULATED = 0x2984, 0x22CA
@@ -77,7 +77,7 @@ def input_number(inventory: Inventory, physical: str) -> int:
         if number not in inventory.missing:
             return number
     raise Refusal(
-        NO_SUCH_CHANNEL,
+        _NO_SUCH_CHANNEL,
         "Physical channel specified does not exist on this device.\n"
         f"Physical Channel: {physical}",
     )
@@ -103,7 +103,7 @@ def device_text(inventory: Inventory, device: str, attribute: int) -> str:
     """Return a text about a device."""
     place = _place(inventory, device)
     if attribute == _PRODUCT_TYPE:
-        return PRODUCT if place else "cDAQ-9178"
+        return _PRODUCT if place else "cDAQ-9178"
     if attribute == _CHANNELS:
         inputs = range(INPUTS_PER_MODULE if place else 0)
         return ", ".join(f"{device}/ai{n}" for n in inputs)
@@ -168,7 +168,7 @@ def teds_number(inventory: Inventory, physical: str, attribute: int) -> int:
     if inventory.teds_error:
         raise Refusal(inventory.teds_error, f"No TEDS to read.\nChannel: {physical}")
     if number >= len(inventory.sensors):
-        raise Refusal(NO_TEDS, f"No TEDS sensor was detected.\nChannel: {physical}")
+        raise Refusal(_NO_TEDS, f"No TEDS sensor was detected.\nChannel: {physical}")
     sensor = inventory.sensors[number]
     serial = sensor.serial + (90_000 if number in inventory.swapped_teds else 0)
     numbers = {
@@ -186,7 +186,7 @@ def _place(inventory: Inventory, device: str) -> int:
     """Return 0 for the chassis, n for its n-th module."""
     names = device_names(inventory)
     if device not in names:
-        raise Refusal(NO_SUCH_DEVICE, f"Device identifier is invalid: {device}")
+        raise Refusal(_NO_SUCH_DEVICE, f"Device identifier is invalid: {device}")
     return names.index(device)
 
 

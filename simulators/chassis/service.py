@@ -35,23 +35,23 @@ from jointbench.simulators.chassis.protocol import (
 )
 from jointbench.simulators.chassis.task import SimulatedTask, TaskChannel, Trigger
 
-INVALID_TASK = DAQmxErrors.INVALID_TASK
-RISING = 10280
-STANDARD_GRAVITY = 9.80665
+_INVALID_TASK = DAQmxErrors.INVALID_TASK
+_RISING = 10280
+_STANDARD_GRAVITY = 9.80665
 _CHANNEL_TYPE, _ANALOG_INPUT = 0x187F, 10100
 _MEASUREMENT, _VOLTAGE, _AC = 0x0695, 10322, 10045
-POUND_FORCE = 4.4482216152605
-Answer = TypeVar("Answer")
+_POUND_FORCE = 4.4482216152605
+_Answer = TypeVar("_Answer")
 NewTask = Callable[[str], SimulatedTask]
 
 
 def answered(
-    method: Callable[[Any, Any, Any], Answer],
-) -> Callable[[Any, Any, Any], Answer]:
+    method: Callable[[Any, Any, Any], _Answer],
+) -> Callable[[Any, Any, Any], _Answer]:
     """Turn a `Refusal` raised in a method into the error of the protocol."""
 
     @wraps(method)
-    def call(self: Any, request: Any, context: grpc.ServicerContext) -> Answer:
+    def call(self: Any, request: Any, context: grpc.ServicerContext) -> _Answer:
         try:
             return method(self, request, context)
         except Refusal as refusal:
@@ -150,7 +150,7 @@ class TaskService(DeviceService):
         found = self.tasks.get(request.task.name)
         if found is None:
             raise Refusal(
-                INVALID_TASK, "SimulatedTask specified is invalid or does not exist."
+                _INVALID_TASK, "SimulatedTask specified is invalid or does not exist."
             )
         return found
 
@@ -187,10 +187,10 @@ class TaskService(DeviceService):
         self._require_current(request)
         per_newton = 1e-3 * request.sensitivity
         if units == ForceIEPESensorSensitivityUnits.MILLIVOLTS_PER_POUND.value:
-            per_newton /= POUND_FORCE
+            per_newton /= _POUND_FORCE
         returned = request.units_raw or request.units
         in_pounds = returned == ForceUnits.POUNDS.value
-        self._add(request, per_newton * (POUND_FORCE if in_pounds else 1.0))
+        self._add(request, per_newton * (_POUND_FORCE if in_pounds else 1.0))
         return Daqmx.CreateAIForceIEPEChanResponse()
 
     @answered
@@ -202,7 +202,7 @@ class TaskService(DeviceService):
         per_g = request.sensitivity * (1.0 if in_volts else 1e-3)
         returned = request.units_raw or request.units
         in_si = returned == AccelUnits.METERS_PER_SECOND_SQUARED.value
-        self._add(request, per_g / (STANDARD_GRAVITY if in_si else 1.0))
+        self._add(request, per_g / (_STANDARD_GRAVITY if in_si else 1.0))
         return Daqmx.CreateAIAccelChanResponse()
 
     @answered
@@ -285,7 +285,7 @@ class TaskService(DeviceService):
             channel=names.index(request.trigger_source),
             level=request.trigger_level,
             before=request.pretrigger_samples,
-            rising=slope == RISING,
+            rising=slope == _RISING,
         )
         return Daqmx.CfgAnlgEdgeRefTrigResponse()
 

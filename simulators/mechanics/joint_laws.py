@@ -107,7 +107,7 @@ def resting_sliders(laws: LawArrays) -> FloatArray:
 
 
 @compiled(error_model="numpy")
-def elastic_force(kind: int, p: Sequence[float], r: float, time: float) -> float:
+def _elastic_force(kind: int, p: Sequence[float], r: float, time: float) -> float:
     """Return the part of a law's force that depends on the elongation r [m] only."""
     if kind == LawKind.ODD_POWER:
         return p[0] * r * float(abs(r) ** (p[1] - 1))
@@ -125,7 +125,9 @@ def elastic_force(kind: int, p: Sequence[float], r: float, time: float) -> float
 
 
 @compiled(error_model="numpy")
-def viscous_force(kind: int, p: Sequence[float], r: float, v: float, w: float) -> float:
+def _viscous_force(
+    kind: int, p: Sequence[float], r: float, v: float, w: float
+) -> float:
     """Return the part that depends on the elongation rate v [m/s] or the state w."""
     if kind == LawKind.COULOMB:
         return p[0] * tanh(v / p[1])
@@ -147,7 +149,7 @@ def law_force(
     kind: int, p: Sequence[float], r: float, v: float, w: float, time: float
 ) -> float:
     """Return the force of a law without sliders [N]."""
-    return elastic_force(kind, p, r, time) + viscous_force(kind, p, r, v, w)
+    return _elastic_force(kind, p, r, time) + _viscous_force(kind, p, r, v, w)
 
 
 @compiled(error_model="numpy")

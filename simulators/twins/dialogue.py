@@ -9,7 +9,7 @@ Answer = Callable[[bytes], tuple[int, bytes] | None]
 """From bytes received to how many of them were used and what is sent back; None while
 the request is not whole."""
 
-ESC, ETX, EOT, ACK, CR = b"\x1b", b"\x03", b"\x04", b"\x06", b"\r"
+_ESC, _ETX, _EOT, _ACK, _CR = b"\x1b", b"\x03", b"\x04", b"\x06", b"\r"
 _PARAMETER = (b"P", b"Q")
 # Share of its torque that a bolt has while the wrench turns, clicks and is let go.
 _WRENCH = (0.0, 0.18, 0.55, 0.83, 1.0, 0.97, 0.31, 0.02)
@@ -35,9 +35,9 @@ class DiaviteTwin:
         size = 4 if takes_parameter else 3
         if len(received) < size:
             return None
-        if received[:1] != ESC or received[size - 1 : size] != ETX:
+        if received[:1] != _ESC or received[size - 1 : size] != _ETX:
             return len(received), b"\x15"
-        return size, ACK + self._payload(received[1:2]) + EOT
+        return size, _ACK + self._payload(received[1:2]) + _EOT
 
     def _payload(self, command: bytes) -> bytes:
         texts = {
@@ -68,10 +68,10 @@ class MitutoyoTwin:
 
     def answer(self, received: bytes) -> tuple[int, bytes] | None:
         """Answer one request: header, sub-field, data, CR."""
-        request, end, _ = received.partition(CR)
+        request, end, _ = received.partition(_CR)
         if not end:
             return None
-        return len(request) + 1, self._reply(request.decode("ascii")) + CR
+        return len(request) + 1, self._reply(request.decode("ascii")) + _CR
 
     def _reply(self, request: str) -> bytes:
         files = -(-len(self.heights) // self.per_file)
@@ -98,7 +98,7 @@ class Mark10Twin:
 
     def answer(self, received: bytes) -> tuple[int, bytes] | None:
         """Answer ``?`` with the reading, anything else with an error."""
-        request, end, _ = received.partition(CR)
+        request, end, _ = received.partition(_CR)
         if not end:
             return None
         reply = self.shown if request == b"?" else "*10"
@@ -122,7 +122,7 @@ class WrenchTwin:
 
     def answer(self, received: bytes) -> tuple[int, bytes] | None:
         """Answer ``?`` with the reading of the moment, which the next one follows."""
-        request, end, _ = received.partition(CR)
+        request, end, _ = received.partition(_CR)
         if not end:
             return None
         shown = f"{self._shown():.3f} Nm" if request == b"?" else "*10"

@@ -36,10 +36,10 @@ from jointbench.station.files.output_paths import write_text
 from jointbench.station.files.spreadsheet_text import escaped
 
 LEDGER_SCHEMA = "jointbench-ledger/1"
-MOST_BYTES = 2**28
-MOST_LINES = 500_000
+_MOST_BYTES = 2**28
+_MOST_LINES = 500_000
 """Each becomes a record of about 500 bytes in memory; a longer ledger is none."""
-CHECK = "check"
+_CHECK = "check"
 """Key of a line's digest: the first 16 characters of the SHA-256 of the rest."""
 
 
@@ -65,7 +65,7 @@ class Ledger:
             UsageError: it cannot be written.
         """
         assert self.file is not None
-        data = (json.dumps(line | {CHECK: _check(line)}) + "\n").encode()
+        data = (json.dumps(line | {_CHECK: _check(line)}) + "\n").encode()
         try:
             whole = self.file.write(data) == len(data)
         except OSError as error:
@@ -135,12 +135,12 @@ def read_ledger(path: Path) -> list[dict[str, Any]]:
     Raises:
         UsageError: the file is no ledger.
     """
-    return [line for line in _lines(path) if is_whole(line)]
+    return [line for line in _lines(path) if _is_whole(line)]
 
 
-def is_whole(line: Mapping[str, Any]) -> bool:
+def _is_whole(line: Mapping[str, Any]) -> bool:
     """Tell whether a line is what its digest says; one without is taken as it is."""
-    return CHECK not in line or line[CHECK] == _check(line)
+    return _CHECK not in line or line[_CHECK] == _check(line)
 
 
 def ledger_seal(path: Path) -> tuple[Seal, int]:
@@ -150,15 +150,15 @@ def ledger_seal(path: Path) -> tuple[Seal, int]:
         UsageError: the file is no ledger.
     """
     lines = _lines(path)
-    rotten = sum(not is_whole(line) for line in lines)
+    rotten = sum(not _is_whole(line) for line in lines)
     if rotten:
         return Seal.ROTTEN, rotten
-    signed = all(CHECK in line for line in lines)
+    signed = all(_CHECK in line for line in lines)
     return (Seal.WHOLE if signed else Seal.UNSIGNED), 0
 
 
 def _check(line: Mapping[str, Any]) -> str:
-    rest = {key: value for key, value in line.items() if key != CHECK}
+    rest = {key: value for key, value in line.items() if key != _CHECK}
     return sha256(json.dumps(rest, sort_keys=True).encode()).hexdigest()[:16]
 
 
@@ -171,11 +171,11 @@ def _lines(path: Path) -> list[dict[str, Any]]:
     if not path.exists():
         return []
     lines = []
-    data = read_bytes(path, limit=MOST_BYTES) if file_size(path) else b""
+    data = read_bytes(path, limit=_MOST_BYTES) if file_size(path) else b""
     brackets = data.count(b"[") + data.count(b"{")
-    if data.count(b"\n") > MOST_LINES or brackets > 10 * MOST_LINES:
+    if data.count(b"\n") > _MOST_LINES or brackets > 10 * _MOST_LINES:
         raise UsageError(
-            f"{named(path)} has more than {MOST_LINES} lines, or more values in them "
+            f"{named(path)} has more than {_MOST_LINES} lines, or more values in them "
             "than a ledger; give --ledger another name"
         )
     for text in data.decode("utf-8", errors="replace").split("\n"):

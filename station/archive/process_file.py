@@ -34,9 +34,9 @@ from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.stage_store import StageStore
 from jointbench.station.results.processed_file import Origin, write_processed
 
-MOST_BYTES = 64 * 2**30
+_MOST_BYTES = 64 * 2**30
 """A larger file is no session; reading it for its digest would take an hour [bytes]."""
-Mark = tuple[int, ...]
+_Mark = tuple[int, ...]
 """What tells that a file was touched: inode, size [bytes], time [ns]; empty: none."""
 
 
@@ -80,8 +80,8 @@ class Traces:
     """
 
     input_sha256: str = ""
-    session: Mark = ()
-    result: Mark = ()
+    session: _Mark = ()
+    result: _Mark = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +131,7 @@ def result_key(digest: str, recipe: str) -> str:
     return sha256(text.encode()).hexdigest()
 
 
-def has_key(path: Path, key: str) -> bool:
+def _has_key(path: Path, key: str) -> bool:
     """Tell whether a result of this very key is there, whole or unsigned.
 
     Raises:
@@ -193,14 +193,14 @@ def _met(task: Task, recipe: Recipe, key: str, traces: Traces, begun: float) -> 
     return replace(outcome, rotten=rotten, traces=own)
 
 
-def _there(task: Task, key: str) -> tuple[Mark, str]:
+def _there(task: Task, key: str) -> tuple[_Mark, str]:
     """Return the mark of a result that is as it should be, and what is wrong with it.
 
     Nothing is wrong with a result of another key, nor where there is none.
     """
     before = mark_of(task.result)
     try:
-        if has_key(task.result, key) and not task.again:
+        if _has_key(task.result, key) and not task.again:
             return before, ""
     except BadData as error:
         return (), str(error)
@@ -208,14 +208,14 @@ def _there(task: Task, key: str) -> tuple[Mark, str]:
 
 
 def _digest(path: Path) -> str:
-    if file_size(path) > MOST_BYTES:
+    if file_size(path) > _MOST_BYTES:
         raise HostileFile(
-            f"{named(path)} has more than {MOST_BYTES} bytes, no session has"
+            f"{named(path)} has more than {_MOST_BYTES} bytes, no session has"
         )
     return file_digest(path)
 
 
-def mark_of(path: Path) -> Mark:
+def mark_of(path: Path) -> _Mark:
     """Return what tells whether a file was touched; empty where there is none."""
     try:
         info = path.stat()
@@ -224,7 +224,7 @@ def mark_of(path: Path) -> Mark:
     return info.st_ino, info.st_size, info.st_mtime_ns
 
 
-def _unchanged_session(path: Path, before: Mark) -> Session:
+def _unchanged_session(path: Path, before: _Mark) -> Session:
     """Read a session whose digest was taken when it had the mark `before`."""
     session = read_session(path)
     if mark_of(path) != before:

@@ -23,7 +23,7 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.screen.terminal import with_sd
 
 OVER = {"torque": "N m", "preload": "N", "day": "d", "specimen": ""}
-SURE = 3.0
+_SURE = 3.0
 """A slope or a difference this many standard deviations from zero is called one."""
 
 
@@ -209,7 +209,7 @@ def trend_rows(
             str(trend.count),
             f"{with_sd(trend.mean, trend.scatter)} {_unit(trend.unit)}".strip(),
             _over(trend, over),
-            verdict(trend),
+            _verdict(trend),
         )
         for trend in trends
     ]
@@ -228,11 +228,11 @@ def _unit(unit: str) -> str:
     return "" if unit == "1" else unit
 
 
-def verdict(trend: Trend) -> str:
+def _verdict(trend: Trend) -> str:
     """Say whether a quantity changes."""
     if math.isnan(trend.significance):
         return "one place only"
-    sure = trend.significance > SURE
+    sure = trend.significance > _SURE
     return f"{'changes' if sure else 'no change seen'} ({trend.significance:.1f} sd)"
 
 
@@ -249,7 +249,7 @@ def trends_json(trends: Sequence[Trend]) -> list[dict[str, object]]:
             "slope_sd": trend.slope_sd,
             "groups": [{"name": n, "mean": m, "sd": s} for n, m, s in trend.groups],
             "significance_sd": trend.significance,
-            "verdict": verdict(trend),
+            "verdict": _verdict(trend),
         }
         for trend in trends
     ]

@@ -6,13 +6,13 @@ from typing import Annotated
 
 import typer
 
-COLUMNS_HELP = (
+_COLUMNS_HELP = (
     "Roles and units of a plain table's columns, for example "
     "'time:s,force:N,acceleration:m/s^2' or 'x:um,z:um'."
 )
 GAP_HELP = "Sessions or campaign (.h5), record (.mat), model with data (.toml), URL."
 Files = Annotated[list[Path], typer.Argument(help="Files to read.", show_default=False)]
-Columns = Annotated[str | None, typer.Option("--columns", help=COLUMNS_HELP)]
+Columns = Annotated[str | None, typer.Option("--columns", help=_COLUMNS_HELP)]
 Json = Annotated[
     str | None,
     typer.Option("--json", metavar="PATH", help="Write results as JSON; '-' = stdout."),

@@ -10,63 +10,63 @@ import typer
 from jointbench.station.commands.options import Debug, Json
 from jointbench.station.screen.exit_codes import EXIT_QUALITY
 
-RecipeFile = Annotated[
+_RecipeFile = Annotated[
     Path | None,
     typer.Option("--recipe", help="Recipe (TOML); chosen by the data when left out."),
 ]
-Stages = Annotated[
+_Stages = Annotated[
     Path | None,
     typer.Option(help="Folder of kept stages; .jointbench-stages beside the results."),
 ]
-Again = Annotated[bool, typer.Option("--again", help="Work again, whatever is there.")]
+_Again = Annotated[bool, typer.Option("--again", help="Work again, whatever is there.")]
 
 
-Sessions = Annotated[list[str], typer.Argument(help="Files, folders or patterns.")]
-Jobs = Annotated[
+_Sessions = Annotated[list[str], typer.Argument(help="Files, folders or patterns.")]
+_Jobs = Annotated[
     int | None, typer.Option(help="Worker processes; one a core.", min=1, max=256)
 ]
-ResultsFolder = Annotated[
+_ResultsFolder = Annotated[
     Path | None, typer.Option(help="Folder of results; else beside the sessions.")
 ]
-LedgerFile = Annotated[
+_LedgerFile = Annotated[
     Path | None, typer.Option(help="Ledger; RECIPE.ledger.jsonl by default.")
 ]
-StagesLimit = Annotated[
+_StagesLimit = Annotated[
     float, typer.Option(help="Space for kept stages [GB]; 0 keeps none.", min=0)
 ]
-Retries = Annotated[
+_Retries = Annotated[
     int, typer.Option(help="Tries after a system's fault.", min=0, max=100)
 ]
-TimeLimit = Annotated[float, typer.Option(help="Longest time for a file [s].", min=1)]
-Scheduler = Annotated[
+_TimeLimit = Annotated[float, typer.Option(help="Longest time for a file [s].", min=1)]
+_Scheduler = Annotated[
     str | None,
     typer.Option(help="Dask scheduler in place of --jobs: tcp://127.0.0.1:8786."),
 ]
-Batch = Annotated[
+_Batch = Annotated[
     int, typer.Option(help="Files a task of the scheduler.", min=1, max=1000)
 ]
-Authority = Annotated[Path | None, typer.Option(help="Authority, PEM.")]
-Certificate = Annotated[Path | None, typer.Option(help="Our certificate, PEM.")]
-PrivateKey = Annotated[Path | None, typer.Option(help="Our key, PEM.")]
+_Authority = Annotated[Path | None, typer.Option(help="Authority, PEM.")]
+_Certificate = Annotated[Path | None, typer.Option(help="Our certificate, PEM.")]
+_PrivateKey = Annotated[Path | None, typer.Option(help="Our key, PEM.")]
 
 
 def mount(app: typer.Typer) -> None:
     """Add the commands of offline work to the command line."""
-    app.command(name="process")(process_command)
-    app.command(name="reprocess")(reprocess_command)
-    app.command(name="archive")(archive_command)
-    app.command(name="compare")(compare_command)
-    app.command(name="export")(export_command)
+    app.command(name="process")(_process_command)
+    app.command(name="reprocess")(_reprocess_command)
+    app.command(name="archive")(_archive_command)
+    app.command(name="compare")(_compare_command)
+    app.command(name="export")(_export_command)
 
 
-def process_command(
+def _process_command(
     session: Annotated[Path, typer.Argument(help="Session file; it is only read.")],
-    recipe: RecipeFile = None,
+    recipe: _RecipeFile = None,
     out: Annotated[
         Path | None, typer.Option(help="Results file; beside the session by default.")
     ] = None,
-    stages: Stages = None,
-    again: Again = False,
+    stages: _Stages = None,
+    again: _Again = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
@@ -81,22 +81,22 @@ def process_command(
     )
 
 
-def reprocess_command(
-    sessions: Sessions,
-    recipe: RecipeFile = None,
-    jobs: Jobs = None,
-    results: ResultsFolder = None,
-    ledger: LedgerFile = None,
-    stages: Stages = None,
-    stages_limit: StagesLimit = 10.0,
-    retries: Retries = 2,
-    time_limit: TimeLimit = 1800.0,
-    scheduler: Scheduler = None,
-    batch: Batch = 16,
-    tls_ca: Authority = None,
-    tls_cert: Certificate = None,
-    tls_key: PrivateKey = None,
-    again: Again = False,
+def _reprocess_command(
+    sessions: _Sessions,
+    recipe: _RecipeFile = None,
+    jobs: _Jobs = None,
+    results: _ResultsFolder = None,
+    ledger: _LedgerFile = None,
+    stages: _Stages = None,
+    stages_limit: _StagesLimit = 10.0,
+    retries: _Retries = 2,
+    time_limit: _TimeLimit = 1800.0,
+    scheduler: _Scheduler = None,
+    batch: _Batch = 16,
+    tls_ca: _Authority = None,
+    tls_cert: _Certificate = None,
+    tls_key: _PrivateKey = None,
+    again: _Again = False,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
@@ -135,7 +135,7 @@ def reprocess_command(
     return EXIT_QUALITY if summary.failed else 0
 
 
-def archive_command(
+def _archive_command(
     results: Annotated[
         list[str], typer.Argument(help="Results files, folders or quoted patterns.")
     ],
@@ -161,7 +161,7 @@ def archive_command(
     return EXIT_QUALITY if left_out else 0
 
 
-def compare_command(
+def _compare_command(
     before: Annotated[str, typer.Argument(help="Results file, folder or pattern.")],
     after: Annotated[str, typer.Argument(help="Likewise, of the same sessions.")],
     json: Json = None,
@@ -177,7 +177,7 @@ def compare_command(
     return EXIT_QUALITY if left_out else 0
 
 
-def export_command(
+def _export_command(
     file: Annotated[
         Path, typer.Argument(help="Session, results, or universal file of others.")
     ],

@@ -25,14 +25,14 @@ from jointbench.station.sources.chassis_source import ChassisSource
 from jointbench.station.sources.record_source import record
 
 HITS = 12
-TORQUE = 20.0
+_TORQUE = 20.0
 """Of each bolt [N m]."""
-DIMENSION = 1.48
+_DIMENSION = 1.48
 """Of a line on the faces [-]; the station has to find it."""
-ROUGHNESS = 4e-11
+_ROUGHNESS = 4e-11
 """Fractal roughness of a line on the faces [m]."""
-MAP_ROWS, MAP_COLUMNS, MAP_SPACING = 192, 1024, 0.271217e-6
-SCALE_ERROR = 1e-3
+_MAP_ROWS, _MAP_COLUMNS, _MAP_SPACING = 192, 1024, 0.271217e-6
+_SCALE_ERROR = 1e-3
 """Relative standard deviation of the simulated scale [-]."""
 
 
@@ -78,7 +78,7 @@ def visit_bench(folder: Path, *, seed: int) -> DemoVisit:
     Returns:
         The session and, apart from it, the truth.
     """
-    bench = bench_from_url(f"sim:two-body?seed={seed}&hits={HITS}&torque={TORQUE:g}")
+    bench = bench_from_url(f"sim:two-body?seed={seed}&hits={HITS}&torque={_TORQUE:g}")
     recording = find_hits(_record_hits(bench))
     truth = bench.truth
     session = new_session(
@@ -93,8 +93,8 @@ def visit_bench(folder: Path, *, seed: int) -> DemoVisit:
     return DemoVisit(
         session,
         masses,
-        {name: SCALE_ERROR * mass for name, mass in masses.items()},
-        DemoTruth(truth, DIMENSION, ROUGHNESS),
+        {name: _SCALE_ERROR * mass for name, mass in masses.items()},
+        DemoTruth(truth, _DIMENSION, _ROUGHNESS),
     )
 
 
@@ -114,11 +114,11 @@ def _measure_face(folder: Path, face: str, seed: int) -> Surface:
     """Measure a face, export it as the instrument does, and import that file."""
     number = 2 * seed + ("a", "b").index(face)
     truth = rough_map(
-        MAP_ROWS,
-        MAP_COLUMNS,
-        spacing=MAP_SPACING,
-        dimension=DIMENSION,
-        roughness=ROUGHNESS,
+        _MAP_ROWS,
+        _MAP_COLUMNS,
+        spacing=_MAP_SPACING,
+        dimension=_DIMENSION,
+        roughness=_ROUGHNESS,
         seed=number,
     )
     measured = measure_areal(truth, Profilometer(missing=1e-4), seed=number)
@@ -128,5 +128,5 @@ def _measure_face(folder: Path, face: str, seed: int) -> Surface:
 
 
 def _weigh(truth: BenchTruth, seed: int) -> dict[str, float]:
-    error = 1 + SCALE_ERROR * np.random.default_rng([seed, 9]).standard_normal(2)
+    error = 1 + _SCALE_ERROR * np.random.default_rng([seed, 9]).standard_normal(2)
     return {"base": float(truth.m1 * error[0]), "top": float(truth.m2 * error[1])}

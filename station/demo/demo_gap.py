@@ -25,11 +25,11 @@ from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.truth_table import TruthComparison, compare_value
 from jointbench.station.sources.visit_file import write_visit
 
-HIDDEN = "cubic_stiffness"
-GRID = "small"
+_HIDDEN = "cubic_stiffness"
+_GRID = "small"
 """Eight hits: two points, three levels, two preloads, one condition twice."""
-PARAMETER_LIMIT = 0.03
-SECTIONS_SHOWN = 3
+_PARAMETER_LIMIT = 0.03
+_SECTIONS_SHOWN = 3
 FILES = ("gap-session.h5", "gap-session.toml", "gap-session.truth.json")
 """All that this step leaves in the demo's folder."""
 
@@ -56,7 +56,7 @@ def visit_for_gap(folder: Path, *, seed: int) -> DemoGap:
         folder: where session, model, truth and page go.
         seed: of the bench.
     """
-    url = f"sim:two-body-campaign?seed={seed}&hide={HIDDEN}&grid={GRID}"
+    url = f"sim:two-body-campaign?seed={seed}&hide={_HIDDEN}&grid={_GRID}"
     written = write_visit(url, folder / FILES[0], overwrite=True)
     wanted = GapRequest(model=written.model)
     with side_by_side():
@@ -66,17 +66,17 @@ def visit_for_gap(folder: Path, *, seed: int) -> DemoGap:
 
 
 def _compare(found: Diagnosis, truth: Mapping[str, Any]) -> tuple[TruthComparison, ...]:
-    site = truth["sites"][HIDDEN]
+    site = truth["sites"][_HIDDEN]
     named = {(e.name, e.site): e for e in found.effects}
-    effect = named.get((HIDDEN, site))
+    effect = named.get((_HIDDEN, site))
     right = found.verdict is Finding.NAMED and len(named) == 1 and effect is not None
     rows = [
         compare_value(
-            f"gap[{HIDDEN}@{site}]", "-", 1.0, float(right), limit=0.0, absolute=True
+            f"gap[{_HIDDEN}@{site}]", "-", 1.0, float(right), limit=0.0, absolute=True
         )
     ]
     estimates = {} if effect is None else {p.name: p for p in effect.parameters}
-    for name, value in truth["effects"][HIDDEN].items():
+    for name, value in truth["effects"][_HIDDEN].items():
         one = estimates.get(name)
         rows.append(
             compare_value(
@@ -85,7 +85,7 @@ def _compare(found: Diagnosis, truth: Mapping[str, Any]) -> tuple[TruthCompariso
                 value,
                 None if one is None else one.value,
                 sd=None if one is None else one.sd,
-                limit=PARAMETER_LIMIT,
+                limit=_PARAMETER_LIMIT,
             )
         )
     return tuple(rows)
@@ -96,11 +96,11 @@ def show_gap(gap: DemoGap, json_target: str | None) -> None:
     screen = console(json_target)
     screen.print("\nSecond visit: what does the model miss?", style="bold")
     show_diagnosis(gap.found, json_target)
-    content = hidden_table(gap)
+    content = _hidden_table(gap)
     screen.print(table(content.caption, content.columns, content.rows))
 
 
-def hidden_table(gap: DemoGap) -> DataTable:
+def _hidden_table(gap: DemoGap) -> DataTable:
     """Return what was hidden beside what was named."""
     named = ", ".join(f"{e.name} at {e.site}" for e in gap.found.effects) or "-"
     rows = tuple(
@@ -113,9 +113,9 @@ def hidden_table(gap: DemoGap) -> DataTable:
 def gap_sections(gap: DemoGap) -> tuple[Section, ...]:
     """Return the step's sections for the demo's page."""
     page = gap_report(gap.found, title="the second visit")
-    evidence = [section for section in page.sections if section.items][:SECTIONS_SHOWN]
+    evidence = [section for section in page.sections if section.items][:_SECTIONS_SHOWN]
     return (
-        Section("gap", "What the model misses", (hidden_table(gap),)),
+        Section("gap", "What the model misses", (_hidden_table(gap),)),
         *(replace(section, anchor=f"gap-{section.anchor}") for section in evidence),
     )
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.text_files import named
 
-HEAD_BYTES = 512
-HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
-TABLE_HEADS = {".csv": b"file,input_sha256,", ".parquet": b"PAR1", ".mat": b"MATLAB"}
+_HEAD_BYTES = 512
+_HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
+_TABLE_HEADS = {".csv": b"file,input_sha256,", ".parquet": b"PAR1", ".mat": b"MATLAB"}
 """How tables of an archive begin."""
 
 
@@ -62,7 +62,7 @@ def require_mark(path: Path, mark: bytes, whose: str) -> None:
     if not path.is_file():
         return
     with path.open("rb") as file:
-        head = file.read(max(HEAD_BYTES, len(mark)))
+        head = file.read(max(_HEAD_BYTES, len(mark)))
     if mark not in head:
         raise UsageError(
             f"{named(path)} is there already and was made by no {whose}; choose "
@@ -156,14 +156,14 @@ def write_text(path: Path, text: str) -> None:
 def _of_its_kind(path: Path) -> bool:
     """Tell whether an existing file is a result that may be made again."""
     with path.open("rb") as file:
-        head = file.read(HEAD_BYTES)
+        head = file.read(_HEAD_BYTES)
     suffix = path.suffix.lower()
     if suffix in {".h5", ".hdf5"}:
-        return head.startswith(HDF5_MAGIC) and _has_schema(path, "jointbench-results/")
+        return head.startswith(_HDF5_MAGIC) and _has_schema(path, "jointbench-results/")
     if suffix == ".nc":
-        return head.startswith(HDF5_MAGIC) and _has_schema(path, "jointbench-archive/")
-    if suffix in TABLE_HEADS:
-        return not head or head.startswith(TABLE_HEADS[suffix])
+        return head.startswith(_HDF5_MAGIC) and _has_schema(path, "jointbench-archive/")
+    if suffix in _TABLE_HEADS:
+        return not head or head.startswith(_TABLE_HEADS[suffix])
     if suffix in {".html", ".htm"}:
         return head.lower().startswith(b"<!doctype html>")
     return not head or head.lstrip().startswith(b"{")

@@ -24,15 +24,15 @@ from jointbench.station.report.gap_sentences import (
 from jointbench.station.screen.escaping_console import seen
 from jointbench.station.screen.terminal import console, with_sd
 
-MOST_CANDIDATES = 6
-MOST_SLICES = 3
-SMALL_SHARE = 0.005
-WIDEST = 110
-LABEL = 9
+_MOST_CANDIDATES = 6
+_MOST_SLICES = 3
+_SMALL_SHARE = 0.005
+_WIDEST = 110
+_LABEL = 9
 """Width of the words that lead the lines."""
-LONGEST_NAME = 34
-VIEW_HEADS = ("view", "largest shares")
-TRIED_HEADS = ("explanation", "behind", "chi2/dof", "pull", "why")
+_LONGEST_NAME = 34
+_VIEW_HEADS = ("view", "largest shares")
+_TRIED_HEADS = ("explanation", "behind", "chi2/dof", "pull", "why")
 
 
 def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
@@ -64,10 +64,10 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     _say(screen, "limits", _limit_words(found))
     where = _where(found)
     if where:
-        screen.print(_table("Where the gap sits", VIEW_HEADS, where, words={0, 1}))
+        screen.print(_table("Where the gap sits", _VIEW_HEADS, where, words={0, 1}))
     if len(found.candidates) > 1:
         tried = _candidates(screen, found)
-        screen.print(_table("Explanations tried", TRIED_HEADS, tried, words={0, 4}))
+        screen.print(_table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
     if next_step(found):
         screen.print()
         _say(screen, "next", next_step(found))
@@ -75,11 +75,11 @@ def show_on(screen: Console, found: Diagnosis) -> None:
 
 def _say(screen: Console, label: str, *texts: str) -> None:
     """Print texts as paragraphs that hang behind a label."""
-    width = min(screen.width, WIDEST)
+    width = min(screen.width, _WIDEST)
     for number, text in enumerate(texts):
         lead = f"{label}:" if label and number == 0 else ""
-        start = f"{lead:<{LABEL}}" if label else "  "
-        hang = " " * (LABEL if label else 2)
+        start = f"{lead:<{_LABEL}}" if label else "  "
+        hang = " " * (_LABEL if label else 2)
         if label and len(texts) > 1:
             start, hang = f"{start}- ", f"{hang}  "
         for line in textwrap.wrap(
@@ -161,11 +161,11 @@ def _where(found: Diagnosis) -> list[tuple[str, str]]:
     for view in found.gap_before.views:
         if view.name == "order" or len(view.share) < 2:
             continue
-        ordered = sorted(view.share.items(), key=lambda item: -item[1])[:MOST_SLICES]
+        ordered = sorted(view.share.items(), key=lambda item: -item[1])[:_MOST_SLICES]
         words = [
             f"{label} {100 * share:.0f} %"
             for label, share in ordered
-            if share > SMALL_SHARE
+            if share > _SMALL_SHARE
         ]
         if words:
             rows.append((view.name, ", ".join(words)))
@@ -175,8 +175,8 @@ def _where(found: Diagnosis) -> list[tuple[str, str]]:
 def _candidates(
     screen: Console, found: Diagnosis
 ) -> list[tuple[str, str, str, str, str]]:
-    room = min(screen.width, WIDEST) - 3 * 10
-    widest = min(max(room // 2, 22), LONGEST_NAME)
+    room = min(screen.width, _WIDEST) - 3 * 10
+    widest = min(max(room // 2, 22), _LONGEST_NAME)
     return [
         (
             _short(" + ".join(one.effects), widest),
@@ -185,7 +185,7 @@ def _candidates(
             short(one.pull),
             why_lost(one, found),
         )
-        for one in found.candidates[:MOST_CANDIDATES]
+        for one in found.candidates[:_MOST_CANDIDATES]
     ]
 
 

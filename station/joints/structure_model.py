@@ -35,13 +35,13 @@ from jointbench.analysis.structures.reduction.mounted_sensors import MountedSens
 from jointbench.station.files.toml_file import StrictTable, with_unit
 from jointbench.station.joints.structure_contact import TheoryTable, joint_of
 
-Length = Annotated[float, with_unit("length")]
-Point = tuple[Length, Length, Length]
-Span = tuple[Length, Length]
-Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
-Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
-Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
-Trust = Annotated[float, with_unit("ratio"), Field(ge=0, lt=1)]
+_Length = Annotated[float, with_unit("length")]
+_Point = tuple[_Length, _Length, _Length]
+_Span = tuple[_Length, _Length]
+_Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
+_Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
+_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
+_Trust = Annotated[float, with_unit("ratio"), Field(ge=0, lt=1)]
 
 
 class MaterialTable(StrictTable):
@@ -57,12 +57,12 @@ class SolidTable(StrictTable):
     """A box with cells, or a mesh file; K and M files replace the assembly."""
 
     material: str | None = None
-    box: Point | None = None
+    box: _Point | None = None
     cells: tuple[int, int, int] | None = None
-    origin: Point = (0.0, 0.0, 0.0)
+    origin: _Point = (0.0, 0.0, 0.0)
     element: ElementKind = ElementKind.HEX20
     mesh: Path | None = None
-    mesh_unit: Length = 1.0
+    mesh_unit: _Length = 1.0
     stiffness: Path | None = None
     mass: Path | None = None
 
@@ -82,9 +82,9 @@ class SolidTable(StrictTable):
 class PatchTable(StrictTable):
     """A part of the joint's plane: a rectangle, or a bolt spot."""
 
-    rectangle: tuple[Span, Span] | None = None
-    centre: Span | None = None
-    radius: Length | None = None
+    rectangle: tuple[_Span, _Span] | None = None
+    centre: _Span | None = None
+    radius: _Length | None = None
 
     @model_validator(mode="after")
     def _one_form(self) -> "PatchTable":
@@ -109,14 +109,14 @@ class SupportTable(StrictTable):
     body: str
     face: str
     kind: SupportKind = SupportKind.FIXED
-    stiffness: tuple[Stiffness, Stiffness, Stiffness] = (0.0, 0.0, 0.0)
+    stiffness: tuple[_Stiffness, _Stiffness, _Stiffness] = (0.0, 0.0, 0.0)
 
 
 class SensorTable(StrictTable):
     """A channel, or a hit point: where it sits, its direction, the mass on it."""
 
     body: str
-    position: Point
+    position: _Point
     direction: tuple[float, float, float]
     mass: Annotated[float, with_unit("mass"), Field(ge=0)] = 0.0
 
@@ -124,8 +124,8 @@ class SensorTable(StrictTable):
 class MeasuredTable(StrictTable):
     """Frequencies as a paper prints them, where there is no session."""
 
-    frequencies: tuple[Frequency, ...] = Field(min_length=1)
-    relative_sd: Share = 0.002
+    frequencies: tuple[_Frequency, ...] = Field(min_length=1)
+    relative_sd: _Share = 0.002
 
 
 class IdentifyTable(StrictTable):
@@ -139,10 +139,10 @@ class IdentifyTable(StrictTable):
     modes: Annotated[int, Field(gt=0, le=200)] | None = None
     sought: tuple[str, ...] | None = None
     shared: tuple[str, ...] = ()
-    stiffness_box: tuple[Stiffness, Stiffness] = (1e6, 1e11)
+    stiffness_box: tuple[_Stiffness, _Stiffness] = (1e6, 1e11)
     lines: Annotated[int, Field(gt=3)] = 200
-    frequency_sd: Trust = 0.0
-    damping_sd: Trust = 0.0
+    frequency_sd: _Trust = 0.0
+    damping_sd: _Trust = 0.0
 
 
 class StructureModel(StrictTable):

@@ -183,7 +183,7 @@ def against_theory(
     rows = []
     for state in states:
         points = {
-            name: predict_state(name, state, surface, table) for name in table.models
+            name: _predict_state(name, state, surface, table) for name in table.models
         }
         for quantity, value in state.values.items():
             rows.append(
@@ -200,7 +200,7 @@ def against_theory(
     return tuple(rows)
 
 
-def predict_state(
+def _predict_state(
     model: str, state: IdentifiedState, surface: ContactSurface, table: TheoryTable
 ) -> ContactPoint:
     """Predict one model at the preload of one state."""

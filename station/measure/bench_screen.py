@@ -24,7 +24,7 @@ from jointbench.station.measure.text_screen import TextScreen, verdict_word
 from jointbench.station.screen.escaping_console import seen
 from jointbench.station.screen.key_presses import Poll, keyboard
 
-KEYS = {
+_KEYS = {
     "a": Command.ACCEPT,
     "r": Command.REJECT,
     "u": Command.UNDO,
@@ -32,8 +32,8 @@ KEYS = {
     "n": Command.NEXT,
     "q": Command.QUIT,
 }
-KEY_HELP = "a accept  r reject  u undo  p repeat point  n next point  q quit"
-WIDTH = 64
+_KEY_HELP = "a accept  r reject  u undo  p repeat point  n next point  q quit"
+_WIDTH = 64
 _BARS = " ▁▂▃▄▅▆▇█"
 _FRAMES = 8  # a second
 _NEAR_FULL = 0.98
@@ -91,7 +91,7 @@ class BenchScreen:
 
     def command(self) -> Command | None:
         """Return what the key pressed last stands for."""
-        return KEYS.get(self.poll().lower())
+        return _KEYS.get(self.poll().lower())
 
     def _draw(self) -> None:
         parts: list[RenderableType] = [
@@ -100,9 +100,9 @@ class BenchScreen:
             self._levels(),
         ]
         if self._news is not None:
-            parts += hit_lines(self._news, self._rate)
+            parts += _hit_lines(self._news, self._rate)
         parts += [seen(line, style="dim") for line in self._said]
-        parts.append(Text(KEY_HELP, style="italic"))
+        parts.append(Text(_KEY_HELP, style="italic"))
         self.live.update(Group(*parts))
 
     def _levels(self) -> Table:
@@ -126,7 +126,7 @@ def level_row(channel: Channel, peak: float) -> tuple[Text, Text, Text]:
     )
 
 
-def hit_lines(news: HitNews, rate: float) -> list[RenderableType]:
+def _hit_lines(news: HitNews, rate: float) -> list[RenderableType]:
     """Return the lines about the last hit: verdict, force, FRF, coherence."""
     trial = news.condition is None and news.hit.verdict is Verdict.OPERATOR
     good = news.hit.verdict is Verdict.OK
@@ -136,21 +136,21 @@ def hit_lines(news: HitNews, rate: float) -> list[RenderableType]:
     verdict.append(
         visible(f" {news.good}/{news.wanted}  {news.hit.reason}"), style="default"
     )
-    lines: list[RenderableType] = [verdict, Text(force_line(news.cut, rate))]
+    lines: list[RenderableType] = [verdict, Text(_force_line(news.cut, rate))]
     if news.frf is not None:
-        lines += [Text(line) for line in frf_lines(news.frf, news.coherence)]
+        lines += [Text(line) for line in _frf_lines(news.frf, news.coherence)]
     return lines
 
 
-def force_line(cut: CutHit, rate: float) -> str:
+def _force_line(cut: CutHit, rate: float) -> str:
     """Return the force pulse as a line of bars."""
     first = max(0, cut.trigger - round(1e-3 * rate))
-    count = max(WIDTH, round(_HIT_MS * 1e-3 * rate))
+    count = max(_WIDTH, round(_HIT_MS * 1e-3 * rate))
     force = cut.samples[0, first : first + count]
     return f"force     {spark(force, 0.0, float(force.max()))} {force.max():.4g} N"
 
 
-def frf_lines(frf: Frf, coherence: float | None) -> tuple[str, ...]:
+def _frf_lines(frf: Frf, coherence: float | None) -> tuple[str, ...]:
     """Return magnitude [dB] and coherence of the first response as lines of bars."""
     low, high = frf.usable_band or (frf.frequency[0], frf.frequency[-1])
     inside = (frf.frequency >= low) & (frf.frequency <= high)
@@ -165,7 +165,7 @@ def frf_lines(frf: Frf, coherence: float | None) -> tuple[str, ...]:
 
 def spark(values: FloatArray, low: float, high: float) -> str:
     """Return values as a line of bars, the largest of each column."""
-    edges = np.linspace(0, values.size, WIDTH + 1).astype(int)
+    edges = np.linspace(0, values.size, _WIDTH + 1).astype(int)
     columns = [values[a : max(b, a + 1)].max() for a, b in pairwise(edges.tolist())]
     share = (np.array(columns) - low) / max(high - low, 1e-30)
     heights = np.clip(np.round(share * (len(_BARS) - 1)), 0, len(_BARS) - 1)

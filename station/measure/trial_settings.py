@@ -11,17 +11,17 @@ from jointbench.acquisition.records.recordings import Channel, Quantity
 from jointbench.signal.hits.hit_verdicts import noise_level
 from jointbench.signal.hits.live_hits import CutHit
 
-NOISE_FACTOR = 10.0
+_NOISE_FACTOR = 10.0
 """Trigger level in standard deviations of the force noise [-]."""
-WEAK_SHARE = 0.03
+_WEAK_SHARE = 0.03
 """Trigger level as a share of a usual hit [-]; weak hits must fire, to be called so."""
-DECAYED = 0.003
+_DECAYED = 0.003
 """Share of its peak to which a response should fall within a block [-]."""
-HEADROOM = 2.0
+_HEADROOM = 2.0
 """Range over the largest value of a trial hit [-]."""
-DROP_DB = 20.0
+_DROP_DB = 20.0
 """Fall of the force spectrum that ends the usable band [dB]."""
-SHORTEST, LONGEST = 0.25, 8.0
+_SHORTEST, _LONGEST = 0.25, 8.0
 """Of a block [s]."""
 
 
@@ -50,8 +50,8 @@ def propose_trigger(force: FloatArray, channel: Channel) -> Proposal:
     noise = noise_level(force)
     # Below a thousandth of the range a touch of the cable would fire.
     least = 1e-3 * (channel.range or 0.0)
-    level = max(NOISE_FACTOR * noise, least)
-    reason = f"{NOISE_FACTOR:g} x the noise of {noise:.3g} N, at least {least:.3g} N"
+    level = max(_NOISE_FACTOR * noise, least)
+    reason = f"{_NOISE_FACTOR:g} x the noise of {noise:.3g} N, at least {least:.3g} N"
     return Proposal("trigger_n", level, reason)
 
 
@@ -73,7 +73,7 @@ def propose_settings(
     row = next(i for i, c in enumerate(channels) if c.quantity is Quantity.FORCE)
     peaks = [float(cut.samples[row].max()) for cut in cuts]
     usual = float(np.median(peaks))
-    level = max(trigger.value, min(WEAK_SHARE * usual, 0.5 * min(peaks)))
+    level = max(trigger.value, min(_WEAK_SHARE * usual, 0.5 * min(peaks)))
     length, decay = _length(cuts, row, sample_rate)
     band = float(np.median([_band(c.samples[row], sample_rate) for c in cuts]))
     pulse = float(np.median([_pulse(c.samples[row]) for c in cuts])) / sample_rate
@@ -91,15 +91,15 @@ def propose_settings(
         ),
         Proposal(
             "decay_rate_per_s",
-            0.0 if length < LONGEST else -np.log(0.01) / LONGEST,
+            0.0 if length < _LONGEST else -np.log(0.01) / _LONGEST,
             "no exponential window: the response dies within the block"
-            if length < LONGEST
+            if length < _LONGEST
             else "an exponential window to 1 %: the response outlasts the block",
         ),
         Proposal(
             "band_hz",
             band,
-            f"the force spectrum falls by {DROP_DB:g} dB at {band:.0f} Hz",
+            f"the force spectrum falls by {_DROP_DB:g} dB at {band:.0f} Hz",
         ),
         *(
             _range(channel, max(float(np.abs(c.samples[i]).max()) for c in cuts))
@@ -115,10 +115,10 @@ def _length(cuts: Sequence[CutHit], row: int, rate: float) -> tuple[float, str]:
         for i, samples in enumerate(cut.samples):
             if i != row:
                 longest = max(longest, _decay(samples, cut.trigger, rate))
-    length = float(np.clip(np.ceil(1.2 * longest * 20) / 20, SHORTEST, LONGEST))
+    length = float(np.clip(np.ceil(1.2 * longest * 20) / 20, _SHORTEST, _LONGEST))
     return length, (
         f"1.2 x {longest:.3g} s, in which the slowest response falls to "
-        f"{100 * DECAYED:g} % or into its noise"
+        f"{100 * _DECAYED:g} % or into its noise"
     )
 
 
@@ -126,7 +126,7 @@ def _decay(samples: FloatArray, trigger: int, rate: float) -> float:
     """Return when the envelope was last above its limit, after the trigger [s]."""
     centred = samples - np.median(samples)
     floor = 6 * noise_level(centred[: max(8, trigger)])
-    limit = max(DECAYED * float(np.abs(centred).max()), floor)
+    limit = max(_DECAYED * float(np.abs(centred).max()), floor)
     above = np.flatnonzero(np.abs(centred) > limit)
     return float(max(0, above[-1] - trigger)) / rate if above.size else 0.0
 
@@ -137,7 +137,7 @@ def _band(force: FloatArray, rate: float) -> float:
     frequency = np.fft.rfftfreq(force.size, 1 / rate)
     width = max(3, round(20.0 / frequency[1]))
     smooth = np.convolve(power, np.ones(width) / width, mode="same")
-    below = np.flatnonzero(smooth < smooth[: 4 * width].max() * 10 ** (-DROP_DB / 10))
+    below = np.flatnonzero(smooth < smooth[: 4 * width].max() * 10 ** (-_DROP_DB / 10))
     return float(frequency[below[0]] if below.size else frequency[-1])
 
 
@@ -148,14 +148,14 @@ def _pulse(force: FloatArray) -> int:
 
 def _range(channel: Channel, largest: float) -> Proposal:
     name = f"range_{channel.name}"
-    wanted = HEADROOM * largest
+    wanted = _HEADROOM * largest
     if channel.range is None or wanted <= channel.range:
         verdict = (
-            f"{HEADROOM:g} x {largest:.4g}; the table's {channel.range:g} holds it"
+            f"{_HEADROOM:g} x {largest:.4g}; the table's {channel.range:g} holds it"
         )
     else:
         verdict = (
-            f"{HEADROOM:g} x {largest:.4g} exceeds the table's {channel.range:g}: hit "
+            f"{_HEADROOM:g} x {largest:.4g} exceeds the table's {channel.range:g}: hit "
             "softer, or take a less sensitive sensor"
         )
     return Proposal(name, wanted, verdict)

@@ -21,18 +21,18 @@ from jointbench.analysis.lumped.lumped_model import (
 from jointbench.station.files.toml_file import StrictTable, with_unit
 from jointbench.station.models.record_model import RecordTable, with_mechanical_units
 
-OUTPUTS = {
+_OUTPUTS = {
     "displacement": Output.DISPLACEMENT,
     "velocity": Output.VELOCITY,
     "acceleration": Output.ACCELERATION,
 }
 
-Mass = Annotated[float, with_unit("mass"), Field(gt=0)]
-Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
-Damping = Annotated[float, with_unit("damping"), Field(ge=0)]
+_Mass = Annotated[float, with_unit("mass"), Field(gt=0)]
+_Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
+_Damping = Annotated[float, with_unit("damping"), Field(ge=0)]
 Force = Annotated[float, with_unit("force"), Field(gt=0)]
 Pressure = Annotated[float, with_unit("pressure"), Field(gt=0)]
-Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
+_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
 
 
 class BodyTable(StrictTable):
@@ -42,8 +42,8 @@ class BodyTable(StrictTable):
     the point at which its channel sits, or the name of the body.
     """
 
-    mass: Mass
-    mass_sd: Mass | None = None
+    mass: _Mass
+    mass_sd: _Mass | None = None
     channel: str | None = None
     points: tuple[str, ...] = ()
 
@@ -56,10 +56,10 @@ class LinkTable(StrictTable):
     """
 
     between: tuple[str, str]
-    stiffness: Stiffness | None = None
-    stiffness_sd: Stiffness | None = None
-    damping: Damping | None = None
-    damping_sd: Damping | None = None
+    stiffness: _Stiffness | None = None
+    stiffness_sd: _Stiffness | None = None
+    damping: _Damping | None = None
+    damping_sd: _Damping | None = None
     joint: bool = False
 
 
@@ -84,7 +84,7 @@ class GapTable(StrictTable):
 
     output: Literal["displacement", "velocity", "acceleration"] = "acceleration"
     preload_reference: Force | None = None
-    repeatability: Share | None = None
+    repeatability: _Share | None = None
     sessions: tuple[str, ...] = ()
 
 
@@ -155,7 +155,7 @@ def lumped_model(bench: BenchModel) -> LumpedModel:
             for name, body in bench.bodies.items()
             if body.channel is not None
         ),
-        output=OUTPUTS[bench.gap.output],
+        output=_OUTPUTS[bench.gap.output],
     )
 
 

@@ -26,11 +26,11 @@ from jointbench.analysis.gap.response.effect_hooks import (
 )
 from jointbench.analysis.gap.response.force_integration import CURVES
 
-ATTRIBUTE = "EFFECTS"
-SITES = ("link", "body", "channel")
-HOOKS = ("stiffness", "law", "transfer", "mixing", "shape")
+_ATTRIBUTE = "EFFECTS"
+_SITES = ("link", "body", "channel")
+_HOOKS = ("stiffness", "law", "transfer", "mixing", "shape")
 """What an effect acts through; `rise` only goes with a stiffness."""
-HOOK_SITES = {
+_HOOK_SITES = {
     "stiffness": ("link", "body"),
     "law": ("link",),
     "transfer": ("channel",),
@@ -40,16 +40,16 @@ HOOK_SITES = {
 }
 """Kinds of site at which the engine looks for a hook. It counts elements without asking
 for their kind, so a hook elsewhere would act on whatever has the same index."""
-TRIED_PRELOADS = (0.5, 1.0, 2.0)
+_TRIED_PRELOADS = (0.5, 1.0, 2.0)
 """Over the reference [-]: at 1 alone every power of the preload is silent."""
-TRIED_PROGRESS = (0.0, 0.5, 1.0)
-TRIED_SAMPLES = 256
-TRIED_RATE = 4096.0
+_TRIED_PROGRESS = (0.0, 0.5, 1.0)
+_TRIED_SAMPLES = 256
+_TRIED_RATE = 4096.0
 """Of the signal at which a `shape` is tried [Hz]."""
-TRIED_LINES = 16
-TRIED_DAMPING = 100.0
+_TRIED_LINES = 16
+_TRIED_DAMPING = 100.0
 """Of the Laplace variable at which a linear effect is tried [1/s]."""
-NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
 def read_effects(path: Path) -> tuple[LumpedEffect, ...]:
@@ -64,11 +64,11 @@ def read_effects(path: Path) -> tuple[LumpedEffect, ...]:
     Raises:
         UsageError: the file cannot be run, or holds no sound effects.
     """
-    found = getattr(_run(path), ATTRIBUTE, None)
+    found = getattr(_run(path), _ATTRIBUTE, None)
     if not isinstance(found, tuple | list) or not found:
         raise UsageError(
-            f"'{path}' has no tuple called {ATTRIBUTE}; end it with "
-            f"{ATTRIBUTE} = (MY_EFFECT,)"
+            f"'{path}' has no tuple called {_ATTRIBUTE}; end it with "
+            f"{_ATTRIBUTE} = (MY_EFFECT,)"
         )
     for entry in found:
         _check(path, entry)
@@ -127,7 +127,7 @@ def _check(path: Path, entry: object) -> None:
     """Refuse what the engine would stumble over long after."""
     if not isinstance(entry, LumpedEffect):
         raise UsageError(
-            f"'{path}': {ATTRIBUTE} holds a {type(entry).__name__}; "
+            f"'{path}': {_ATTRIBUTE} holds a {type(entry).__name__}; "
             "each must be a LumpedEffect"
         )
     fault = _fault(entry)
@@ -138,7 +138,7 @@ def _check(path: Path, entry: object) -> None:
 def _fault(entry: LumpedEffect) -> str:
     """Return what is wrong with an effect, or an empty text."""
     parameters = entry.effect.parameters
-    if not NAME.fullmatch(entry.effect.name):
+    if not _NAME.fullmatch(entry.effect.name):
         return "the name must be words in small letters joined by _"
     if not parameters:
         return "it has no parameter; the first is its amplitude"
@@ -146,16 +146,16 @@ def _fault(entry: LumpedEffect) -> str:
         return "its family is that of what is never named; give it another"
     if parameters[0].off != 0.0:
         return "its first parameter must be an amplitude with off=0.0"
-    if not entry.sites or not set(entry.sites) <= set(SITES):
-        return f"its sites must be among {', '.join(SITES)}"
-    if all(getattr(entry, hook) is None for hook in HOOKS):
-        return f"it acts through no hook; give one of {', '.join(HOOKS)}"
+    if not entry.sites or not set(entry.sites) <= set(_SITES):
+        return f"its sites must be among {', '.join(_SITES)}"
+    if all(getattr(entry, hook) is None for hook in _HOOKS):
+        return f"it acts through no hook; give one of {', '.join(_HOOKS)}"
     return _misplaced(entry) or _loud(entry)
 
 
 def _misplaced(entry: LumpedEffect) -> str:
     """Return which hook is on a site that it does not act at, or an empty text."""
-    for hook, right in HOOK_SITES.items():
+    for hook, right in _HOOK_SITES.items():
         wrong = [site for site in entry.sites if site not in right]
         if wrong and getattr(entry, hook) is not None:
             return f"its hook {hook} sits on {' or '.join(right)}, not on {wrong[0]}"
@@ -188,10 +188,10 @@ def _silent(entry: LumpedEffect) -> bool:
     values = np.array([p.starts[0] if p.starts else 1.0 for p in _shapes(entry)])
     values = np.concatenate([[0.0], values])
     s = np.asarray(
-        TRIED_DAMPING + 2j * np.pi * np.geomspace(1.0, 1e4, TRIED_LINES),
+        _TRIED_DAMPING + 2j * np.pi * np.geomspace(1.0, 1e4, _TRIED_LINES),
         dtype=np.complex128,
     )
-    conditions = HitConditions(np.array(TRIED_PRELOADS), np.array(TRIED_PROGRESS))
+    conditions = HitConditions(np.array(_TRIED_PRELOADS), np.array(_TRIED_PROGRESS))
     state = ElementState(s, 1.0, 1.0, 1.0, conditions)
     return not (_moves(entry, state, values) or _bends(entry, s, values))
 
@@ -217,14 +217,14 @@ def _bends(entry: LumpedEffect, s: ComplexArray, values: FloatArray) -> bool:
         left.append(entry.mixing(values) != 0.0)
     if entry.shape is not None:
         model = _signal()
-        shaped = entry.shape(model.copy(), 1.01 * model, values, TRIED_RATE)
+        shaped = entry.shape(model.copy(), 1.01 * model, values, _TRIED_RATE)
         left.append(np.any(shaped != model))
     return any(left)
 
 
 def _signal() -> FloatArray:
     """Return a decaying tone in three records, shape (3, 1, TRIED_SAMPLES)."""
-    turn = np.arange(TRIED_SAMPLES) / TRIED_SAMPLES
+    turn = np.arange(_TRIED_SAMPLES) / _TRIED_SAMPLES
     tone = np.exp(-3.0 * turn) * np.sin(2 * np.pi * 10.0 * turn)
     return np.asarray(np.array([0.5, 1.0, 2.0])[:, None, None] * tone)
 

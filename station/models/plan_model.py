@@ -33,14 +33,14 @@ from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.records.recordings import Quantity
 from jointbench.station.files.toml_file import StrictTable, with_unit
 
-SECONDS_IN_A_MINUTE = 60.0
+_SECONDS_IN_A_MINUTE = 60.0
 
 
-Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
-Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
-Newtons = Annotated[float, with_unit("force"), Field(gt=0)]
-Torque = Annotated[float, with_unit("torque"), Field(gt=0)]
-Metres = Annotated[float, with_unit("length"), Field(gt=0)]
+_Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
+_Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
+_Newtons = Annotated[float, with_unit("force"), Field(gt=0)]
+_Torque = Annotated[float, with_unit("torque"), Field(gt=0)]
+_Metres = Annotated[float, with_unit("length"), Field(gt=0)]
 
 
 class AxisTable(StrictTable):
@@ -126,10 +126,10 @@ def _amperes(text: str) -> float:
 class AcquisitionTable(StrictTable):
     """How to stream: rate, length of a block, what the driver keeps unread, trigger."""
 
-    sample_rate: Hertz = 25_600.0
-    block: Seconds = 0.05
-    buffer: Seconds = 20.0
-    patience: Seconds = 120.0
+    sample_rate: _Hertz = 25_600.0
+    block: _Seconds = 0.05
+    buffer: _Seconds = 20.0
+    patience: _Seconds = 120.0
     trigger: Literal["software", "hardware"] = "software"
 
 
@@ -137,17 +137,17 @@ class HitsTable(StrictTable):
     """What to hit, how often, and when a hit is good; None is left to trial hits."""
 
     points: tuple[str, ...] = Field(min_length=1, max_length=200)
-    levels: tuple[Newtons, ...] = Field(default=(), max_length=20)
-    torques: tuple[Torque, ...] = Field(default=(), max_length=20)
+    levels: tuple[_Newtons, ...] = Field(default=(), max_length=20)
+    torques: tuple[_Torque, ...] = Field(default=(), max_length=20)
     repeats: int = Field(default=3, ge=1, le=1000)
     most_repeats: int | None = Field(default=None, ge=1, le=2000)
     most_rejected: int = Field(default=20, ge=1, le=1000)
     coherence: float = Field(default=0.9, gt=0, lt=1)
     trial_hits: int = Field(default=2, ge=0, le=20)
-    trigger: Newtons | None = None
-    length: Seconds | None = None
-    pretrigger: Seconds = 0.01
-    wait: Seconds = 10 * SECONDS_IN_A_MINUTE
+    trigger: _Newtons | None = None
+    length: _Seconds | None = None
+    pretrigger: _Seconds = 0.01
+    wait: _Seconds = 10 * _SECONDS_IN_A_MINUTE
 
     @model_validator(mode="after")
     def _unique(self) -> "HitsTable":
@@ -164,7 +164,7 @@ class PlanJointTable(StrictTable):
     """What a torque makes of the preload: P = n T / (K d)."""
 
     bolts: int = Field(ge=1, le=1000)
-    diameter: Metres
+    diameter: _Metres
     nut_factor: float = Field(default=0.2, gt=0, lt=1)
 
     def preload(self, torque: float) -> float:
@@ -188,7 +188,7 @@ class TorqueTable(StrictTable):
     baud: int = Field(default=115_200, ge=300, le=4_000_000)
     tolerance: float = Field(default=0.1, gt=0, lt=1)
     tries: int = Field(default=3, ge=1, le=100)
-    poll: Seconds = 0.02
+    poll: _Seconds = 0.02
 
 
 class MeasureTable(StrictTable):

@@ -34,13 +34,13 @@ _NAME = re.compile(r"\w([\w .-]{0,58}\w)?")
 """A recipe's name becomes part of file names: of the results, of the ledger."""
 
 
-Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
-Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
-Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
+_Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
+_Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
+_Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
 _NotNegative = Annotated[float, Field(ge=0)]
 # The limit is one of the number alone: asked of "auto" it ends in an internal error.
-WindowTime = Annotated[_NotNegative | None, with_unit("time", AUTO, NONE)]
-WindowRate = Annotated[_NotNegative | None, with_unit("frequency", AUTO, NONE)]
+_WindowTime = Annotated[_NotNegative | None, with_unit("time", AUTO, NONE)]
+_WindowRate = Annotated[_NotNegative | None, with_unit("frequency", AUTO, NONE)]
 
 
 def _beside(text: str) -> str:
@@ -51,23 +51,23 @@ def _beside(text: str) -> str:
     return text
 
 
-FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
+_FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
 
 
 class HitsPart(StrictTable):
     """How hits are found and judged again; see `HitCriteria` and `HitLimits`."""
 
     trigger_level: Force | None = None
-    pretrigger: Seconds | None = None
-    dead_time: Seconds | None = None
-    rearm_fraction: Share | None = None
+    pretrigger: _Seconds | None = None
+    dead_time: _Seconds | None = None
+    rearm_fraction: _Share | None = None
     noise_factor: Annotated[float, Field(gt=0)] | None = None
-    peak_fraction: Share | None = None
-    minimum_length: Seconds | None = None
-    overload_fraction: Share | None = None
+    peak_fraction: _Share | None = None
+    minimum_length: _Seconds | None = None
+    overload_fraction: _Share | None = None
     flat_samples: Annotated[int, Field(ge=2)] | None = None
-    double_ratio: Share | None = None
-    weak_ratio: Share | None = None
+    double_ratio: _Share | None = None
+    weak_ratio: _Share | None = None
     weak_force: Force | None = None
     again: bool = True
     keep_operator: bool = True
@@ -76,9 +76,9 @@ class HitsPart(StrictTable):
 class WindowsPart(StrictTable):
     """Windows: a time or a rate, "auto" (chosen by the hits) or "none"."""
 
-    force_width: WindowTime = None
-    exponential: WindowRate = None
-    lead: WindowTime = None
+    force_width: _WindowTime = None
+    exponential: _WindowRate = None
+    lead: _WindowTime = None
 
 
 class FrfPart(StrictTable):
@@ -92,10 +92,10 @@ class KalmanPart(StrictTable):
 
     use: bool = True
     model: Literal["level_slope", "oscillator"] = "level_slope"
-    cutoff: Hertz | None = None
+    cutoff: _Hertz | None = None
     smooth: bool = True
-    frequency: Hertz | None = None
-    damping_ratio: Share | None = None
+    frequency: _Hertz | None = None
+    damping_ratio: _Share | None = None
 
     @model_validator(mode="after")
     def _oscillator_has_a_frequency(self) -> "KalmanPart":
@@ -107,11 +107,11 @@ class KalmanPart(StrictTable):
 class ModesPart(StrictTable):
     """Band, order and choices by hand; see `ModalSettings`."""
 
-    band: tuple[Hertz, Hertz] | None = None
+    band: tuple[_Hertz, _Hertz] | None = None
     highest_order: Annotated[int, Field(ge=2, le=200)] | None = None
     refine: bool = True
-    keep: tuple[Hertz, ...] = ()
-    drop: tuple[Hertz, ...] = ()
+    keep: tuple[_Hertz, ...] = ()
+    drop: tuple[_Hertz, ...] = ()
 
     @model_validator(mode="after")
     def _band_ascends(self) -> "ModesPart":
@@ -140,13 +140,13 @@ class ContactPart(StrictTable):
 class IdentificationPart(StrictTable):
     """The bench model whose links are identified, beside the recipe."""
 
-    model: FileBeside
+    model: _FileBeside
 
 
 class GapPart(StrictTable):
     """The bench model whose gap is examined, and effects left out."""
 
-    model: FileBeside
+    model: _FileBeside
     without: tuple[str, ...] = ()
 
 

@@ -163,9 +163,9 @@ def modal_chain(
         BadData: no usable hit, channels missing, or no mode above the noise.
     """
     at = at_words(preload)
-    frf = frf_stage(judged, settings, run, at)
-    result = modes_stage(frf, settings, run, at)
-    filled = fill_stage(judged, result, settings, run, at)
+    frf = _frf_stage(judged, settings, run, at)
+    result = _modes_stage(frf, settings, run, at)
+    filled = _fill_stage(judged, result, settings, run, at)
     whole = ModalChain(tuple(judged), frf, result, result.model.provenance)
     return filled[0] if filled else whole
 
@@ -188,7 +188,7 @@ def hits_stage(
     )
 
 
-def kalman_stage(
+def _kalman_stage(
     recording: Recording, key: str, settings: ChainSettings, run: StageRun
 ) -> Recording:
     """Put a recording through the Kalman stage, if there is one; hits are kept."""
@@ -211,7 +211,7 @@ def _recorded(recording: Recording) -> tuple[object, ...]:
     return recording.name, recording.samples, recording.sample_rate, recording.channels
 
 
-def frf_stage(
+def _frf_stage(
     judged: Sequence[Recording], settings: ChainSettings, run: StageRun, at: str
 ) -> Frf:
     """Estimate the FRF of recordings with judged hits, after the Kalman stage."""
@@ -225,17 +225,17 @@ def frf_stage(
         f"frf{at}",
         stages.key("frf", [settings.window, settings.estimator.value], found, *keys),
         Frf,
-        lambda: chain_frf(
-            [kalman_stage(*p, settings, run) for p in zip(judged, keys, strict=True)],
+        lambda: _chain_frf(
+            [_kalman_stage(*p, settings, run) for p in zip(judged, keys, strict=True)],
             settings,
         ),
     )
 
 
-def modes_stage(
+def _modes_stage(
     frf: Frf, settings: ChainSettings, run: StageRun, at: str
 ) -> ModalResult:
-    """Find the modes of an FRF that `frf_stage` gave."""
+    """Find the modes of an FRF that `_frf_stage` gave."""
     return run.stages.run(
         f"modes{at}",
         run.stages.key("modes", settings.modal, run.stages.keys[f"frf{at}"]),
@@ -244,7 +244,7 @@ def modes_stage(
     )
 
 
-def fill_stage(
+def _fill_stage(
     judged: Sequence[Recording],
     result: ModalResult,
     settings: ChainSettings,
@@ -255,7 +255,7 @@ def fill_stage(
 
     Args:
         judged: with judged hits.
-        result: modes that `modes_stage` found with the losses in them.
+        result: modes that `_modes_stage` found with the losses in them.
         settings: of the chain.
         run: store and source.
         at: which preload, part of the name.
@@ -287,7 +287,7 @@ def _filled(
         )
         if all(new is old for new, old in zip(repaired, judged, strict=True)):
             return chain
-        frf = chain_frf([_smoothed(r, settings) for r in repaired], settings)
+        frf = _chain_frf([_smoothed(r, settings) for r in repaired], settings)
         result = identify_modes(frf, settings.modal, progress=progress)
         chain = (ModalChain(repaired, frf, result, result.model.provenance),)
     return chain
@@ -299,7 +299,7 @@ def _smoothed(recording: Recording, settings: ChainSettings) -> Recording:
     return replace(smooth_recording(recording, settings.kalman), hits=recording.hits)
 
 
-def chain_frf(recordings: Sequence[Recording], settings: ChainSettings) -> Frf:
+def _chain_frf(recordings: Sequence[Recording], settings: ChainSettings) -> Frf:
     """Estimate the FRF of recordings that have been through the Kalman stage."""
     window = requested_window(recordings, settings.window)
     return estimate_frf(recordings, window=window, estimator=settings.estimator)

@@ -16,8 +16,8 @@ from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 
-PACKAGE = "jointbench"
-LIBRARIES = ("filterpy", "numba", "numpy", "scipy")
+_PACKAGE = "jointbench"
+_LIBRARIES = ("filterpy", "numba", "numpy", "scipy")
 CALLERS = (
     "station.chain",
     "station.joint_stages",
@@ -53,9 +53,9 @@ STAGE_MODULES = {
 }
 """Modules that do the work of each stage; `result` is the whole results file."""
 _FROM = re.compile(
-    rf"^\s*from\s+({PACKAGE}(?:\.\w+)*)\s+import\s+(\([^)]*\)|[^\n]*)", re.MULTILINE
+    rf"^\s*from\s+({_PACKAGE}(?:\.\w+)*)\s+import\s+(\([^)]*\)|[^\n]*)", re.MULTILINE
 )
-_IMPORT = re.compile(rf"^\s*import\s+({PACKAGE}(?:\.\w+)*)", re.MULTILINE)
+_IMPORT = re.compile(rf"^\s*import\s+({_PACKAGE}(?:\.\w+)*)", re.MULTILINE)
 
 
 @cache
@@ -72,8 +72,8 @@ def stage_version(stage: str) -> str:
 def stage_sources(stage: str) -> frozenset[str]:
     """Return the full names of the modules that the version of a stage is made of."""
     modules = STAGE_MODULES.get(stage, STAGE_MODULES["result"])
-    callers = {f"{PACKAGE}.{name}" for name in CALLERS}
-    return sources_behind(*(f"{PACKAGE}.{name}" for name in modules)) | callers
+    callers = {f"{_PACKAGE}.{name}" for name in CALLERS}
+    return sources_behind(*(f"{_PACKAGE}.{name}" for name in modules)) | callers
 
 
 def code_version(modules: Iterable[str]) -> str:
@@ -83,7 +83,7 @@ def code_version(modules: Iterable[str]) -> str:
         modules: their full names.
     """
     digest = sha256()
-    for name in LIBRARIES:
+    for name in _LIBRARIES:
         digest.update(f"{name} {_library(name)}\n".encode())
     for name in sorted(modules):
         digest.update(f"{name} {source_digest(name)}\n".encode())

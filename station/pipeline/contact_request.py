@@ -20,7 +20,7 @@ from jointbench.analysis.contact.preload import Preload, preload_from_torque
 from jointbench.analysis.contact.terms import ContactTerm, with_term
 from jointbench.station.pipeline.contact_options import ContactOptions
 
-DEFAULT_MODEL = "ke_3d_modified"
+_DEFAULT_MODEL = "ke_3d_modified"
 _HARDNESS_NUMBER = re.compile(r"\s*(\d+\.?\d*)\s*(HB|HBW|HV)\s*", re.IGNORECASE)
 _SWEEPS = {"load": "force", "dimension": "", "roughness": "length"}
 _MOST_POINTS = 400
@@ -70,9 +70,9 @@ def parse_request(given: ContactOptions) -> ContactRequest:
         BadData: a number no joint can have, or without its unit.
     """
     hard = parse_hardness(given.hardness)
-    models = parse_models(given.model or [DEFAULT_MODEL], given.mode, given.without)
+    models = parse_models(given.model or [_DEFAULT_MODEL], given.mode, given.without)
     material = _material(given, hard)
-    preloads = parse_preloads(
+    preloads = _parse_preloads(
         given.load or [],
         given.torque or [],
         diameter=given.bolt_diameter,
@@ -85,7 +85,7 @@ def parse_request(given: ContactOptions) -> ContactRequest:
         material,
         hardness_sd=hard * parse_value(given.hardness_sd, "ratio"),
         friction_factor_sd=given.friction_factor_sd,
-        damping=parse_damping(
+        damping=_parse_damping(
             given.mass, given.frequency, given.loss_form, given.loss_convention
         ),
         tangential_load=parse_value(given.tangential_load, "force"),
@@ -164,7 +164,7 @@ def parse_models(
     return tuple(models)
 
 
-def parse_preloads(
+def _parse_preloads(
     loads: Sequence[str],
     torques: Sequence[str],
     *,
@@ -211,7 +211,7 @@ def parse_preloads(
     )
 
 
-def parse_damping(
+def _parse_damping(
     mass: str | None, frequency: str | None, form: str, convention: str
 ) -> DampingChoice | None:
     """Return what damping is to be made of; None without mass and frequency.

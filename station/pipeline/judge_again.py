@@ -149,7 +149,7 @@ def _with_memory(
     recording: Recording, fresh: Hits, criteria: HitCriteria, stored: StoredHits
 ) -> Hits:
     """Give fresh hits the point, and the operator's veto, of the stored ones."""
-    pairs = match_hits(recording, fresh, criteria)
+    pairs = _match_hits(recording, fresh, criteria)
     return tuple(
         new if old is None else _remembering(new, old, keep=stored.keep_operator)
         for old, new in pairs
@@ -170,7 +170,7 @@ def _remembering(new: Hit, old: Hit, *, keep: bool) -> Hit:
     )
 
 
-def match_hits(
+def _match_hits(
     recording: Recording, fresh: Hits, criteria: HitCriteria
 ) -> list[tuple[Hit | None, Hit | None]]:
     """Pair stored and fresh hits whose triggers lie within half the dead time.
@@ -204,7 +204,7 @@ def verdict_changes(
         _change(recording, old, new)
         for recording, hits in zip(recordings, judged, strict=True)
         if recording.hits
-        for old, new in match_hits(recording, hits, criteria)
+        for old, new in _match_hits(recording, hits, criteria)
         if old is None or new is None or old.verdict is not new.verdict
     )
 

@@ -27,8 +27,8 @@ from jointbench.signal.modal.lscf import Progress
 from jointbench.station.pipeline.code_version import stage_version
 from jointbench.station.pipeline.record_codec import decode_record, encode_record
 
-Record = TypeVar("Record")
-SUFFIX, PART = ".stage", ".part"
+_Record = TypeVar("_Record")
+_SUFFIX, _PART = ".stage", ".part"
 _KEY = 64
 """Characters of a key."""
 _LEFT_BEHIND = 3600.0
@@ -92,8 +92,8 @@ class StageStore:
         return sha256(encode_record(records)).hexdigest()
 
     def run(
-        self, name: str, key: str, kind: type[Record], make: Callable[[], Record]
-    ) -> Record:
+        self, name: str, key: str, kind: type[_Record], make: Callable[[], _Record]
+    ) -> _Record:
         """Return the record of a stage, kept or made now.
 
         Args:
@@ -114,9 +114,9 @@ class StageStore:
 
     def _path(self, key: str) -> Path:
         assert self.folder is not None
-        return self.folder / key[:2] / f"{key}{SUFFIX}"
+        return self.folder / key[:2] / f"{key}{_SUFFIX}"
 
-    def _kept(self, key: str, kind: type[Record]) -> Record | None:
+    def _kept(self, key: str, kind: type[_Record]) -> _Record | None:
         if self.folder is None:
             return None
         path = self._path(key)
@@ -142,8 +142,8 @@ class MemoryStore(StageStore):
 
     records: dict[str, object] = field(default_factory=dict)
 
-    def _kept(self, key: str, kind: type[Record]) -> Record | None:
-        return cast("Record | None", self.records.get(key))
+    def _kept(self, key: str, kind: type[_Record]) -> _Record | None:
+        return cast("_Record | None", self.records.get(key))
 
     def _keep(self, key: str, record: object) -> None:
         self.records[key] = record
@@ -161,7 +161,7 @@ class NoStore(StageStore):
         """Return no digest."""
         return ""
 
-    def _kept(self, key: str, kind: type[Record]) -> Record | None:
+    def _kept(self, key: str, kind: type[_Record]) -> _Record | None:
         return None
 
     def _keep(self, key: str, record: object) -> None:
@@ -207,7 +207,7 @@ def _write(path: Path, data: bytes) -> None:
 
     No fsync: after a power loss the digest inside tells, and the stage runs again.
     """
-    part = path.with_name(f"{path.name}.{os.getpid()}{PART}")
+    part = path.with_name(f"{path.name}.{os.getpid()}{_PART}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         part.write_bytes(data)
@@ -231,12 +231,12 @@ def prune_stages(folder: Path, most_bytes: int) -> int:
     """
     found = []
     now = time.time()
-    for path in folder.glob(f"??/{'?' * _KEY}{SUFFIX}*"):
+    for path in folder.glob(f"??/{'?' * _KEY}{_SUFFIX}*"):
         try:
             info = path.stat()
         except OSError:
             continue
-        if path.suffix == PART:
+        if path.suffix == _PART:
             if now - info.st_mtime > _LEFT_BEHIND:
                 path.unlink(missing_ok=True)
             continue

@@ -20,7 +20,7 @@ from jointbench.signal.surface.structure_map import isotropy
 from jointbench.signal.surface.surface_treatment import UNTREATED, SurfaceTreatment
 from jointbench.station.screen.terminal import engineering, with_sd
 
-AT_THE_END = 1e-3
+_AT_THE_END = 1e-3
 """A D this near to the end of its range is no D [-]."""
 
 
@@ -181,7 +181,7 @@ def _weierstrass(surface: Surface, gamma: float) -> Beside:
     low, high = (engineering(end, "m") for end in found.roughness_interval)
     waves = " to ".join(engineering(1 / end, "m") for end in found.band[::-1])
     ends = [abs(found.dimension - end) for end in DIMENSION_RANGE]
-    at_the_end = bool(min(ends) < AT_THE_END)
+    at_the_end = bool(min(ends) < _AT_THE_END)
     line = (
         f"Weierstrass-Mandelbrot profile of ratio {gamma:g}: "
         f"D = {with_sd(found.dimension, found.dimension_sd)}, "

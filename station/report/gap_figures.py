@@ -21,9 +21,9 @@ from jointbench.station.screen.figures import (
 
 MEASURED, BEFORE, AFTER = "#1c2733", "#d1495b", "#0b5cab"
 LEGEND = {"orientation": "h", "x": 0, "yanchor": "bottom", "traceorder": "normal"}
-LOWEST_BAR = 0.5
+_LOWEST_BAR = 0.5
 """Where the bars of chi2/dof start: below 1, so that noise is seen as a short bar."""
-SMALLEST_TOP = 10.0
+_SMALLEST_TOP = 10.0
 
 
 def pretty(unit: str) -> str:
@@ -86,7 +86,7 @@ def _bar(
         "type": "bar",
         "x": list(view.chi2_per_dof),
         # A logarithmic axis starts bars at its lower end, whatever their base.
-        "y": [float(f"{max(value, LOWEST_BAR):.5g}") for value in values],
+        "y": [float(f"{max(value, _LOWEST_BAR):.5g}") for value in values],
         "text": [f"{value:.3g}" for value in values],
         "textposition": "outside",
         "cliponaxis": False,
@@ -106,9 +106,9 @@ def bar_axes(name: str, gap: Gap) -> tuple[dict[str, object], dict[str, object]]
     """Return the axes of `bars`; the one of values is logarithmic."""
     view = _view_of(gap, name)
     largest = max(view.chi2_per_dof.values(), default=1.0) if view else 1.0
-    top = float(np.log10(3.0 * max(largest, SMALLEST_TOP)))
+    top = float(np.log10(3.0 * max(largest, _SMALLEST_TOP)))
     return axis(name, type="category"), axis(
-        "chi2/dof [-] (noise: 1)", log=True, range=[float(np.log10(LOWEST_BAR)), top]
+        "chi2/dof [-] (noise: 1)", log=True, range=[float(np.log10(_LOWEST_BAR)), top]
     )
 
 
@@ -148,8 +148,8 @@ def spectrum(
 
 def spectrum_axes(spectra: Spectra) -> tuple[dict[str, object], dict[str, object]]:
     """Return the axes of `spectrum`, both logarithmic."""
-    top = max(float(spectra.misfit_before.max()), SMALLEST_TOP)
-    span = [float(np.log10(LOWEST_BAR)), float(np.log10(2.0 * top))]
+    top = max(float(spectra.misfit_before.max()), _SMALLEST_TOP)
+    span = [float(np.log10(_LOWEST_BAR)), float(np.log10(2.0 * top))]
     return axis("frequency [Hz]", log=True), axis(
         "misfit over noise [-]", log=True, range=span
     )

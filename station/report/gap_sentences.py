@@ -3,13 +3,13 @@
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Ranked
 
-PREPOSITIONS = {"link": "in", "body": "on body", "channel": "on channel"}
-ALL = "channel:all"
-NOT_WHOLE = 0.9995
+_PREPOSITIONS = {"link": "in", "body": "on body", "channel": "on channel"}
+_ALL = "channel:all"
+_NOT_WHOLE = 0.9995
 """Shrink above which a percentage would round to a hundred."""
-NEARLY_SURE = 0.994
-MAINLY = 0.6
-SEEN = {"level": "at", "hit point": "from hits on", "preload": "at preload"}
+_NEARLY_SURE = 0.994
+_MAINLY = 0.6
+_SEEN = {"level": "at", "hit point": "from hits on", "preload": "at preload"}
 SMALL_GAP = 0.3
 """Gap below which the records are nearly met: the sheet or a directed test tells."""
 SHEET = "sheet"
@@ -22,12 +22,12 @@ def place(site: str) -> str:
     >>> place("link:joint"), place("body:m2"), place("channel:all")
     ('in the joint', 'on body m2', 'on all channels')
     """
-    if site == ALL:
+    if site == _ALL:
         return "on all channels"
     kind, _, name = site.partition(":")
     if kind == "link":
         return "in the joint" if name == "joint" else f"in link {name}"
-    return f"{PREPOSITIONS.get(kind, 'at ' + kind)} {name}"
+    return f"{_PREPOSITIONS.get(kind, 'at ' + kind)} {name}"
 
 
 def effect_words(label: str) -> str:
@@ -101,15 +101,15 @@ def _seen(found: Diagnosis) -> str:
     """Say in which slice of the telling view the gap is seen, where it is one."""
     name = found.exhibit.view if found.exhibit is not None else ""
     view = next((v for v in found.gap_before.views if v.name == name), None)
-    if view is None or name not in SEEN or len(view.share) < 2:
+    if view is None or name not in _SEEN or len(view.share) < 2:
         return ""
     top = max(view.share, key=lambda label: view.share[label])
-    if view.share[top] < MAINLY:
+    if view.share[top] < _MAINLY:
         return ""
     if name == "level":
         hardest = max(view.share, key=lambda label: float(label.partition(" ")[0]))
         return ", seen at high level" if top == hardest else f", seen at {top}"
-    return f", seen {SEEN[name]} {top}"
+    return f", seen {_SEEN[name]} {top}"
 
 
 def percent(share: float) -> str:
@@ -120,7 +120,7 @@ def percent(share: float) -> str:
     """
     if share >= 1.0:
         return "100 %"
-    return "over 99.9 %" if share > NOT_WHOLE else f"{100 * share:.1f} %"
+    return "over 99.9 %" if share > _NOT_WHOLE else f"{100 * share:.1f} %"
 
 
 def short(value: float) -> str:
@@ -138,7 +138,7 @@ def sure(confidence: float) -> str:
     >>> sure(0.981), sure(0.9999)
     ('98 %', 'over 99 %')
     """
-    return "over 99 %" if confidence > NEARLY_SURE else f"{100 * confidence:.0f} %"
+    return "over 99 %" if confidence > _NEARLY_SURE else f"{100 * confidence:.0f} %"
 
 
 def next_step(found: Diagnosis) -> str:

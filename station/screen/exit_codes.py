@@ -19,12 +19,12 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.file_access.text_files import visible
 from jointbench.station.screen.interrupt import interruptible
 
-EXIT_INTERNAL = 1
+_EXIT_INTERNAL = 1
 EXIT_USAGE = 2
 EXIT_BAD_DATA = 3
 EXIT_INSTRUMENT = 4
 EXIT_QUALITY = 5
-EXIT_INTERRUPTED = 130
+_EXIT_INTERRUPTED = 130
 
 
 def exit_code(command: Callable[..., object], *, debug: bool) -> int:
@@ -47,14 +47,14 @@ def _quiet_exit_code(command: Callable[..., object]) -> int:
     except JointbenchError as error:
         return _fail(str(error), code_of(error))
     except (KeyboardInterrupt, typer.Abort):
-        return _fail("interrupted; finished files are whole", EXIT_INTERRUPTED)
+        return _fail("interrupted; finished files are whole", _EXIT_INTERRUPTED)
     except OSError as error:
         return _fail(_system_words(error), EXIT_BAD_DATA)
     except Exception as error:  # noqa: BLE001 - a traceback helps no operator
         kind = type(error).__name__
         return _fail(
             f"internal error ({kind}: {error}); run again with --debug and report it",
-            EXIT_INTERNAL,
+            _EXIT_INTERNAL,
         )
     return result if isinstance(result, int) else 0
 

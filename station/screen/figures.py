@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 Trace = Mapping[str, object]
 Figure = Mapping[str, object]
-Values = NDArray[np.floating[Any]]
+_Values = NDArray[np.floating[Any]]
 
 PALETTE = ("#0b5cab", "#d1495b", "#2a9d8f", "#e09f3e", "#7b4b94", "#5b6b7b")
 GREY = "#8a97a5"
-SIGNIFICANT_DIGITS = 6
+_SIGNIFICANT_DIGITS = 6
 FONT = "system-ui, 'Segoe UI', Roboto, sans-serif"
 
 
@@ -21,7 +21,7 @@ def numbers(values: Any) -> list[float | None]:
     """Return numbers rounded for plotting; what is not finite leaves a gap."""
     array = np.asarray(values, dtype=np.float64)
     return [
-        float(f"{v:.{SIGNIFICANT_DIGITS}g}") if np.isfinite(v) else None for v in array
+        float(f"{v:.{_SIGNIFICANT_DIGITS}g}") if np.isfinite(v) else None for v in array
     ]
 
 
@@ -143,7 +143,7 @@ def figure(
     return {"data": list(data), "layout": layout | more}
 
 
-def thin(x: Values, y: Values, most: int) -> tuple[Values, Values]:
+def thin(x: _Values, y: _Values, most: int) -> tuple[_Values, _Values]:
     """Thin a long line to about `most` points and keep its envelope (min and max)."""
     if x.size <= most:
         return x, y

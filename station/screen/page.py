@@ -14,7 +14,7 @@ from jointbench.acquisition.file_access.text_files import visible
 from jointbench.station.files.output_paths import write_text
 from jointbench.station.screen.figures import Figure
 
-PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
+_PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
 """Columns of words, which read from the left."""
 # plotly.js reads tags in texts, links among them; ours have no attributes.
 _FOREIGN_TAG = re.compile(r"<(?!/?(?:br|b|i|sub|sup|extra)/?>)")
@@ -123,7 +123,7 @@ def render(report: Report) -> str:
     )
     return template.render(
         report=report,
-        prose=PROSE_COLUMNS,
+        prose=_PROSE_COLUMNS,
         style=room.joinpath("report.css").read_text(encoding="utf-8"),
         plotly=get_plotlyjs(),
         figures=_script_safe(_figures(report)),

@@ -21,8 +21,8 @@ from rich.text import Text
 from jointbench.station.files.output_paths import write_text
 from jointbench.station.screen.escaping_console import Screen, seen
 
-Jsonable = Mapping[str, object]
-PLAIN_FROM, PLAIN_TO = -3, 6
+_Jsonable = Mapping[str, object]
+_PLAIN_FROM, _PLAIN_TO = -3, 6
 """Powers of ten between which numbers are written without an exponent."""
 
 
@@ -103,7 +103,7 @@ def table(
     return Group(Text(), seen(title, style="bold"), result)
 
 
-def write_json(target: str | None, content: Jsonable) -> None:
+def write_json(target: str | None, content: _Jsonable) -> None:
     """Write `content` to a file, or to standard output when `target` is ``-``."""
     if target is None:
         return
@@ -137,7 +137,7 @@ def with_sd(value: float, sd: float | None, *, digits: int = 2) -> str:
         return f"{value:.6g}"
     last = floor(log10(sd)) - digits + 1
     lead = floor(log10(max(abs(value), sd)))
-    if PLAIN_FROM <= lead < PLAIN_TO:
+    if _PLAIN_FROM <= lead < _PLAIN_TO:
         value, sd = round(value, -last), round(sd, -last)
         return f"{value:.{max(-last, 0)}f} ± {sd:.{max(-last, 0)}f}"
     scale = 10.0**lead

@@ -24,9 +24,9 @@ LONGEST = 1.0
 """No profilometer scans a metre: a longer trace has a wrong unit [m]."""
 LONGEST_TABLE = 100.0
 """Tables come from other instruments too, up to a guideway's straightness [m]."""
-FINEST = 1e-12
+_FINEST = 1e-12
 """A hundredth of an atom: no pitch is finer [m]."""
-RANGE_SHARE = 0.98
+_RANGE_SHARE = 0.98
 """A height from this share of the stated range on lies at its limit [-]."""
 # So many equal heights at the end, at the extreme of a profile, are no roughness.
 _FLAT_END = 8
@@ -102,7 +102,7 @@ def range_caution(heights: Profile, limit: float) -> tuple[Step, ...]:
     Returns:
         One caution, or none.
     """
-    at_limit = (np.abs(heights.heights) >= RANGE_SHARE * limit) & heights.valid
+    at_limit = (np.abs(heights.heights) >= _RANGE_SHARE * limit) & heights.valid
     if not at_limit.any():
         return ()
     end = float(heights.heights[heights.valid][-1])
@@ -135,11 +135,11 @@ def checked(surface: Surface, path: Path | str, *, longest: float = LONGEST) -> 
     """
     extents = _extents(surface)
     for length, pitch, points in extents:
-        if not (length <= longest and pitch >= FINEST):
+        if not (length <= longest and pitch >= _FINEST):
             raise FormatError(
                 f"{named(path)}: {points} points over {length:.3g} m are {pitch:.3g} m "
-                f"apart; a length up to {longest:g} m and a pitch from {FINEST:g} m on "
-                "can be measured: the length in the header or its unit is wrong, "
+                f"apart; a length up to {longest:g} m and a pitch from {_FINEST:g} m "
+                "on can be measured: the length in the header or its unit is wrong, "
                 "correct it or export the file again"
             )
     there = surface.heights[surface.valid]

@@ -12,7 +12,7 @@ from jointbench.analysis.gap.response.effect_hooks import (
     one_row,
 )
 
-LOG = Transform.LOG
+_LOG = Transform.LOG
 
 
 def _maxwell(state: ElementState, v: FloatArray) -> ComplexArray:
@@ -109,7 +109,7 @@ MAXWELL = LumpedEffect(
         (
             Parameter("k", "N/m", "stiffness", 0.0, 3.0, off=0.0),
             Parameter(
-                "tau", "s", "period", 0.003, 3.0, (0.02, 0.06, 0.16, 0.4, 1.0), LOG
+                "tau", "s", "period", 0.003, 3.0, (0.02, 0.06, 0.16, 0.4, 1.0), _LOG
             ),
         ),
         "Flugge 1975, Viscoelasticity, ch. 1: spring and dashpot in series",
@@ -122,7 +122,7 @@ MAXWELL = LumpedEffect(
     stiffness=_maxwell,
     poles=_maxwell_poles,
 )
-EXTRA_DAMPING = LumpedEffect(
+_EXTRA_DAMPING = LumpedEffect(
     Effect(
         "extra_damping",
         "damping",
@@ -137,7 +137,7 @@ EXTRA_DAMPING = LumpedEffect(
     ("body",),
     stiffness=_extra_damping,
 )
-ADDED_MASS = LumpedEffect(
+_ADDED_MASS = LumpedEffect(
     Effect(
         "added_mass",
         "mass",
@@ -153,7 +153,7 @@ ADDED_MASS = LumpedEffect(
     ("body",),
     stiffness=_added_mass,
 )
-HIDDEN_MODE = LumpedEffect(
+_HIDDEN_MODE = LumpedEffect(
     Effect(
         "hidden_mode",
         "mode",
@@ -166,9 +166,9 @@ HIDDEN_MODE = LumpedEffect(
                 0.4,
                 6.0,
                 tuple(float(x) for x in np.geomspace(0.42, 4.0, 26)),
-                LOG,
+                _LOG,
             ),
-            Parameter("zeta", "-", "one", 1e-3, 0.1, (0.02,), LOG, prior=(0.015, 1.0)),
+            Parameter("zeta", "-", "one", 1e-3, 0.1, (0.02,), _LOG, prior=(0.015, 1.0)),
         ),
         "Den Hartog 1956, Mechanical Vibrations, sec. 3.2: attached oscillator",
         {
@@ -182,7 +182,7 @@ HIDDEN_MODE = LumpedEffect(
     stiffness=_hidden_mode,
     poles=_hidden_mode_poles,
 )
-PRELOAD_STIFFNESS = LumpedEffect(
+_PRELOAD_STIFFNESS = LumpedEffect(
     Effect(
         "preload_stiffness",
         "preload",
@@ -194,7 +194,7 @@ PRELOAD_STIFFNESS = LumpedEffect(
     stiffness=_preload_stiffness,
     rise=_preload_rise,
 )
-PRELOAD_DAMPING = LumpedEffect(
+_PRELOAD_DAMPING = LumpedEffect(
     Effect(
         "preload_damping",
         "preload",
@@ -205,7 +205,7 @@ PRELOAD_DAMPING = LumpedEffect(
     ("link",),
     stiffness=_preload_damping,
 )
-LOOSENING = LumpedEffect(
+_LOOSENING = LumpedEffect(
     Effect(
         "loosening",
         "preload",
@@ -217,7 +217,7 @@ LOOSENING = LumpedEffect(
     stiffness=_loosening,
     rise=_loosening_rise,
 )
-DELAY = LumpedEffect(
+_DELAY = LumpedEffect(
     Effect(
         "delay",
         "sensor",
@@ -249,7 +249,7 @@ GAIN_ERROR = LumpedEffect(
     transfer=_gain,
     every_channel=True,
 )
-SENSOR_LOWPASS = LumpedEffect(
+_SENSOR_LOWPASS = LumpedEffect(
     Effect(
         "sensor_lowpass",
         "sensor",
@@ -262,7 +262,7 @@ SENSOR_LOWPASS = LumpedEffect(
     transfer=_lowpass,
     every_channel=True,
 )
-POLARITY = LumpedEffect(
+_POLARITY = LumpedEffect(
     Effect(
         "polarity",
         "sensor",
@@ -298,15 +298,15 @@ CROSS_TALK = LumpedEffect(
 )
 LINEAR: tuple[LumpedEffect, ...] = (
     MAXWELL,
-    EXTRA_DAMPING,
-    ADDED_MASS,
-    HIDDEN_MODE,
-    PRELOAD_STIFFNESS,
-    PRELOAD_DAMPING,
-    LOOSENING,
-    DELAY,
+    _EXTRA_DAMPING,
+    _ADDED_MASS,
+    _HIDDEN_MODE,
+    _PRELOAD_STIFFNESS,
+    _PRELOAD_DAMPING,
+    _LOOSENING,
+    _DELAY,
     GAIN_ERROR,
-    SENSOR_LOWPASS,
-    POLARITY,
+    _SENSOR_LOWPASS,
+    _POLARITY,
     CROSS_TALK,
 )

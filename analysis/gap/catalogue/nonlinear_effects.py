@@ -9,9 +9,9 @@ from jointbench.analysis.gap.response import force_integration as march
 from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
 from jointbench.analysis.gap.response.slider_integration import slider_tables
 
-LOG = Transform.LOG
-IWAN_SLIDERS = 14
-SHARPNESS = (14.0, 0.6)
+_LOG = Transform.LOG
+_IWAN_SLIDERS = 14
+_SHARPNESS = (14.0, 0.6)
 """Median and log-sd of the sharpness of real sliders: none is a perfect corner."""
 
 
@@ -68,7 +68,7 @@ def _jenkins_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _iwan(v: FloatArray) -> Law:
-    edges = np.linspace(0.0, 1.0, IWAN_SLIDERS + 1)
+    edges = np.linspace(0.0, 1.0, _IWAN_SLIDERS + 1)
     power = float(v[2])
     share = np.diff(edges**power)
     centre = np.diff(edges ** (power + 1.0)) / share * power / (power + 1.0)
@@ -128,7 +128,7 @@ def _hum(
     return np.asarray(model + v[0] * ((found / size).T @ line).reshape(model.shape))
 
 
-CUBIC = LumpedEffect(
+_CUBIC = LumpedEffect(
     Effect(
         "cubic_stiffness",
         "stiffness",
@@ -142,7 +142,7 @@ CUBIC = LumpedEffect(
     ("link",),
     law=_cubic,
 )
-QUADRATIC = LumpedEffect(
+_QUADRATIC = LumpedEffect(
     Effect(
         "quadratic_stiffness",
         "stiffness",
@@ -160,7 +160,7 @@ GAP = LumpedEffect(
         (
             Parameter("k", "N/m", "stiffness", -0.9, 20.0, off=0.0),
             Parameter(
-                "g", "m", "travel", 0.004, 1.0, (0.03, 0.1, 0.2, 0.35, 0.55, 0.8), LOG
+                "g", "m", "travel", 0.004, 1.0, (0.03, 0.1, 0.2, 0.35, 0.55, 0.8), _LOG
             ),
         ),
         "Shaw and Holmes 1983, J. Sound Vib. 90, 129: one-sided stop",
@@ -180,10 +180,10 @@ JENKINS = LumpedEffect(
         (
             Parameter("kt", "N/m", "stiffness", 0.0, 0.95, off=0.0),
             Parameter(
-                "slip", "m", "travel", 0.003, 3.0, (0.02, 0.07, 0.15, 0.3, 0.6), LOG
+                "slip", "m", "travel", 0.003, 3.0, (0.02, 0.07, 0.15, 0.3, 0.6), _LOG
             ),
             Parameter(
-                "sharpness", "-", "one", 2.0, 200.0, SHARPNESS[:1], LOG, SHARPNESS
+                "sharpness", "-", "one", 2.0, 200.0, _SHARPNESS[:1], _LOG, _SHARPNESS
             ),
         ),
         "Jenkins 1962; smooth corner after Wen 1976, eq. (2)",
@@ -204,10 +204,10 @@ IWAN = LumpedEffect(
         "friction",
         (
             Parameter("kt", "N/m", "stiffness", 0.0, 0.95, off=0.0),
-            Parameter("phimax", "m", "travel", 0.02, 10.0, (0.2, 0.6, 1.5), LOG),
-            Parameter("chi_plus_2", "-", "one", 1.05, 2.2, (1.6,), LOG, (1.6, 0.3)),
+            Parameter("phimax", "m", "travel", 0.02, 10.0, (0.2, 0.6, 1.5), _LOG),
+            Parameter("chi_plus_2", "-", "one", 1.05, 2.2, (1.6,), _LOG, (1.6, 0.3)),
             Parameter(
-                "sharpness", "-", "one", 2.0, 200.0, SHARPNESS[:1], LOG, SHARPNESS
+                "sharpness", "-", "one", 2.0, 200.0, _SHARPNESS[:1], _LOG, _SHARPNESS
             ),
         ),
         "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)",
@@ -228,8 +228,8 @@ BOUC_WEN = LumpedEffect(
         "friction",
         (
             Parameter("k", "N/m", "stiffness", 0.0, 0.95, off=0.0),
-            Parameter("zy", "m", "travel", 0.005, 10.0, (0.07, 0.3, 1.0), LOG),
-            Parameter("n", "-", "one", 0.5, 6.0, (1.0, 2.0), LOG, (1.4, 0.5)),
+            Parameter("zy", "m", "travel", 0.005, 10.0, (0.07, 0.3, 1.0), _LOG),
+            Parameter("n", "-", "one", 0.5, 6.0, (1.0, 2.0), _LOG, (1.4, 0.5)),
             Parameter("unloading", "-", "one", -0.9, 4.0, (1.0,)),
         ),
         "Wen 1976, J. Eng. Mech. Div. 102, 249, eq. (2)",
@@ -243,13 +243,13 @@ BOUC_WEN = LumpedEffect(
     ("link",),
     law=_bouc_wen,
 )
-COULOMB = LumpedEffect(
+_COULOMB = LumpedEffect(
     Effect(
         "coulomb",
         "friction",
         (
             Parameter("Fc", "N", "force", 0.0, 2.0, off=0.0),
-            Parameter("width", "m/s", "speed", 1e-5, 0.1, (0.003,), LOG, (0.003, 1.5)),
+            Parameter("width", "m/s", "speed", 1e-5, 0.1, (0.003,), _LOG, (0.003, 1.5)),
         ),
         "Den Hartog 1931, Trans. ASME 53, APM-107: dry friction in parallel",
         {"jenkins": "small hits: a slider sticks and adds stiffness, Coulomb does not"},
@@ -258,7 +258,7 @@ COULOMB = LumpedEffect(
     ("link",),
     law=_coulomb,
 )
-QUADRATIC_DAMPING = LumpedEffect(
+_QUADRATIC_DAMPING = LumpedEffect(
     Effect(
         "quadratic_damping",
         "damping",
@@ -282,7 +282,7 @@ SATURATION = LumpedEffect(
     shape=_saturate,
     every_channel=True,
 )
-HUM = LumpedEffect(
+_HUM = LumpedEffect(
     Effect(
         "hum",
         "sensor",
@@ -295,7 +295,7 @@ HUM = LumpedEffect(
                 5.0,
                 2000.0,
                 (50.0, 60.0, 100.0, 120.0, 150.0, 180.0),
-                LOG,
+                _LOG,
             ),
         ),
         "Ott 2009, Electromagnetic Compatibility Engineering, ch. 3: mains pick-up",
@@ -308,14 +308,14 @@ HUM = LumpedEffect(
     every_channel=True,
 )
 NONLINEAR: tuple[LumpedEffect, ...] = (
-    CUBIC,
-    QUADRATIC,
+    _CUBIC,
+    _QUADRATIC,
     GAP,
     JENKINS,
     IWAN,
     BOUC_WEN,
-    COULOMB,
-    QUADRATIC_DAMPING,
+    _COULOMB,
+    _QUADRATIC_DAMPING,
     SATURATION,
-    HUM,
+    _HUM,
 )

@@ -32,22 +32,22 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.lumped.lumped_model import Output
 
-UNITS = {
+_UNITS = {
     Output.DISPLACEMENT: "m",
     Output.VELOCITY: "m/s",
     Output.ACCELERATION: "m/s^2",
 }
-SHOWN = 0.9
+_SHOWN = 0.9
 """Share of a record's misfit that the window of the picture holds."""
-LEAD_TIME = 1e-3
-SHORTEST = 256
-LONGEST = 2048
-LINES = 400
-FORCE_FLOOR = 0.03
+_LEAD_TIME = 1e-3
+_SHORTEST = 256
+_LONGEST = 2048
+_LINES = 400
+_FORCE_FLOOR = 0.03
 """Of the largest line of the force, below which a response function is not drawn."""
-FINEST = 48
+_FINEST = 48
 """Bands per decade that the misfit's spectrum is averaged over."""
-MOST_TESTS = 8
+_MOST_TESTS = 8
 
 
 def make_exhibit(
@@ -94,7 +94,7 @@ def make_exhibit(
         spectra=spectra,
         wishes=wishes,
         limits=limits,
-        tests=tests[:MOST_TESTS],
+        tests=tests[:_MOST_TESTS],
     )
 
 
@@ -158,7 +158,7 @@ def _curves(
         record=record,
         condition=_condition(bench, record),
         channel=bench.campaign.model.channels[channel].name,
-        unit=UNITS[bench.campaign.model.output],
+        unit=_UNITS[bench.campaign.model.output],
         share=share,
         time=np.arange(first, last) / bench.campaign.sample_rate,
         measured=bench.campaign.response[record, channel, cut],
@@ -185,12 +185,12 @@ def _window(bench: LumpedBench, residual: FloatArray) -> tuple[int, int]:
     rate, n = bench.campaign.sample_rate, residual.size
     if bench.campaign.continuous:
         peak = int(np.argmax(np.abs(residual)))
-        first = min(max(peak - LONGEST // 4, 0), max(n - LONGEST // 2, 0))
-        return first, min(first + LONGEST // 2, n)
-    first = max(bench.gate[0] - int(LEAD_TIME * rate), 0)
+        first = min(max(peak - _LONGEST // 4, 0), max(n - _LONGEST // 2, 0))
+        return first, min(first + _LONGEST // 2, n)
+    first = max(bench.gate[0] - int(_LEAD_TIME * rate), 0)
     power = np.cumsum(residual[first:] ** 2)
-    reach = int(np.searchsorted(power, SHOWN * power[-1])) if power[-1] > 0 else 0
-    return first, min(first + min(max(reach, SHORTEST), LONGEST), n)
+    reach = int(np.searchsorted(power, _SHOWN * power[-1])) if power[-1] > 0 else 0
+    return first, min(first + min(max(reach, _SHORTEST), _LONGEST), n)
 
 
 def _spectra(
@@ -209,9 +209,9 @@ def _spectra(
     campaign = bench.campaign
     force = np.fft.rfft(campaign.force[rows], axis=1)
     power = np.sum(np.abs(force) ** 2, axis=0)
-    kept = np.flatnonzero(power > FORCE_FLOOR**2 * power.max())
+    kept = np.flatnonzero(power > _FORCE_FLOOR**2 * power.max())
     frequency = np.fft.rfftfreq(campaign.force.shape[1], 1 / campaign.sample_rate)
-    kept = kept[frequency[kept] > 0.0][: 4 * LINES]
+    kept = kept[frequency[kept] > 0.0][: 4 * _LINES]
     centres, misfits = _misfit_spectra(bench, whitened)
 
     def ratio(response: FloatArray) -> FloatArray:
@@ -224,7 +224,7 @@ def _spectra(
     return Spectra(
         condition=_condition(bench, record),
         channel=campaign.model.channels[channel].name,
-        unit=f"{UNITS[campaign.model.output]}/N",
+        unit=f"{_UNITS[campaign.model.output]}/N",
         frequency=centres,
         measured=ratio(campaign.response),
         before=ratio(models[0]),
@@ -255,7 +255,7 @@ def _misfit_spectra(
 def _bands(frequency: NDArray[np.floating[Any]]) -> IntArray:
     """Number lines from the second on into bands: single lines, then log-spaced."""
     decades = np.log10(frequency[1:] / frequency[1])
-    return np.asarray(np.floor(FINEST * decades), dtype=np.int64)
+    return np.asarray(np.floor(_FINEST * decades), dtype=np.int64)
 
 
 def _wishes(bench: LumpedBench, base: Fit, best: Fit) -> Wishes | None:

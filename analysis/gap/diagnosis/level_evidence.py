@@ -28,12 +28,12 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.settling import joint_at
 from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages
 
-FORCE_FLOOR = 0.05
+_FORCE_FLOOR = 0.05
 """Of the largest line of a force, below which a ratio to it says nothing."""
-VAGUE = 0.15
+_VAGUE = 0.15
 """Standard deviation beyond which a recurrence is not told."""
-LINEAR_WITHIN = 0.35
-STEP = 1e-4
+_LINEAR_WITHIN = 0.35
+_STEP = 1e-4
 """Difference step of the logarithm of the joint's stiffness."""
 
 
@@ -116,9 +116,9 @@ def _scatters(
 ) -> tuple[Scatter, ...]:
     """Return how hits scatter: in strength, and in the stiffness of the joint."""
     moved = base.copy()
-    moved[joint_at(bench.campaign.model)] += STEP
+    moved[joint_at(bench.campaign.model)] += _STEP
     gain, joint = bench.noise.scatter[0], max(bench.noise.scatter[1:], default=0.0)
-    slope = (bench.response(moved, ()) - model) / STEP
+    slope = (bench.response(moved, ()) - model) / _STEP
     return Scatter(gain, model), Scatter(joint, slope)
 
 
@@ -140,7 +140,7 @@ def recurrences(
         return ()
     forces = np.fft.rfft(bench.campaign.force, axis=1)
     size = np.abs(forces)
-    spoken = np.all(size > FORCE_FLOOR * size.max(axis=1, keepdims=True), axis=0)
+    spoken = np.all(size > _FORCE_FLOOR * size.max(axis=1, keepdims=True), axis=0)
     forces = forces[:, spoken]
 
     def lines(records: FloatArray) -> ComplexArray:
@@ -161,7 +161,7 @@ def recurrences(
             soft = rows[level[rows] == low]
             found.append(_compare(float(low), (spectra, *slopes), forces, hard, soft))
     merged = [_merge(found, x) for x in sorted({f.level for f in found}, reverse=True)]
-    return tuple(f for f in merged if f.sd < VAGUE)
+    return tuple(f for f in merged if f.sd < _VAGUE)
 
 
 def _pairings(bench: LumpedBench) -> list[IntArray]:
@@ -251,4 +251,4 @@ def scaling_of(found: Sequence[Recurrence]) -> LevelScaling:
 
 def is_linear(found: Sequence[Recurrence]) -> bool:
     """Return whether the misfit recurs whole at every level."""
-    return all(abs(f.share - 1.0) < LINEAR_WITHIN + 2 * f.sd for f in found)
+    return all(abs(f.share - 1.0) < _LINEAR_WITHIN + 2 * f.sd for f in found)

@@ -17,11 +17,11 @@ from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-GROWS = 0.7
+_GROWS = 0.7
 """Size at the next lower level, over the hardest, below which a misfit grows."""
-MAINLY = 0.6
-BAND_SHARE = 0.8
-CONTROLLED = ("hit point", "preload")
+_MAINLY = 0.6
+_BAND_SHARE = 0.8
+_CONTROLLED = ("hit point", "preload")
 Relative = dict[str, dict[str, float]]
 
 
@@ -76,7 +76,7 @@ def locate(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     top = int(np.argmax(channels))
     name = bench.campaign.model.channels[top].name
     several = channels.size > 1
-    if several and channels[top] > MAINLY:
+    if several and channels[top] > _MAINLY:
         parts.append(f"mainly on {name} ({100 * channels[top]:.0f} %)")
     elif several:
         parts.append("on all channels")
@@ -84,7 +84,7 @@ def locate(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     parts.append(f"at {low:.3g} to {high:.3g} Hz")
     signed = np.sum(residual**2, axis=2) - counted
     parts += [
-        words for view in CONTROLLED if (words := _uneven_words(bench, signed, view))
+        words for view in _CONTROLLED if (words := _uneven_words(bench, signed, view))
     ]
     return f"the misfit {'is ' if bench.campaign.continuous else ''}{', '.join(parts)}"
 
@@ -116,9 +116,9 @@ def _level_words(bench: LumpedBench, excess: FloatArray, facts: Facts) -> str:
     if facts.scaling is LevelScaling.PROPORTIONAL:
         return "is in proportion to the hit at every level"
     size = facts.levels[0].size
-    if size < GROWS:
+    if size < _GROWS:
         return f"grows with level ({held})"
-    if size > 1.0 / GROWS:
+    if size > 1.0 / _GROWS:
         return f"fades with level, relative to the hit ({held})"
     return f"changes its shape with level ({held})"
 
@@ -141,7 +141,7 @@ def _band(bench: LumpedBench, residual: FloatArray) -> tuple[float, float]:
     excess = np.maximum(np.sum(power - 1.0, axis=(0, 1)), 0.0)
     excess[0] = 0.0
     total = np.cumsum(excess)
-    want = BAND_SHARE * total[-1]
+    want = _BAND_SHARE * total[-1]
     ends = np.searchsorted(total, np.concatenate([[0.0], total[:-1]]) + want)
     ends = np.where(ends < n // 2, ends, 10 * n)
     first = int(np.argmin(ends - np.arange(ends.size)))
@@ -160,7 +160,7 @@ def telling_view(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     if facts.scaling is LevelScaling.CHANGES:
         return "level"
     excess = np.sum(residual**2, axis=2) - counted_samples(bench)
-    ratios = {view: _unevenness(bench, excess, view)[0] for view in CONTROLLED}
+    ratios = {view: _unevenness(bench, excess, view)[0] for view in _CONTROLLED}
     top = max(ratios, key=lambda view: ratios[view])
     return top if ratios[top] > UNEVEN else "frequency"
 

@@ -38,23 +38,23 @@ from jointbench.analysis.gap.search.selection_round import (
     score,
 )
 
-MOST_EFFECTS = 3
-FIRSTS = 3
-THIRD_LEFT = 0.01
+_MOST_EFFECTS = 3
+_FIRSTS = 3
+_THIRD_LEFT = 0.01
 """Share of the base's excess chi2 that a pair may leave for a third effect."""
-HOPEFUL = 4.0
+_HOPEFUL = 4.0
 """Excess of the cost over the best first's above which a first is given no second."""
-NOTHING = 0.01
+_NOTHING = 0.01
 """Excess over dof that noise may make of nothing."""
-WRONG_VALLEY = 2.0
+_WRONG_VALLEY = 2.0
 """Chi2 over dof above which a base may have stopped in a wrong valley."""
-SECONDS = 4
+_SECONDS = 4
 MOST_EFFORT = 3.2e9
 """Samples predicted after which no further effect is looked for: 75 to 87 s of a core
 of 2.3 GHz."""
-MOVED = 1000.0
+_MOVED = 1000.0
 """Gain of a winner by being settled after which one of its effects may be needless."""
-MIN_GAIN = 35.0
+_MIN_GAIN = 35.0
 """Chi2 that a further effect must take, beyond its charge."""
 
 
@@ -103,8 +103,8 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
     found = _other_sliders(found, base, progress)
     grown: set[frozenset[str]] = set()
     given_up = False
-    for count in range(1, MOST_EFFECTS):
-        firsts = found.fits[: FIRSTS if count == 1 else 1]
+    for count in range(1, _MOST_EFFECTS):
+        firsts = found.fits[: _FIRSTS if count == 1 else 1]
         known = bool(firsts) and labels_of(firsts[0].candidates) in grown
         if known or not _worth_more(found, base):
             break
@@ -153,12 +153,12 @@ def _one_more(
     if alone and far_off(bench, firsts[0]):
         more = race_on(bench, far_pairs(bench, progress), progress)
     else:
-        more = add_another(bench, firsts, progress)
+        more = _add_another(bench, firsts, progress)
     if not more:
         return None
     more = crossed(bench, more, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
-    merged = take_back(bench, merged, progress)
+    merged = _take_back(bench, merged, progress)
     left = found.gate.left
     hopes = Hopes(firsts[0], left) if alone and left is not None else None
     after = judged(bench, merged, base, progress, hopes)
@@ -182,9 +182,9 @@ def judged(
     """
     found = _Round(*judge(bench, fits, base, progress, hopes))
     best = found.fits[0]
-    if len(best.candidates) == 1 or fits[0].cost - best.cost < MOVED:
+    if len(best.candidates) == 1 or fits[0].cost - best.cost < _MOVED:
         return found
-    merged = take_back(found.bench, found.fits, progress)
+    merged = _take_back(found.bench, found.fits, progress)
     if merged[0] is best:
         return found
     return _Round(*judge(found.bench, merged, base, progress))
@@ -198,7 +198,7 @@ def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
     merged = sorted([*more, *found.fits], key=lambda f: score(found.bench, f))
     if merged[0] is found.fits[0]:
         return found
-    return _Round(*judge(found.bench, best_of_each(merged), base, progress))
+    return _Round(*judge(found.bench, _best_of_each(merged), base, progress))
 
 
 def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
@@ -213,7 +213,7 @@ def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
     merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
     if merged[0] is found.fits[0]:
         return found
-    return judged(found.bench, best_of_each(merged), base, progress)
+    return judged(found.bench, _best_of_each(merged), base, progress)
 
 
 def _worth_more(found: _Round, base: Fit) -> bool:
@@ -229,7 +229,7 @@ def _worth_more(found: _Round, base: Fit) -> bool:
     links = [c.site for c in fit.candidates if c.site.kind == "link"]
     apart = len(set(links)) == len(links)
     dof = found.bench.blocks.dof
-    return apart and fit.chi2 - dof < THIRD_LEFT * (base.chi2 - dof)
+    return apart and fit.chi2 - dof < _THIRD_LEFT * (base.chi2 - dof)
 
 
 def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome | None:
@@ -239,11 +239,11 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome |
     wrong valley (3 of 1,500 without an effect). An effect that leads it out looks as
     if it explained all that the base had missed.
     """
-    if not found.fits or base.chi2 < WRONG_VALLEY * found.bench.blocks.dof:
+    if not found.fits or base.chi2 < _WRONG_VALLEY * found.bench.blocks.dof:
         return None
     progress("base again")
     fit = minimise(make_problem(found.bench, ()), found.fits[0].base)
-    if fit.chi2 > WRONG_VALLEY * found.bench.blocks.dof:
+    if fit.chi2 > _WRONG_VALLEY * found.bench.blocks.dof:
         return None
     bench, fit = settled_base(found.bench, fit)
     screening = screen(bench, fit, bench.candidates)
@@ -253,7 +253,7 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome |
     return SearchOutcome(bench, fit, null, screening, fit, null, (), (fit,))
 
 
-def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+def _take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
     """Take effects of the best fit away that a later one has made needless."""
     best, found = fits[0], list(fits)
     for k in range(len(best.candidates)):
@@ -263,10 +263,10 @@ def take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit
         coordinates = [t.coordinates for i, t in enumerate(best.terms) if i != k]
         start = np.concatenate([best.base, *coordinates])
         found.append(finish(make_problem(bench, kept), start, progress))
-    return best_of_each(sorted(found, key=lambda f: score(bench, f)))
+    return _best_of_each(sorted(found, key=lambda f: score(bench, f)))
 
 
-def best_of_each(fits: Sequence[Fit]) -> list[Fit]:
+def _best_of_each(fits: Sequence[Fit]) -> list[Fit]:
     """Return the first fit of each set of effects."""
     best: dict[frozenset[str], Fit] = {}
     for f in fits:
@@ -274,7 +274,7 @@ def best_of_each(fits: Sequence[Fit]) -> list[Fit]:
     return list(best.values())
 
 
-def add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
+def _add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
     """Try the best further effects on the best fits."""
     found: list[Fit] = []
     tried: set[frozenset[str]] = set()
@@ -297,8 +297,8 @@ def _addable(bench: Bench, fit: Fit) -> list[Candidate]:
 def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     """Return the fits that a second effect may yet bring ahead of all others."""
     dof = bench.blocks.dof
-    least = max(fits[0].cost - dof, NOTHING * dof)
-    return [f for f in fits if f.cost - dof < HOPEFUL * least]
+    least = max(fits[0].cost - dof, _NOTHING * dof)
+    return [f for f in fits if f.cost - dof < _HOPEFUL * least]
 
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
@@ -306,7 +306,7 @@ def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
     pulled = np.abs(first.pulls).max() > 3.5
     chosen: list[Candidate] = []
     for d in screening.directions:
-        if d.candidate not in chosen and len(chosen) < SECONDS:
+        if d.candidate not in chosen and len(chosen) < _SECONDS:
             chosen.append(d.candidate)
     for c in _addable(bench, first):
         if pulled and c.effect.by_prior and c not in chosen:
@@ -315,5 +315,5 @@ def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
 
 
 def _worthwhile(bench: Bench, more: Fit, fewer: Fit) -> bool:
-    gain = MIN_GAIN if len(more.candidates) > len(fewer.candidates) else 0.0
+    gain = _MIN_GAIN if len(more.candidates) > len(fewer.candidates) else 0.0
     return score(bench, more) + gain < score(bench, fewer)

@@ -7,30 +7,30 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.residuals.noise_models import repeat_groups
 
-ONE_LEVEL = 1.5
+_ONE_LEVEL = 1.5
 """Ratio of the hardest hit to the softest below which all have one level."""
-FLAT_SAMPLES = 6
+_FLAT_SAMPLES = 6
 """Pairs of neighbours at the common maximum from which a record counts as clipped."""
-AT_TOP_SD = 5.0
-NEAR_TOP_SD = 20.0
-SHARPER = 1.5
+_AT_TOP_SD = 5.0
+_NEAR_TOP_SD = 20.0
+_SHARPER = 1.5
 """Growth of what lies near the maximum, from one to the other of these distances, below
 which it is an edge; the crest of an oscillation doubles."""
-LOUD_SD = 50.0
-MIN_RECORDS = 4
+_LOUD_SD = 50.0
+_MIN_RECORDS = 4
 
 
 def campaign_limits(campaign: Campaign) -> str:
     """Return why no verdict but `unknown` can be given, or an empty text."""
     if campaign.continuous:
         return ""
-    if campaign.force.shape[0] < MIN_RECORDS:
+    if campaign.force.shape[0] < _MIN_RECORDS:
         return (
-            f"{campaign.force.shape[0]} records are too few, at least {MIN_RECORDS} "
+            f"{campaign.force.shape[0]} records are too few, at least {_MIN_RECORDS} "
             "are needed: hit each point at three levels, twice"
         )
     level = np.abs(campaign.force).max(axis=1)
-    if level.max() < ONE_LEVEL * level.min():
+    if level.max() < _ONE_LEVEL * level.min():
         return (
             f"all hits have one level ({level.min():.0f} to {level.max():.0f} N): "
             "nothing that depends on it can be told apart; hit over 30x in level"
@@ -54,10 +54,10 @@ def flat_tops(response: FloatArray, sigma: FloatArray) -> list[int]:
     """
     size = np.abs(response)
     top = size.max(axis=(0, 2))
-    at_top = _pairs_above(size, top - AT_TOP_SD * sigma)
-    near_top = _pairs_above(size, top - NEAR_TOP_SD * sigma)
-    flat = (at_top >= FLAT_SAMPLES) & (near_top < SHARPER * at_top)
-    loud = top > LOUD_SD * sigma
+    at_top = _pairs_above(size, top - _AT_TOP_SD * sigma)
+    near_top = _pairs_above(size, top - _NEAR_TOP_SD * sigma)
+    flat = (at_top >= _FLAT_SAMPLES) & (near_top < _SHARPER * at_top)
+    loud = top > _LOUD_SD * sigma
     return [int(i) for i in np.flatnonzero((flat & loud).any(axis=1))]
 
 

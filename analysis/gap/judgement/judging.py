@@ -26,20 +26,20 @@ from jointbench.analysis.gap.search.selection_round import (
     started,
 )
 
-REJUDGED = 30
-AGREED = 2.0
+_REJUDGED = 30
+_AGREED = 2.0
 """Change of a winner's cost below which it agrees with the noise estimated at it."""
-REPEATED = 20.0
+_REPEATED = 20.0
 """Difference of a winner's cost from that of two rounds before, of a to and fro."""
 OVERTAKEN = 2
-CLOSE = 1000.0
+_CLOSE = 1000.0
 """Score behind the winner up to which a rival is fitted again with the new noise."""
-CLOSE_FAILED = 100.0
+_CLOSE_FAILED = 100.0
 """The same where the winner itself does not explain the records."""
-STALE = 0.2
+_STALE = 0.2
 """Share of what the winner gains by being settled that may hide a rival."""
-MOST_STALE = 3
-MOST_HELD_BACK = 2
+_MOST_STALE = 3
+_MOST_HELD_BACK = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,12 +133,12 @@ def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
     What the winner gained by being settled, the next few may gain too: their costs
     are those under a noise that was estimated where less was explained.
     """
-    reach = CLOSE if found.gate.passed else CLOSE_FAILED
+    reach = _CLOSE if found.gate.passed else _CLOSE_FAILED
     gained = max(found.first.cost - found.fit.cost, 0.0)
     behind = [score(found.bench, f) - score(found.bench, found.first) for f in rest]
     near = [f for f, b in zip(rest, behind, strict=True) if b < reach]
-    wide = [f for f, b in zip(rest, behind, strict=True) if b < STALE * gained]
-    return near + wide[:MOST_STALE]
+    wide = [f for f, b in zip(rest, behind, strict=True) if b < _STALE * gained]
+    return near + wide[:_MOST_STALE]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -229,7 +229,7 @@ def _held_back(
         if fair and d.drop > gained and both not in held and both not in tried:
             held[both] = fits.get(both) or started(failed.bench, onto, d)
     fresh = [f for f in held.values() if f is not failed.first]
-    return fresh[:MOST_HELD_BACK]
+    return fresh[:_MOST_HELD_BACK]
 
 
 def _part_of(fewer: Fit, more: Fit) -> bool:
@@ -247,12 +247,12 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     Then the fit that leaves more is taken: there the least is called scatter.
     """
     earlier, before = np.inf, fit.cost
-    for _ in range(REJUDGED):
+    for _ in range(_REJUDGED):
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
-        to_and_fro = abs(fit.cost - earlier) < REPEATED and fit.cost > before
-        if abs(fit.cost - before) < AGREED or to_and_fro or far_off(bench, fit):
+        to_and_fro = abs(fit.cost - earlier) < _REPEATED and fit.cost > before
+        if abs(fit.cost - before) < _AGREED or to_and_fro or far_off(bench, fit):
             break
         earlier, before = before, fit.cost
     return bench, fit

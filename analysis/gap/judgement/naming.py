@@ -13,13 +13,13 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.screening import Direction, Screening
 from jointbench.analysis.gap.search.selection_round import score
 
-RIVAL_WITHIN = 15.0
+_RIVAL_WITHIN = 15.0
 """Score within which a rival is not told apart."""
 CROWDED_WITHIN = 60.0
 """The same where one site bears two effects: two laws together bend as many do."""
-TWIN_WITHIN = 0.5
+_TWIN_WITHIN = 0.5
 """Score within which the same fault at one channel and at all is one statement."""
-EVERYWHERE = "all"
+_EVERYWHERE = "all"
 AMPLITUDE_SD = 4.0
 PULL_LIMIT = 4.0
 GLOBAL_SD = 4.5
@@ -27,10 +27,10 @@ UNLIKE_CHANCE = 3e-4
 """Chance below which parts of the records want parameters of their own."""
 UNLIKE_BASE_CHANCE = 3e-5
 """The same before anything is named: a base that is complete must stay so."""
-NOISE_SHARE = 0.2
+_NOISE_SHARE = 0.2
 """Share of the samples that the noise estimate is worth: 0.39 of the spectrum, halved
 by the taper."""
-WIDENED = 1.3
+_WIDENED = 1.3
 """Room over the linearised null quantile, for the shapes between the grid's points."""
 MODEL_ERROR = {
     "iwan": 5e-5,
@@ -49,11 +49,11 @@ which its slope does not tell."""
 EXACT = 1e-9
 """The same for what is linear or acts on a channel: it is as exact as the base, and
 any more would hide a second effect behind a great first one."""
-ELSEWHERE = 2e-5
+_ELSEWHERE = 2e-5
 """The most that a law may leave of its error at other places than its own."""
-AT_THE_END = 1e-3
+_AT_THE_END = 1e-3
 """Share of its range within which a parameter counts as standing at its end."""
-LOOSE = 0.3
+_LOOSE = 0.3
 """Sd over the range beyond which a parameter stands nowhere in particular."""
 
 
@@ -106,7 +106,7 @@ def gate(
     allowed = GLOBAL_SD * noise_sd(bench) + model / dof
     worst, beyond = None, -np.inf
     if left is not None and bench.blocks.white:
-        elsewhere = min(model, ELSEWHERE * max(base.chi2 - dof, 0.0))
+        elsewhere = min(model, _ELSEWHERE * max(base.chi2 - dof, 0.0))
         worst, beyond = _worst(fit, left, model, elsewhere)
     reason = ""
     if excess > allowed:
@@ -187,7 +187,7 @@ def _worst(
         if d.suggested:
             continue
         model = here if d.candidate.site in own else elsewhere
-        limit = WIDENED * left.threshold + model
+        limit = _WIDENED * left.threshold + model
         if d.drop - limit > beyond:
             worst, beyond = d, d.drop - limit
     return worst, beyond
@@ -214,8 +214,8 @@ def at_the_end(fit: Fit) -> str:
         for k, p in enumerate(term.candidate.effect.parameters):
             low, high = p.bounds
             span, u = high - low, term.coordinates[k]
-            if k and sd[at + k] < LOOSE * span and np.isfinite(span):
-                if min(u - low, high - u) < AT_THE_END * span:
+            if k and sd[at + k] < _LOOSE * span and np.isfinite(span):
+                if min(u - low, high - u) < _AT_THE_END * span:
                     return f"{p.name} of {term.candidate.label} is at its limit"
         at += len(term.coordinates)
     return ""
@@ -227,7 +227,7 @@ def noise_sd(bench: Bench) -> float:
     The noise is estimated from a share of the same samples, so that what both hold
     cancels.
     """
-    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / NOISE_SHARE - 1.0)))
+    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / _NOISE_SHARE - 1.0)))
 
 
 def weakest(fit: Fit, others: Sequence[Fit]) -> float:
@@ -261,7 +261,7 @@ def weakest_amplitude(fit: Fit) -> float:
 def rival_within(best: Fit) -> float:
     """Return the score behind the best within which a rival is not told apart."""
     sites = [c.site for c in best.candidates]
-    return RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
+    return _RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
 
 
 def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
@@ -291,7 +291,7 @@ def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
         f
         for f in fits
         if not any(
-            _twin_of(f, c) and abs(score(bench, f) - score(bench, c)) < TWIN_WITHIN
+            _twin_of(f, c) and abs(score(bench, f) - score(bench, c)) < _TWIN_WITHIN
             for c in fits
         )
     ]
@@ -301,6 +301,6 @@ def _twin_of(fit: Fit, common: Fit) -> bool:
     """Tell whether a fit is another one with a fault of all at one channel only."""
     own = [c for c in fit.candidates if c not in common.candidates]
     other = [c for c in common.candidates if c not in fit.candidates]
-    if len(own) != 1 or len(other) != 1 or other[0].site.name != EVERYWHERE:
+    if len(own) != 1 or len(other) != 1 or other[0].site.name != _EVERYWHERE:
         return False
     return own[0].effect.name == other[0].effect.name

@@ -9,9 +9,9 @@ from typing import Any
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import Exhibit, exhibit_json
 
-SEEN = 1.0
+_SEEN = 1.0
 """Gap below which it does not count by what share it shrank."""
-UNFORETOLD = 0.5
+_UNFORETOLD = 0.5
 """Share of the gap that a name may leave on held-out records before that is said."""
 
 
@@ -142,8 +142,8 @@ class Diagnosis:
     @property
     def foretold(self) -> bool:
         """Whether the conditions foretell each that was held out, or need not."""
-        left = UNFORETOLD * self.gap_before.value
-        return self.gap_before.value < SEEN or self.gap_after.value < left
+        left = _UNFORETOLD * self.gap_before.value
+        return self.gap_before.value < _SEEN or self.gap_after.value < left
 
     @property
     def shrink(self) -> float:

@@ -107,7 +107,7 @@ class Reported:
     value: float
 
 
-Report = Callable[[FloatArray], tuple[Reported, ...]]
+_Report = Callable[[FloatArray], tuple[Reported, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ class Effect:
     parameters: tuple[Parameter, ...]
     source: str
     separates: Mapping[str, str] = field(default_factory=dict)
-    report: Report | None = None
+    report: _Report | None = None
     by_prior: bool = False
     refit_nominal: bool = False
     has_sliders: bool = False

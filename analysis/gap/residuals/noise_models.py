@@ -10,18 +10,18 @@ import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 
-HIGH_BAND = (0.30, 0.497)
+_HIGH_BAND = (0.30, 0.497)
 """Band of pure noise, over the sample rate: above any response to a hammer."""
-SCATTER_MAX = 0.004
-SCATTER_TRIED = 2e-7
-SCATTER_MIN = 2e-5
+_SCATTER_MAX = 0.004
+_SCATTER_TRIED = 2e-7
+_SCATTER_MIN = 2e-5
 """No hand and no joint repeats to better than that: what seems to scatter by less is
 a small effect, or chance, and counts as no scatter."""
-UNLIKELY = 0.0025
+_UNLIKELY = 0.0025
 """Chance of repeats as close as those seen, below which a scatter is ruled out."""
-TREND_CHANCE = 3e-4
+_TREND_CHANCE = 3e-4
 """Chance of a pattern over the records, below which it is a trend and no scatter."""
-SMALLEST_SHARE = 0.03
+_SMALLEST_SHARE = 0.03
 FORCE_SHAPES = 8
 
 
@@ -52,7 +52,7 @@ def high_band_sigma(residual: FloatArray) -> FloatArray:
     n = residual.shape[-1]
     taper = np.hanning(n)
     spectrum = scipy.fft.rfft(residual * taper, axis=-1)
-    low, high = (int(edge * n) for edge in HIGH_BAND)
+    low, high = (int(edge * n) for edge in _HIGH_BAND)
     power = np.mean(np.abs(spectrum[..., low:high]) ** 2, axis=-1)
     return np.asarray(np.sqrt(power / np.sum(taper**2)))
 
@@ -69,7 +69,7 @@ def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
     """
     variance = high_band_sigma(residual) ** 2
     n = residual.shape[-1]
-    relative = np.sqrt(2.0 / ((HIGH_BAND[1] - HIGH_BAND[0]) * n))
+    relative = np.sqrt(2.0 / ((_HIGH_BAND[1] - _HIGH_BAND[0]) * n))
     pooled = np.empty_like(variance)
     for c in range(variance.shape[1]):
         v, x = variance[:, c], peak[:, c] ** 2
@@ -128,14 +128,14 @@ def gain_scatter(
     spread = (variances[first] + variances[second]) / 2
     low = float(grid[int(np.argmin(_deviance(steps, spread, grid)))])
     pivot = np.sum(steps**2 / (spread + grid[:, None]), axis=1)
-    allowed = grid[pivot > scipy.stats.chi2.ppf(UNLIKELY, steps.size)]
+    allowed = grid[pivot > scipy.stats.chi2.ppf(_UNLIKELY, steps.size)]
     high = max(float(allowed.max(initial=0.0)), low)
     return _believed(np.sqrt(np.clip(wide, low, high)))
 
 
 def _believed(scatter: float) -> float:
     """Return a scatter, 0 where neither hand nor joint repeats so well."""
-    return float(scatter) if scatter >= SCATTER_MIN else 0.0
+    return float(scatter) if scatter >= _SCATTER_MIN else 0.0
 
 
 def without_trend(
@@ -157,7 +157,7 @@ def without_trend(
     Returns:
         Values less their dependence on one pattern, shape (n_records,).
     """
-    best, least = values, TREND_CHANCE
+    best, least = values, _TREND_CHANCE
     for pattern in patterns:
         q = pattern - pattern.mean()
         if q @ q < 1e-12 or values.size < 4:
@@ -198,7 +198,7 @@ def _trend(
 
 def _scatter_grid() -> FloatArray:
     """Return the scatters that are tried [-], the first none at all."""
-    return np.concatenate([[0.0], np.geomspace(SCATTER_TRIED, SCATTER_MAX, 360)])
+    return np.concatenate([[0.0], np.geomspace(_SCATTER_TRIED, _SCATTER_MAX, 360)])
 
 
 def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:
@@ -244,7 +244,7 @@ def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """
     gram = columns @ columns.T
     values, vectors = np.linalg.eigh(gram)
-    keep = values > SMALLEST_SHARE**2
+    keep = values > _SMALLEST_SHARE**2
     s = np.sqrt(values[keep])
     basis = (vectors[:, keep] / s).T @ columns
     return basis, 1.0 - 1.0 / np.sqrt(1.0 + s**2)

@@ -16,7 +16,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.acquisition.basics.errors import UsageError
 
-POINTS = 8193
+_POINTS = 8193
 GRADE = 16.0
 REACH = 0.01
 """Largest motion across a link that a table holds [m]; beyond, the value stays."""
@@ -78,14 +78,14 @@ def tabulate(curve: Curve | None, reach: float) -> FloatArray:
         UsageError: the curve returns another shape, or what is not finite.
     """
     if curve is None:
-        return np.zeros(POINTS)
-    grid = finest_of(reach) * np.sinh(np.linspace(-GRADE, GRADE, POINTS))
+        return np.zeros(_POINTS)
+    grid = finest_of(reach) * np.sinh(np.linspace(-GRADE, GRADE, _POINTS))
     values = np.asarray(curve(grid), dtype=np.float64)
     if values.shape != grid.shape or not np.all(np.isfinite(values)):
         raise UsageError(
             f"the curve of a force law gives shape {values.shape} with "
             f"{np.count_nonzero(~np.isfinite(values))} values that are not finite; "
-            f"it must give {POINTS} finite values for as many between "
+            f"it must give {_POINTS} finite values for as many between "
             f"-{reach:g} and {reach:g}"
         )
     return values

@@ -71,11 +71,11 @@ class Law:
     tops: FloatArray = field(default_factory=lambda: NO_SLIDERS[3])
 
 
-Stiffness = Callable[[ElementState, FloatArray], ComplexArray]
-Transfer = Callable[[ComplexArray, FloatArray], ComplexArray]
-Shape = Callable[[FloatArray, FloatArray, FloatArray, float], FloatArray]
-Bend = Callable[[FloatArray], Law]
-Rise = Callable[[HitConditions, FloatArray], FloatArray]
+_Stiffness = Callable[[ElementState, FloatArray], ComplexArray]
+_Transfer = Callable[[ComplexArray, FloatArray], ComplexArray]
+_Shape = Callable[[FloatArray, FloatArray, FloatArray, float], FloatArray]
+_Bend = Callable[[FloatArray], Law]
+_Rise = Callable[[HitConditions, FloatArray], FloatArray]
 
 
 def _nothing() -> Mapping[str, str]:
@@ -107,13 +107,13 @@ class LumpedEffect:
 
     effect: Effect
     sites: tuple[str, ...]
-    stiffness: Stiffness | None = None
+    stiffness: _Stiffness | None = None
     poles: Callable[[FloatArray], ComplexArray] | None = None
-    law: Bend | None = None
-    transfer: Transfer | None = None
+    law: _Bend | None = None
+    transfer: _Transfer | None = None
     mixing: Callable[[FloatArray], float] | None = None
-    shape: Shape | None = None
-    rise: Rise | None = None
+    shape: _Shape | None = None
+    rise: _Rise | None = None
     every_channel: bool = False
 
 

@@ -37,18 +37,18 @@ LANES = 8
 
 # What a march keeps of its lanes lies in two plain arrays, each quantity at a place
 # that the compiler knows: with an array for each, a step takes twice as long.
-FORCE, GUESS, BEFORE, MOTION, SPEED, SLOPE = (i * LANES for i in range(6))
+_FORCE, _GUESS, _BEFORE, _MOTION, _SPEED, _SLOPE = (i * LANES for i in range(6))
 """Places of the force of all laws, its guess, the last motion, the motion, its rate,
 and what a unit of force takes of that rate within a step."""
-MODES = 6 * LANES
-REAL, IMAGINARY, TURN, QUARTER, START, START_I, END, END_I, POLE, POLE_I = (
+_MODES = 6 * LANES
+_REAL, _IMAGINARY, _TURN, _QUARTER, _START, _START_I, _END, _END_I, _POLE, _POLE_I = (
     i * LANES for i in range(10)
 )
 """Places within a mode: its motion, growth, hold weights and pole (re, im)."""
-MODE = 10 * LANES
-OWN, EARLIER, HOPE = (i * LANES for i in range(3))
+_MODE = 10 * LANES
+_OWN, _EARLIER, _HOPE = (i * LANES for i in range(3))
 """Places within a law: its force, that of the step before, and what is hoped for."""
-LAW = 3 * LANES
+_LAW = 3 * LANES
 
 
 class MarchLaws(NamedTuple):
@@ -111,24 +111,24 @@ def _forces(
     curves: FloatArray,
 ) -> None:
     """Write the force of law `a` in every lane, unless it is one of sliders."""
-    kind, first, second, own = kinds[a], p[a, 0], p[a, 1], a * LAW + OWN
+    kind, first, second, own = kinds[a], p[a, 0], p[a, 1], a * _LAW + _OWN
     if kind == POLYNOMIAL:
         for k in range(LANES):
-            r = w[MOTION + k]
+            r = w[_MOTION + k]
             f[own + k] = r * r * (first + second * r)
     elif kind == ONE_SIDED:
         for k in range(LANES):
-            f[own + k] = first * max(w[MOTION + k] - second, 0.0)
+            f[own + k] = first * max(w[_MOTION + k] - second, 0.0)
     elif kind == QUADRATIC_DAMPING:
         for k in range(LANES):
-            f[own + k] = first * w[SPEED + k] * abs(w[SPEED + k])
+            f[own + k] = first * w[_SPEED + k] * abs(w[_SPEED + k])
     elif kind == COULOMB:
         for k in range(LANES):
-            hope = f[a * LAW + HOPE + k]
-            f[own + k] = _rub(first, second, w[SPEED + k], w[SLOPE + k], hope)
+            hope = f[a * _LAW + _HOPE + k]
+            f[own + k] = _rub(first, second, w[_SPEED + k], w[_SLOPE + k], hope)
     elif kind == CURVES:
         for k in range(LANES):
-            r, v = w[MOTION + k], w[SPEED + k]
+            r, v = w[_MOTION + k], w[_SPEED + k]
             f[own + k] = curve_force(curves, 3 * a, first, second, r, v)
 
 
@@ -139,19 +139,19 @@ def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> Float
     Modes are scaled by their residues, so that a real part is a displacement; each is
     stepped by its growth and by first-order-hold weights.
     """
-    w = np.zeros(MODES + poles.shape[0] * MODE)
+    w = np.zeros(_MODES + poles.shape[0] * _MODE)
     for m in range(poles.shape[0]):
         for k in range(LANES):
-            at, pole = MODES + m * MODE + k, poles[m, k]
+            at, pole = _MODES + m * _MODE + k, poles[m, k]
             z = pole * dt
             growth = np.exp(z)
             end = residues[m, k] * dt * (growth - 1.0 - z) / (z * z)
             start = residues[m, k] * dt * (growth - 1.0) / z - end
-            w[at + TURN], w[at + QUARTER] = growth.real, growth.imag
-            w[at + START], w[at + START_I] = start.real, start.imag
-            w[at + END], w[at + END_I] = end.real, end.imag
-            w[at + POLE], w[at + POLE_I] = pole.real, pole.imag
-            w[SLOPE + k] += end.real * pole.real - end.imag * pole.imag
+            w[at + _TURN], w[at + _QUARTER] = growth.real, growth.imag
+            w[at + _START], w[at + _START_I] = start.real, start.imag
+            w[at + _END], w[at + _END_I] = end.real, end.imag
+            w[at + _POLE], w[at + _POLE_I] = pole.real, pole.imag
+            w[_SLOPE + k] += end.real * pole.real - end.imag * pole.imag
     return w
 
 
@@ -159,21 +159,21 @@ def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> Float
 def _predict(w: FloatArray, n_modes: int) -> None:
     """Step the modes in place with a guessed force, and add them to the motion."""
     for m in range(n_modes):
-        at = MODES + m * MODE
+        at = _MODES + m * _MODE
         for k in range(LANES):
-            x, y = w[at + REAL + k], w[at + IMAGINARY + k]
-            turn, quarter = w[at + TURN + k], w[at + QUARTER + k]
-            pull, push = w[FORCE + k], w[GUESS + k]
+            x, y = w[at + _REAL + k], w[at + _IMAGINARY + k]
+            turn, quarter = w[at + _TURN + k], w[at + _QUARTER + k]
+            pull, push = w[_FORCE + k], w[_GUESS + k]
             moved = turn * x - quarter * y
-            moved -= w[at + START + k] * pull + w[at + END + k] * push
-            w[at + IMAGINARY + k] = (
+            moved -= w[at + _START + k] * pull + w[at + _END + k] * push
+            w[at + _IMAGINARY + k] = (
                 turn * y
                 + quarter * x
-                - w[at + START_I + k] * pull
-                - w[at + END_I + k] * push
+                - w[at + _START_I + k] * pull
+                - w[at + _END_I + k] * push
             )
-            w[at + REAL + k] = moved
-            w[MOTION + k] += moved
+            w[at + _REAL + k] = moved
+            w[_MOTION + k] += moved
 
 
 @compiled(fastmath=True)
@@ -187,32 +187,32 @@ def _march_lanes(
     out: FloatArray,
 ) -> None:
     """March the records from `first` on, as many as there are lanes."""
-    n_modes, n_laws = (w.size - MODES) // MODE, laws.kinds.size
+    n_modes, n_laws = (w.size - _MODES) // _MODE, laws.kinds.size
     states = np.zeros((LANES, laws.slips.size, 2))
     active = np.zeros((n_laws, LANES), dtype=np.int64)
     # Taken out once: each look into a tuple counts a reference up and down.
     kinds, p, ends, slips, weights, tables, tops, curves = laws
-    sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * LAW)
+    sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * _LAW)
     for i in range(displacement.shape[0]):
         for k in range(LANES):
-            w[GUESS + k] = 0.0
-            w[BEFORE + k] = w[MOTION + k]
-            w[MOTION + k] = displacement[i, first + k]
+            w[_GUESS + k] = 0.0
+            w[_BEFORE + k] = w[_MOTION + k]
+            w[_MOTION + k] = displacement[i, first + k]
         for a in range(n_laws):
             for k in range(LANES):
-                at = a * LAW + k
-                f[at + HOPE] = 2.0 * f[at + OWN] - f[at + EARLIER]
-                f[at + EARLIER] = f[at + OWN]
-                w[GUESS + k] += f[at + HOPE]
+                at = a * _LAW + k
+                f[at + _HOPE] = 2.0 * f[at + _OWN] - f[at + _EARLIER]
+                f[at + _EARLIER] = f[at + _OWN]
+                w[_GUESS + k] += f[at + _HOPE]
         _predict(w, n_modes)
         if needs_velocity:
             for k in range(LANES):
-                w[SPEED + k] = velocity[i, first + k]
+                w[_SPEED + k] = velocity[i, first + k]
             for m in range(n_modes):
                 for k in range(LANES):
-                    at = MODES + m * MODE + k
-                    w[SPEED + k] += w[at + POLE] * w[at + REAL]
-                    w[SPEED + k] -= w[at + POLE_I] * w[at + IMAGINARY]
+                    at = _MODES + m * _MODE + k
+                    w[_SPEED + k] += w[at + _POLE] * w[at + _REAL]
+                    w[_SPEED + k] -= w[at + _POLE_I] * w[at + _IMAGINARY]
         for a in range(n_laws):
             if kinds[a] == SLIDERS:
                 bank = Bank(
@@ -220,26 +220,26 @@ def _march_lanes(
                     first=ends[a],
                     beyond=ends[a + 1],
                     lanes=LANES,
-                    now=MOTION,
-                    last=BEFORE,
-                    force=a * LAW + OWN,
+                    now=_MOTION,
+                    last=_BEFORE,
+                    force=a * _LAW + _OWN,
                 )
                 bank_forces(bank, w, f, states, active, sliders, tables, tops)
             else:
                 _forces(a, w, f, kinds, p, curves)
         for k in range(LANES):
-            w[FORCE + k] = 0.0
+            w[_FORCE + k] = 0.0
         for a in range(n_laws):
             for k in range(LANES):
-                w[FORCE + k] += f[a * LAW + OWN + k]
+                w[_FORCE + k] += f[a * _LAW + _OWN + k]
         for k in range(LANES):
-            out[i, first + k] = w[FORCE + k]
-            w[GUESS + k] = w[FORCE + k] - w[GUESS + k]
+            out[i, first + k] = w[_FORCE + k]
+            w[_GUESS + k] = w[_FORCE + k] - w[_GUESS + k]
         for m in range(n_modes):
             for k in range(LANES):
-                at = MODES + m * MODE + k
-                w[at + REAL] -= w[at + END] * w[GUESS + k]
-                w[at + IMAGINARY] -= w[at + END_I] * w[GUESS + k]
+                at = _MODES + m * _MODE + k
+                w[at + _REAL] -= w[at + _END] * w[_GUESS + k]
+                w[at + _IMAGINARY] -= w[at + _END_I] * w[_GUESS + k]
 
 
 @compiled(nogil=True)

@@ -42,12 +42,12 @@ from jointbench.analysis.lumped.lumped_model import LumpedModel
 DAMPING_EXPONENT = 16.0
 PADDED = 1.5
 """Length of a transform over that of the record."""
-PASS_BAND = 0.42
+_PASS_BAND = 0.42
 FADED = 0.01
 """Last part of the band, over the sample rate, in which the force fades out."""
-MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
+_MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
 """Laws that look at the velocity."""
-EXTRAPOLATED = 4
+_EXTRAPOLATED = 4
 """Steps a sample from which on the march is extrapolated to a step of nothing."""
 
 
@@ -115,7 +115,7 @@ def pass_band_end(frequency: FloatArray) -> FloatArray:
     Args:
         frequency: over the sample rate [-].
     """
-    return _end_of_band(frequency, 0.5 - PASS_BAND)
+    return _end_of_band(frequency, 0.5 - _PASS_BAND)
 
 
 def _end_of_band(frequency: FloatArray, width: float) -> FloatArray:
@@ -222,7 +222,7 @@ def _link_force(
     modes = link_modes(model, theta, excitation.conditions, link, actions)
     fine = _between_samples(excitation, x, laws, oversampling)
     force = _marched(excitation, fine, modes, laws, oversampling)
-    if oversampling >= EXTRAPOLATED and all(law.kind != COULOMB for law in laws):
+    if oversampling >= _EXTRAPOLATED and all(law.kind != COULOMB for law in laws):
         coarse = fine[:, ::2]
         half = _marched(excitation, coarse, modes, laws, oversampling // 2)
         force = (4.0 * force - half) / 3.0
@@ -241,7 +241,7 @@ def _between_samples(
     zeros to fill the lanes of the march.
     """
     count = excitation.growth.size * oversampling
-    moving = any(law.kind in MOVING for law in laws)
+    moving = any(law.kind in _MOVING for law in laws)
     spectra = [x, x * excitation.s] if moving else [x]
     long = excitation.padded * oversampling
     gain = oversampling * _growth(excitation, oversampling)

@@ -13,10 +13,10 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.compiled import compiled
 
-TABLE_SIZE = 4096
-IDENTITY = 1e-7
+_TABLE_SIZE = 4096
+_IDENTITY = 1e-7
 """Departure of a slider from elasticity that is passed over."""
-STALE = 1e30
+_STALE = 1e30
 """Loading coordinate of a slider that has unloaded since it was last known."""
 
 
@@ -49,7 +49,7 @@ def slide(
 
     Args:
         u: displacement of the slider over its slip displacement [-].
-        loading: its signed coordinate on the loading curve [-]; `STALE` after
+        loading: its signed coordinate on the loading curve [-]; `_STALE` after
             unloading, when it is looked up at need.
         step: change of displacement over the slip displacement [-].
         tables: u of loading coordinate, its inverse, unloading coordinate of u, its
@@ -68,7 +68,7 @@ def slide(
     size, forward = side * u, side * step
     if forward >= 0.0:
         x = side * loading
-        if loading == STALE:
+        if loading == _STALE:
             x = _lookup(tables, row + 1, tops[1], size)
         x = min(x + forward, tops[6])
         return side * _lookup(tables, row, tops[0], x), side * x
@@ -76,7 +76,7 @@ def slide(
     left = (size if elastic else _lookup(tables, row + 2, tops[2], size)) + forward
     if left < 0.0:
         return -side * _lookup(tables, row, tops[0], -left), side * left
-    return side * (left if elastic else _lookup(tables, row + 3, tops[3], left)), STALE
+    return side * (left if elastic else _lookup(tables, row + 3, tops[3], left)), _STALE
 
 
 class Bank(NamedTuple):
@@ -199,11 +199,11 @@ def slider_tables(
     load = _cumulative(u, 1.0 / (1.0 - loading * u**sharpness))
     unload = _cumulative(u, 1.0 / np.maximum(1.0 + unloading * u**sharpness, 1e-3))
     bend = max(abs(loading), abs(unloading), 1e-12)
-    free = (IDENTITY * (sharpness + 1.0) / bend) ** (1.0 / sharpness)
+    free = (_IDENTITY * (sharpness + 1.0) / bend) ** (1.0 / sharpness)
     elastic = float(unloading == 0.0)
     ends = np.array([load[-1], u[-1], u[-1], unload[-1]])
-    tops = np.array([*((TABLE_SIZE - 1) / ends), min(free, 0.9), elastic, load[-1]])
-    grid = np.linspace(0.0, 1.0, TABLE_SIZE)
+    tops = np.array([*((_TABLE_SIZE - 1) / ends), min(free, 0.9), elastic, load[-1]])
+    grid = np.linspace(0.0, 1.0, _TABLE_SIZE)
     tables = np.stack(
         [
             np.interp(grid * ends[0], load, u),

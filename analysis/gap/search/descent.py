@@ -10,36 +10,36 @@ from jointbench.analysis.gap.residuals.fit_records import FULL, Fit, Stage
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
 from jointbench.analysis.gap.response.threads import each
 
-EXCESS_TOLERANCE = 1e-3
+_EXCESS_TOLERANCE = 1e-3
 """Stop below this share of the excess of chi2 over its degrees of freedom: a share
 of chi2 itself would hide an effect of a hundred units among 60,000."""
-ABSOLUTE_TOLERANCE = 0.03
-BASE_STEP = 1e-7
+_ABSOLUTE_TOLERANCE = 0.03
+_BASE_STEP = 1e-7
 """Difference step of a logarithm. A record holds some hundred radians, so that a step
 of 1e-5 would already bend its end away from the slope."""
-EFFECT_STEP = 1e-6
-PATIENCE = 12.0
+_EFFECT_STEP = 1e-6
+_PATIENCE = 12.0
 """Steps of the last size that a descent may still need to come down to a rival."""
-LONGEST = 1.5
+_LONGEST = 1.5
 """Longest step of a coordinate; most are logarithms."""
-CORRECTIONS = 2
+_CORRECTIONS = 2
 """Steps back into the valley, by the slopes at hand, before a step is shortened."""
-LEAST_DAMPING = 1e-11
+_LEAST_DAMPING = 1e-11
 """A first step is all but Gauss and Newton's: where hits scatter, the scale of all
 masses and stiffnesses is so soft that a damping of 1e-6 would hold it."""
-STIFF = 1e-3
+_STIFF = 1e-3
 """Damping under which only what the data fix well moves."""
-OLDEST = 2
+_OLDEST = 2
 """Steps in a row for which slopes are updated by the secant instead of differenced."""
-TRUSTED = 0.6
+_TRUSTED = 0.6
 """Share of the foretold drop below which the slopes are differenced again."""
 
 
-def steps_of(problem: FitProblem, x: FloatArray) -> FloatArray:
+def _steps_of(problem: FitProblem, x: FloatArray) -> FloatArray:
     """Return the difference steps of x, turned inwards at a bound."""
-    step = np.full(x.size, BASE_STEP)
+    step = np.full(x.size, _BASE_STEP)
     tail = slice(problem.n_base, None)
-    step[tail] = EFFECT_STEP * np.maximum(np.abs(x[tail]), 1e-2)
+    step[tail] = _EFFECT_STEP * np.maximum(np.abs(x[tail]), 1e-2)
     return np.where(x + step > problem.upper, -step, step)
 
 
@@ -58,7 +58,7 @@ def jacobian_of(
         stage: how thoroughly.
     """
     columns = np.empty((x.size, residual.size))
-    steps = steps_of(problem, x)
+    steps = _steps_of(problem, x)
 
     def difference(i: int) -> None:
         moved = x.copy()
@@ -105,7 +105,7 @@ def minimise(
     r, cost = _looked_at(problem, x, stage)
     if not np.isfinite(cost):
         return _hopeless(problem, x, r)
-    damping, age, j = LEAST_DAMPING, 0, slopes(x, r)
+    damping, age, j = _LEAST_DAMPING, 0, slopes(x, r)
     for k in range(iterations):
         moved, damping = _step(problem, x, r, j, cost, damping, stage)
         if moved is None:
@@ -114,15 +114,15 @@ def minimise(
             j, age, damping = slopes(x, r), 0, 1e-3
             continue
         drop = cost - moved[2]
-        small = drop < EXCESS_TOLERANCE * _excess(problem, cost) + ABSOLUTE_TOLERANCE
+        small = drop < _EXCESS_TOLERANCE * _excess(problem, cost) + _ABSOLUTE_TOLERANCE
         guessed = _predicted_drop(problem, x, r, j, moved[0])
         change, before = moved[0] - x, r
         x, r, cost = moved
         if small and age == 0:
             break
-        if rival is not None and k >= 1 and cost - rival > PATIENCE * drop:
+        if rival is not None and k >= 1 and cost - rival > _PATIENCE * drop:
             break
-        if not small and age < OLDEST and drop > TRUSTED * guessed:
+        if not small and age < _OLDEST and drop > _TRUSTED * guessed:
             j, age = _secant(j, change, r - before), age + 1
         else:
             j, age = slopes(x, r), 0
@@ -148,7 +148,7 @@ def _hopeless(problem: FitProblem, x: FloatArray, r: FloatArray) -> Fit:
 
 
 def _excess(problem: FitProblem, cost: float) -> float:
-    return max(cost - problem_dof(problem), 0.0)
+    return max(cost - _problem_dof(problem), 0.0)
 
 
 def _predicted_drop(
@@ -170,12 +170,12 @@ def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatA
     return j + np.outer(difference - j @ change, along / (change @ along))
 
 
-def problem_dof(problem: FitProblem) -> int:
+def _problem_dof(problem: FitProblem) -> int:
     """Return the number of residuals that carry weight."""
     return problem.bench.blocks.dof
 
 
-Moved = tuple[FloatArray, FloatArray, float]
+_Moved = tuple[FloatArray, FloatArray, float]
 
 
 def _step(
@@ -186,7 +186,7 @@ def _step(
     cost: float,
     damping: float,
     stage: Stage,
-) -> tuple[Moved | None, float]:
+) -> tuple[_Moved | None, float]:
     """Try ever shorter steps until one goes down.
 
     Effects hand stiffness and damping to the base and back, so their valleys are long
@@ -207,16 +207,16 @@ def _step(
         step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
         trial = _moved(problem, x, step / size)
         try_r, try_cost = _looked_at(problem, trial, stage)
-        for _ in range(CORRECTIONS):
+        for _ in range(_CORRECTIONS):
             if try_cost < cost or not np.isfinite(try_cost):
                 break
             pull = j.T @ try_r + problem.prior * (trial - problem.centre)
-            stiff = h + STIFF * np.eye(h.shape[0])
+            stiff = h + _STIFF * np.eye(h.shape[0])
             step[free] = -_solve(stiff, (pull / size)[free])
             trial = _moved(problem, trial, step / size)
             try_r, try_cost = _looked_at(problem, trial, stage)
         if np.isfinite(try_cost) and try_cost < cost:
-            return (trial, try_r, try_cost), max(damping / 10, LEAST_DAMPING)
+            return (trial, try_r, try_cost), max(damping / 10, _LEAST_DAMPING)
         damping = max(damping * 8, 1e-6)
         if damping > 1e7:
             break
@@ -229,7 +229,7 @@ def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def _moved(problem: FitProblem, x: FloatArray, step: FloatArray) -> FloatArray:
-    bounded = np.clip(step, -LONGEST, LONGEST)
+    bounded = np.clip(step, -_LONGEST, _LONGEST)
     return np.clip(x + bounded, problem.lower, problem.upper)
 
 
@@ -259,8 +259,8 @@ def _looked_at(
     return r, cost if np.isfinite(cost) else np.inf
 
 
-Stages = Sequence[tuple[Stage, int]]
-BASE_STAGES: Stages = (
+_Stages = Sequence[tuple[Stage, int]]
+BASE_STAGES: _Stages = (
     (Stage(0.002), 6),
     (Stage(0.006), 6),
     (Stage(0.020), 6),
@@ -268,7 +268,7 @@ BASE_STAGES: Stages = (
 )
 
 
-def fit_stages(problem: FitProblem, start: FloatArray, stages: Stages) -> Fit:
+def fit_stages(problem: FitProblem, start: FloatArray, stages: _Stages) -> Fit:
     """Fit coarse to fine; the last stage decides."""
     x = start
     for stage, iterations in stages[:-1]:

@@ -20,14 +20,14 @@ from jointbench.analysis.gap.search.descent import fit_stages, minimise
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.selection_round import Progress, along
 
-SHORT = Stage(0.005, 2)
-LONGER = Stage(0.016, 2)
-STEPS = 6
-SINGLES = 8
-FIRSTS = 3
-SECONDS = 5
-PASSES = 3
-KEPT = 5
+_SHORT = Stage(0.005, 2)
+_LONGER = Stage(0.016, 2)
+_STEPS = 6
+_SINGLES = 8
+_FIRSTS = 3
+_SECONDS = 5
+_PASSES = 3
+_KEPT = 5
 
 
 def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
@@ -42,18 +42,18 @@ def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
         modes: starts for a race over the whole records.
     """
     problem = make_problem(bench, ())
-    base = fit_stages(problem, np.zeros(problem.n_base), ((SHORT, STEPS),))
-    singles = _best(_with_one_more(bench, base, SINGLES, progress), FIRSTS)
+    base = fit_stages(problem, np.zeros(problem.n_base), ((_SHORT, _STEPS),))
+    singles = _best(_with_one_more(bench, base, _SINGLES, progress), _FIRSTS)
     pairs: list[Fit] = []
     for first in singles:
-        pairs += _with_one_more(bench, first, SECONDS, progress)
-    pairs = _best(pairs, KEPT)
-    for _ in range(PASSES if pairs else 0):
+        pairs += _with_one_more(bench, first, _SECONDS, progress)
+    pairs = _best(pairs, _KEPT)
+    for _ in range(_PASSES if pairs else 0):
         leader = pairs[0]
         for k in range(len(leader.candidates)):
-            kept = without(bench, leader, k, SHORT)
-            pairs += _with_one_more(bench, kept, SECONDS, progress)
-        pairs = _best(pairs, KEPT)
+            kept = without(bench, leader, k, _SHORT)
+            pairs += _with_one_more(bench, kept, _SECONDS, progress)
+        pairs = _best(pairs, _KEPT)
         if pairs[0] is leader:
             break
     return [_longer(bench, f) for f in pairs]
@@ -77,20 +77,20 @@ def without(bench: Bench, fit: Fit, k: int, stage: Stage) -> Fit:
 def _with_one_more(bench: Bench, fit: Fit, count: int, progress: Progress) -> list[Fit]:
     """Return short fits of the effects that directed tests put first."""
     others = [c for c in bench.candidates if may_join(c, fit.candidates)]
-    screening = screen(bench, fit, others, stage=SHORT)
+    screening = screen(bench, fit, others, stage=_SHORT)
     found = []
     for candidate in screening.leaders(count):
         problem = make_problem(bench, (*fit.candidates, candidate))
         progress(f"{words_of(problem.candidates)} (first milliseconds)")
-        starts = [along(problem, fit, d, SHORT) for d in screening.best(candidate, 2)]
+        starts = [along(problem, fit, d, _SHORT) for d in screening.best(candidate, 2)]
         start = min(starts, key=lambda r: r.cost)
-        found.append(minimise(problem, start.x, SHORT, iterations=STEPS))
+        found.append(minimise(problem, start.x, _SHORT, iterations=_STEPS))
     return found
 
 
 def _longer(bench: Bench, fit: Fit) -> Fit:
     problem = make_problem(bench, fit.candidates)
-    return minimise(problem, fit.x, LONGER, iterations=STEPS, exact_slopes=False)
+    return minimise(problem, fit.x, _LONGER, iterations=_STEPS, exact_slopes=False)
 
 
 def _best(fits: Sequence[Fit], count: int) -> list[Fit]:

@@ -23,11 +23,11 @@ from jointbench.analysis.gap.residuals.fit_records import Fit, Stage
 from jointbench.analysis.gap.response.threads import each
 
 PROBE = 1e-6
-SEEN = 1e-10
+_SEEN = 1e-10
 """Share of a direction's squared length that the fit must leave for it to count."""
 SCREEN = Stage(oversampling=2)
-DRAWS = 4000
-QUANTILE = 0.995
+_DRAWS = 4000
+_QUANTILE = 0.995
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -189,7 +189,7 @@ def _judge(
     gram = (tested.left @ tested.left.T).astype(np.float64)
     score = tested.left @ tangent.residual
     left = np.diag(gram).copy()
-    left = np.where(left > SEEN * np.maximum(tested.norm, 1e-300), left, np.inf)
+    left = np.where(left > _SEEN * np.maximum(tested.norm, 1e-300), left, np.inf)
     amplitude = -score / left
     minimum = tangent.q.T @ tangent.residual
     directions = []
@@ -258,6 +258,6 @@ def null_threshold(
     values, vectors = np.linalg.eigh(correlation)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     rng = np.random.default_rng(seed)
-    draws = rng.standard_normal((DRAWS, root.shape[1])) @ root.T
+    draws = rng.standard_normal((_DRAWS, root.shape[1])) @ root.T
     draws = np.where(one_sided[keep] & (draws < 0), 0.0, draws)
-    return float(np.quantile(np.max(draws**2, axis=1), QUANTILE))
+    return float(np.quantile(np.max(draws**2, axis=1), _QUANTILE))

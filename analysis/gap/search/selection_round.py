@@ -28,28 +28,28 @@ from jointbench.analysis.gap.search.screening import Direction, Screening
 
 Progress = Callable[[str], None]
 
-COST_PER_PARAMETER = 10.0
+_COST_PER_PARAMETER = 10.0
 """Chi2 that one more parameter must earn: far above chance, far below any name."""
-COST_PER_PHASE = 2.0
-COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
+_COST_PER_PHASE = 2.0
+_COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
     (Stage(0.005, 2), 5),
     (Stage(0.016, 2), 6),
 )
-SURVIVORS = (14, 8)
-FINALISTS = 5
-HOPELESS = 6.0
+_SURVIVORS = (14, 8)
+_FINALISTS = 5
+_HOPELESS = 6.0
 """Cost over the best's above which a finalist is not fitted to the end."""
 HUGE = 100.0
 """Chi2 over dof of the base above which a flipped sign is worth a start."""
-ROUNDS = ((3, 12, 2), (5, 8, 1))
+_ROUNDS = ((3, 12, 2), (5, 8, 1))
 """Steps of every start still in the race, how many go on, and how many of one set."""
-LEAST = 0.04
+_LEAST = 0.04
 """Share of the largest directed drop below which an effect is no candidate."""
 MOST_STEPS = 16
 STARTS = 3
 """Starts of a candidate that has a shape of its own."""
-SWAP_PROBE = 1e-4
-MARCH_ERROR = 50.0
+_SWAP_PROBE = 1e-4
+_MARCH_ERROR = 50.0
 """Chi2 between two step sizes above which the finer one is taken."""
 SHARES = (1.0, 0.3, 0.1)
 """Shares of a foretold step that are tried as starts."""
@@ -74,8 +74,8 @@ def score(bench: Bench, fit: Fit) -> float:
     """Return the cost of a fit with a charge for every parameter."""
     charge = 0.0
     for candidate in fit.candidates:
-        charge += COST_PER_PARAMETER * len(candidate.effect.parameters)
-        charge += COST_PER_PHASE * bench.phases(candidate)
+        charge += _COST_PER_PARAMETER * len(candidate.effect.parameters)
+        charge += _COST_PER_PHASE * bench.phases(candidate)
     return fit.cost + charge
 
 
@@ -125,7 +125,7 @@ def race_on(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
 
 def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fit]:
     """Run starts to the end, the hopeless dropped on the way."""
-    for iterations, keep, alike in ROUNDS:
+    for iterations, keep, alike in _ROUNDS:
         runners = _best_of_each(
             _keep(_heat(runners, iterations, progress), keep), alike
         )
@@ -136,8 +136,8 @@ def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fi
         middle = minimise(r.problem, r.x, MIDDLE, iterations=MOST_STEPS, rival=best)
         done.append(Runner(r.problem, middle.x, middle.cost, middle))
         best = min(best or np.inf, middle.cost)
-    runners = _keep(done, FINALISTS)
-    hopeful = [r for r in runners if r.cost < HOPELESS * runners[0].cost]
+    runners = _keep(done, _FINALISTS)
+    hopeful = [r for r in runners if r.cost < _HOPELESS * runners[0].cost]
     fits = [finish(r.problem, r.x, progress) for r in hopeful]
     fits += [r.fit for r in runners if r not in hopeful and r.fit is not None]
     return sorted(fits, key=lambda f: score(bench, f))
@@ -163,7 +163,7 @@ def _step_for(problem: FitProblem, x: FloatArray) -> Stage:
     A stop of 75,000 times the noise is marched too coarsely by four, and a second law
     makes up for the error.
     """
-    return FINE if chi2_between(problem, x, FULL, FINE) > MARCH_ERROR else FULL
+    return FINE if chi2_between(problem, x, FULL, FINE) > _MARCH_ERROR else FULL
 
 
 def _heat(
@@ -184,7 +184,7 @@ def _near(
 ) -> list[Runner]:
     """Start where the directed tests point to, on the whole record."""
     runners: list[Runner] = []
-    least = LEAST * max(screening.largest, 1e-9)
+    least = _LEAST * max(screening.largest, 1e-9)
     for candidate in candidates:
         problem = make_problem(bench, (*fit.candidates, candidate))
         shaped = len(candidate.effect.parameters) > 2
@@ -192,7 +192,7 @@ def _near(
             if d.drop >= least:
                 runners.append(along(problem, fit, d, MIDDLE))
         if candidate.effect.by_prior:
-            x = np.clip(swapped(bench, fit, candidate), problem.lower, problem.upper)
+            x = np.clip(_swapped(bench, fit, candidate), problem.lower, problem.upper)
             runners.append(Runner(problem, x, cost_at(problem, x, MIDDLE)))
     return [r for r in runners if np.isfinite(r.cost)]
 
@@ -209,14 +209,14 @@ def _far(
     for candidate in candidates:
         problem = make_problem(bench, (*fit.candidates, candidate))
         directions = screening.best(candidate, 2)
-        runners += [along(problem, fit, d, COARSE_ROUNDS[0][0]) for d in directions]
+        runners += [along(problem, fit, d, _COARSE_ROUNDS[0][0]) for d in directions]
         for amplitude in candidate.effect.parameters[0].far:
             x = np.concatenate([fit.x, [amplitude]])
             runners.append(_started(problem, x))
         if candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
             progress(f"{candidate.label} from the sheet")
             runners.append(_from_nominal(problem, fit, directions))
-    for (stage, iterations), keep in zip(COARSE_ROUNDS, SURVIVORS, strict=True):
+    for (stage, iterations), keep in zip(_COARSE_ROUNDS, _SURVIVORS, strict=True):
         done: list[Runner] = []
         for r in runners:
             progress(_trying(r, done))
@@ -271,12 +271,12 @@ def _runner(problem: FitProblem, x: FloatArray) -> Runner:
 
 
 def _started(problem: FitProblem, x: FloatArray) -> Runner:
-    stage = COARSE_ROUNDS[0][0]
+    stage = _COARSE_ROUNDS[0][0]
     fit = minimise(problem, x, stage, iterations=4, exact_slopes=False)
     return Runner(problem, fit.x, fit.cost)
 
 
-def swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
+def _swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
     """Start where an effect hands back to the base what the base took of it.
 
     An added mass is exactly a larger mass: along such a direction only the priors
@@ -284,9 +284,9 @@ def swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
     """
     first = candidate.effect.parameters[0]
     plain = bench.residual(fit.base, fit.terms, MIDDLE)
-    tail = np.array([SWAP_PROBE])
+    tail = np.array([_SWAP_PROBE])
     moved = bench.residual(fit.base, (*fit.terms, Term(candidate, tail)), MIDDLE)
-    d = (moved - plain) / SWAP_PROBE
+    d = (moved - plain) / _SWAP_PROBE
     hessian = fit.jacobian.T @ fit.jacobian + 1e-6 * np.diag(fit.prior)
     way = -np.linalg.solve(hessian, fit.jacobian.T @ d)
     off = fit.x - fit.centre

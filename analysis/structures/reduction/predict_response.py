@@ -14,7 +14,7 @@ from jointbench.analysis.structures.reduction.reduced_model import (
 )
 
 # Modes that damping couples at once; beyond them it is brought in by refinement.
-COUPLED = 60
+_COUPLED = 60
 _REFINEMENTS = 4
 # A pole that swings less than this against its decay is a decay; the loss of the bodies
 # alone turns a decay by about its loss factor.
@@ -152,7 +152,7 @@ def predict_complex_modes(
         Ewins, Modal Testing (2000), sec. 2.7.
     """
     state = modal_state(model, values.stiffness)
-    count = min(COUPLED, state.eigenvalue.size)
+    count = min(_COUPLED, state.eigenvalue.size)
     moved = np.s_[state.rigid : count]
     # Unknowns: omega times displacement, which rigid motions do not need, and velocity.
     omega = np.sqrt(state.eigenvalue[moved])
@@ -243,7 +243,7 @@ def _solve_lines(
 
     motion = rough(wanted)
     left = missing(motion)
-    for _ in range(_REFINEMENTS if state.eigenvalue.size > COUPLED else 0):
+    for _ in range(_REFINEMENTS if state.eigenvalue.size > _COUPLED else 0):
         better = motion + rough(left)
         remains = missing(better)
         helps = np.linalg.norm(remains, axis=(1, 2)) < np.linalg.norm(left, axis=(1, 2))
@@ -256,7 +256,7 @@ def _rough_inverse(
     state: ModalState, viscous: FloatArray, laplace: ComplexArray, own: ComplexArray
 ) -> Callable[[ComplexArray], ComplexArray]:
     """Return an inverse of Z that couples the low modes only."""
-    count = min(COUPLED, state.eigenvalue.size)
+    count = min(_COUPLED, state.eigenvalue.size)
     whole = (
         laplace[:, None, None] * viscous[:count, :count]
         + 1j * (state.loss[:count, :count])
