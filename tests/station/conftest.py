@@ -18,11 +18,15 @@ Maker = Callable[..., Path]
 
 
 @pytest.fixture(autouse=True, scope="session")
-def heard_ctrl_c() -> Iterator[None]:
-    """Let children hear Ctrl-C, even where the tests run in a shell's background."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+def heard_signals() -> Iterator[None]:
+    """Let children hear Ctrl-C and SIGHUP, even in a shell's background or nohup."""
+    wanted = {signal.SIGINT: signal.default_int_handler}
+    if hasattr(signal, "SIGHUP"):
+        wanted[signal.SIGHUP] = signal.SIG_DFL
+    before = {number: signal.signal(number, how) for number, how in wanted.items()}
     yield
-    signal.signal(signal.SIGINT, before)
+    for number, how in before.items():
+        signal.signal(number, how)
 
 
 def ringing(seed: int, *, hits: int = 2, bounce: float = 0.0) -> Recording:

@@ -280,9 +280,13 @@ def test_a_sheet_with_a_value_that_no_body_has_is_refused(
     ],
 )
 def test_a_campaign_that_claims_more_or_less_than_any_is_refused_unread(
-    tmp_path: Path, change: Change, word: str
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, change: Change, word: str
 ) -> None:
-    """Eight terabytes of accelerations are not asked for; no record is no campaign."""
+    """Eight terabytes of accelerations are not asked for; no record is no campaign.
+
+    With memory allowed for a million samples, their number is what is refused.
+    """
+    monkeypatch.setenv("JOINTBENCH_MEMORY_MB", "2000")
     with pytest.raises(HostileFile, match=word):
         read_changed(tmp_path, change)
 
