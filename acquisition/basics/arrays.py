@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Array types and the checks that every record runs once, when it is made."""
+"""Array types, and arrays that nobody can write to any more."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from jointbench.acquisition.basics.errors import ShapeError
 
 FloatArray = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -34,35 +31,3 @@ def read_only(values: Any) -> NDArray[Any]:
         array = array.copy()
         array.flags.writeable = False
     return array
-
-
-def require_shape(name: str, array: NDArray[Any], shape: Sequence[int | None]) -> None:
-    """Raise `ShapeError` unless `array` has `shape`; `None` stands for any length."""
-    if len(shape) != array.ndim or any(
-        want is not None and want != got
-        for want, got in zip(shape, array.shape, strict=False)
-    ):
-        wanted = ", ".join("any" if n is None else str(n) for n in shape)
-        raise ShapeError(f"{name!r} has shape {array.shape}, expected ({wanted})")
-
-
-def require_finite(name: str, array: NDArray[Any]) -> None:
-    """Raise `ShapeError` if a value of `array` is NaN or infinite."""
-    bad = np.flatnonzero(~np.isfinite(array).ravel())
-    if bad.size:
-        raise ShapeError(
-            f"{name!r} holds {bad.size} values that are not finite, "
-            f"the first at index {bad[0]}"
-        )
-
-
-def require_ascending(name: str, array: NDArray[Any]) -> None:
-    """Raise `ShapeError` unless `array` rises strictly."""
-    if array.ndim != 1 or (array.size > 1 and not np.all(np.diff(array) > 0)):
-        raise ShapeError(f"{name!r} must be one-dimensional and rise strictly")
-
-
-def require_positive(name: str, value: float) -> None:
-    """Raise `ShapeError` unless `value` is finite and above zero."""
-    if not (np.isfinite(value) and value > 0):
-        raise ShapeError(f"{name!r} is {value!r}, it must be finite and positive")

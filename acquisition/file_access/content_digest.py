@@ -18,12 +18,11 @@ import numpy as np
 from h5py import h5a
 
 from jointbench.acquisition.basics.errors import RottenFile
-from jointbench.acquisition.file_access.netcdf_read import (
-    dimension_names,
-    read_attribute,
-)
-from jointbench.acquisition.file_access.netcdf_write import new_file, write_attributes
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.create_netcdf import new_file
+from jointbench.acquisition.file_access.hdf5_layout import dimension_names
+from jointbench.acquisition.file_access.netcdf_read import read_attribute
+from jointbench.acquisition.file_access.netcdf_write import write_attributes
+from jointbench.acquisition.file_access.quoting import named
 
 DIGEST = "content_sha256"
 """Attribute of the root that holds the digest."""

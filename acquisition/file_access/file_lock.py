@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 
 if sys.platform == "win32":
     import msvcrt

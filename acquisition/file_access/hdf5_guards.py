@@ -17,7 +17,8 @@ from h5py import h5a, h5d, h5g, h5o, h5t, h5z
 
 from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
 from jointbench.acquisition.file_access.memory_room import VARIABLE, room
-from jointbench.acquisition.file_access.text_files import file_size, named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import file_size
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _FILTERS = {

@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.basics.errors import HostileFile
-from jointbench.acquisition.file_access.text_files import file_size, named
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.text_files import file_size
 
 ROOM = 350
 """Beside four times the file [MB]."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads back what `netcdf` writes. Open the file with `guards.open_guarded` first."""
+"""Reads back what `netcdf_write` wrote; `hdf5_guards.open_guarded` opens the file."""
 
 import h5py
 import numpy as np
@@ -7,7 +7,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.memory_room import MAX_ROWS
-from jointbench.acquisition.file_access.netcdf_write import NO_VARIABLE, Attribute
+from jointbench.acquisition.file_access.netcdf_write import Attribute
 
 _CHARACTER_AXES = 2
 
@@ -79,33 +79,3 @@ def read_array(dataset: h5py.Dataset) -> FloatArray:
 def read_integers(dataset: h5py.Dataset) -> IntArray:
     """Return whole numbers as stored."""
     return np.asarray(dataset[...], dtype=np.int64)
-
-
-def find_group(parent: h5py.Group, name: str) -> h5py.Group | None:
-    """Return a group, or None where there is nothing of that name.
-
-    Raises:
-        FormatError: it is a dataset.
-    """
-    found = parent.get(name)
-    if found is not None and not isinstance(found, h5py.Group):
-        raise FormatError(f"{found.name!r} must be a group, it is a dataset")
-    return found
-
-
-def dimension_names(dataset: h5py.Dataset) -> tuple[str, ...]:
-    """Return the name of each axis, empty where it has none."""
-    names = []
-    for axis in dataset.dims:
-        scale = axis[0] if len(axis) else None
-        names.append("" if scale is None else str(scale.name).rsplit("/", 1)[-1])
-    if dataset.is_scale and names == [""]:
-        return (str(dataset.name).rsplit("/", 1)[-1],)
-    return tuple(names)
-
-
-def is_dimension_only(dataset: h5py.Dataset) -> bool:
-    """Tell whether a dataset stands for a dimension and holds no values."""
-    label = dataset.attrs.get("NAME", b"")
-    text = label.decode("utf-8", "ignore") if isinstance(label, bytes) else str(label)
-    return bool(dataset.is_scale) and text.startswith(NO_VARIABLE)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""HDF5 that netCDF-4 readers understand: dimension scales, units, flags, plain text.
+"""HDF5 that netCDF-4 readers understand: dimension scales, units, even axes.
 
 Both the session file and the results file beside it are written through these
-helpers. They keep to what every reader has: no compound types, no variable-length
+helpers, those of `netcdf_encodings` and `create_netcdf`. They keep to what every reader has: no compound types, no variable-length
 data, no plug-in filters; complex numbers are two real variables, texts are character
 arrays with an `_Encoding`, and an even axis is whole numbers with `scale_factor` and
 `add_offset`, which readers that know CF turn into seconds or metres by themselves.
@@ -13,91 +13,23 @@ Source:
 """
 
 import math
-import os
-import re
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import h5py
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray
-from jointbench.acquisition.basics.errors import BadData, ShapeError, UsageError
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.basics.errors import BadData, ShapeError
+from jointbench.acquisition.file_access.quoting import shown
 
-_CONVENTIONS = "CF-1.11"
 # What netCDF-4 calls a dimension that has no coordinate variable.
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 _MAX_ATTRIBUTE_BYTES = 60_000  # HDF5 keeps at most 64 KiB beside an object
-_GROWTH = 2**22  # bytes by which a file in memory grows
-_IN_MEMORY: dict[str, Any] = {
-    "driver": "core",
-    "backing_store": False,
-    "block_size": _GROWTH,
-}
 CHUNK_VALUES = 65_536
 """Values of a chunk; what is written piece by piece is written by so many columns."""
 _COMPRESS_FROM = 256  # values; below, a chunk costs more than it saves
 
 Attribute = str | int | float | bool
-
-
-@contextmanager
-def new_file(
-    path: Path | str,
-    *,
-    schema: str,
-    title: str,
-    overwrite: bool = False,
-    memory: bool = True,
-) -> Iterator[h5py.File]:
-    """Write a file that appears under its name only once it is whole.
-
-    It is written to ``<name>.part`` beside it, forced to the disk and renamed.
-
-    Args:
-        path: of the file to be.
-        schema: name and version of the layout, for example ``"jointbench-session/1"``.
-        title: one line for people who open it elsewhere.
-        overwrite: replace a file that is there.
-        memory: make the whole file in memory first; whoever writes more than that
-            holds writes to the disk, and sees to it that there is room (`DiskRoom`).
-
-    Yields:
-        The open file, with its root attributes set.
-
-    Raises:
-        UsageError: there is such a file and `overwrite` is off, or it cannot be
-            written there.
-    """
-    path = Path(path)
-    _require_free(path, overwrite)
-    part = path.with_name(path.name + ".part")
-    try:
-        part.write_bytes(b"")  # a folder that takes no file says so before the work
-        # HDF5 that meets a full disk crashes the process when it ends: it writes to
-        # memory, and what it made goes to the disk in one piece.
-        with h5py.File(part, "w", **(_IN_MEMORY if memory else {})) as file:
-            attributes = {"Conventions": _CONVENTIONS, "title": title, "schema": schema}
-            write_attributes(file, attributes)
-            yield file
-            file.flush()
-            image = file.id.get_file_image() if memory else None
-        if image is not None:
-            part.write_bytes(image)
-        _sync(part)
-        _require_free(path, overwrite)
-        part.replace(path)
-        _sync(path.parent)
-    except OSError as error:
-        raise UsageError(
-            f"{named(path)} cannot be written: {_reason(error)}; choose another place"
-        ) from error
-    finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
 
 
 def write_attributes(
@@ -110,7 +42,7 @@ def write_attributes(
     """
     for name, value in values.items():
         if isinstance(value, str):
-            data = _encode(value, name)
+            data = encode_text(value, name)
             if len(data) > _MAX_ATTRIBUTE_BYTES:
                 raise BadData(
                     f"{name!r} has {len(data)} bytes of text, at most "
@@ -250,74 +182,7 @@ def write_axis(
     return dataset
 
 
-def write_flags(
-    group: h5py.Group,
-    name: str,
-    codes: Any,
-    dims: Sequence[str],
-    *,
-    meanings: Sequence[str],
-    long_name: str,
-) -> h5py.Dataset:
-    """Write small whole numbers that each stand for a word (CF flags).
-
-    Args:
-        group: where.
-        name: of the variable.
-        codes: index into `meanings`, any shape.
-        dims: one name for each axis.
-        meanings: words without blanks, by code.
-        long_name: what it is, in words.
-    """
-    values = np.asarray(codes, dtype=np.int8)
-    dataset = write_variable(group, name, values, dims, long_name=long_name)
-    dataset.attrs.create("flag_values", np.arange(len(meanings), dtype=np.int8))
-    write_attributes(dataset, {"flag_meanings": " ".join(meanings)})
-    return dataset
-
-
-def write_texts(
-    group: h5py.Group, name: str, texts: Sequence[str], dim: str, *, long_name: str
-) -> h5py.Dataset:
-    """Write one text for each index of a dimension, as UTF-8 characters.
-
-    Raises:
-        BadData: a text cannot be stored without loss.
-        ShapeError: there are no texts.
-    """
-    coded = [_encode(text, name) for text in texts]
-    width = max([1, *map(len, coded)])
-    table = np.array(coded, dtype=f"S{width}").view("S1").reshape(len(coded), width)
-    return write_variable(
-        group,
-        name,
-        table,
-        (dim, f"{name}_length"),
-        long_name=long_name,
-        attributes={"_Encoding": "utf-8"},
-    )
-
-
-def write_complex(
-    group: h5py.Group,
-    name: str,
-    values: ComplexArray,
-    dims: Sequence[str],
-    *,
-    units: str | None = None,
-    long_name: str = "",
-) -> None:
-    """Write complex numbers as two variables, `name`_re and `name`_im."""
-    for suffix, part in (("re", np.real(values)), ("im", np.imag(values))):
-        words = (
-            f"{'real' if suffix == 're' else 'imaginary'} part of {long_name or name}"
-        )
-        write_variable(
-            group, f"{name}_{suffix}", part, dims, units=units, long_name=words
-        )
-
-
-def _encode(text: str, name: str) -> bytes:
+def encode_text(text: str, name: str) -> bytes:
     """Return UTF-8 without what a fixed-length text would lose."""
     try:
         data = text.encode("utf-8")
@@ -363,36 +228,3 @@ def _chunks(shape: tuple[int, ...]) -> tuple[int, ...]:
         chunks.append(max(1, min(length, left)))
         left //= max(1, length)
     return tuple(reversed(chunks))
-
-
-def _require_free(path: Path, overwrite: bool) -> None:
-    if path.is_dir():
-        raise UsageError(f"{named(path)} is a folder; name a file in it")
-    if path.exists() and not path.is_file():
-        raise UsageError(f"{named(path)} is no file; name one that may be written")
-    if not overwrite and path.exists():
-        raise UsageError(
-            f"{named(path)} is there already; choose another name, or say that it may "
-            "be overwritten"
-        )
-
-
-def _reason(error: OSError) -> str:
-    """Return the system's word for an error, without HDF5's account of itself."""
-    told = re.search(r"errno = (\d+)", str(error))
-    code = error.errno or (int(told[1]) if told else 0)
-    return os.strerror(code) if code else "the system refused"
-
-
-def _sync(path: Path) -> None:
-    """Force a file, or the entries of a folder where the system can, to the disk."""
-    try:
-        handle = os.open(path, os.O_RDONLY)
-    except OSError:
-        if path.is_dir():  # not on Windows
-            return
-        raise
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)

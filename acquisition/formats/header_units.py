@@ -8,9 +8,10 @@ quantities, and the user says what all of them are.
 import re
 
 from jointbench.acquisition.basics.units import is_unit
-from jointbench.acquisition.file_access.text_files import shown
+from jointbench.acquisition.file_access.quoting import shown
 from jointbench.acquisition.formats.columns import Column
-from jointbench.acquisition.formats.tables import Table, split_row
+from jointbench.acquisition.formats.table_cells import split_row
+from jointbench.acquisition.formats.tables import Table
 from jointbench.acquisition.records.recordings import Quantity
 
 _KINDS = ("time", *(quantity.value for quantity in Quantity), "voltage")

@@ -21,14 +21,16 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.basics.units import example_unit, is_unit, to_si
-from jointbench.acquisition.file_access.text_files import file_digest, named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.formats.columns import (
     SKIP,
     Column,
     only_roles,
     parse_columns,
 )
-from jointbench.acquisition.records.recordings import Channel, Quantity, Recording, step
+from jointbench.acquisition.records.provenance import step
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 
 MOST_VALUES = 100_000_000
 MOST_CHANNELS = 4096

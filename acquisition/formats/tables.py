@@ -14,13 +14,19 @@ from numpy.typing import NDArray
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.memory_room import require_room
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import (
     decode,
     file_size,
-    named,
     read_bytes,
-    shown,
     text_lines,
+)
+from jointbench.acquisition.formats.table_cells import (
+    DECIMAL_COMMA,
+    MISSING_WORDS,
+    NUMBER,
+    parse_cell,
+    split_row,
 )
 
 _MAX_ROWS = 20_000_000
@@ -44,13 +50,10 @@ _NEEDED = 24
 """Of each number of an array: as it is read, laid in rows, and in its unit [bytes]."""
 _MAX_SLOW_CELLS = 3_000_000
 """Cells in rows that must be read one by one, at about a microsecond each."""
-_MISSING_WORDS = frozenset({"", "nan", "bad", "n/a", "na", "null", "-", "--", "---"})
 _MISSING_WORD = re.compile(
-    r"(?<!\S)(?:" + "|".join(sorted(_MISSING_WORDS - {""}, reverse=True)) + r")(?!\S)",
+    r"(?<!\S)(?:" + "|".join(sorted(MISSING_WORDS - {""}, reverse=True)) + r")(?!\S)",
     re.I,
 )
-NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf|nan)", re.I)
-DECIMAL_COMMA = re.compile(r"[+-]?(?:\d+,\d*|,\d+)(?:[eE][+-]?\d+)?")
 _THOUSANDS = re.compile(r"(?<![\d,])[1-9]\d{0,2}(?:,\d{3})+(?![\d,])")
 _GROUPED = re.compile(r"\d(?:\.\d{3})+,\d|\d(?:,\d{3})+\.\d")
 # ``"0,5","1,5"``: the quotes say that these commas part no columns.
@@ -233,11 +236,6 @@ def _with_points(
     return [row.replace(",", ".") for row in rows]
 
 
-def split_row(line: str, delimiter: str | None) -> list[str]:
-    """Split a line into cells without quotes and blanks."""
-    return [cell.strip().strip('"').strip() for cell in line.split(delimiter)]
-
-
 def _last_digit(cell: str) -> float:
     mantissa, _, exponent = cell.strip(' "\t').lower().partition("e")
     point = mantissa.find(".")
@@ -297,7 +295,7 @@ def _numeric_layout(index: int, line: str) -> _Start | None:
             continue
         cells = split_row(line, delimiter)
         numeric = sum(_is_number(cell, delimiter) for cell in cells)
-        missing = sum(cell.lower() in _MISSING_WORDS for cell in cells)
+        missing = sum(cell.lower() in MISSING_WORDS for cell in cells)
         if numeric and numeric + missing >= len(cells) and len(cells) <= _MAX_COLUMNS:
             return _Start(index, delimiter, len(cells))
     return None
@@ -347,7 +345,7 @@ def _with_nan(rows: list[str], start: _Start) -> list[str]:
     if start.delimiter is None:
         return [_MISSING_WORD.sub("nan", row) for row in rows]
     parted = re.escape(start.delimiter)
-    words = "|".join(map(re.escape, sorted(_MISSING_WORDS, key=len, reverse=True)))
+    words = "|".join(map(re.escape, sorted(MISSING_WORDS, key=len, reverse=True)))
     cell = re.compile(
         rf'(^|{parted})[ ]*+"?[ ]*+(?:{words})[ ]*+"?[ ]*+(?={parted}|$)', re.I
     )
@@ -380,27 +378,6 @@ def _parse_carefully(
             )
         values[j] = [parse_cell(cell, int(numbers[j]) + 1, path) for cell in cells]
     return values.T
-
-
-def parse_cell(cell: str, line: int, path: Path) -> float:
-    """Read one cell; NaN where it is empty or a word for "no value".
-
-    Raises:
-        FormatError: it is no number; the message names the line.
-    """
-    if NUMBER.fullmatch(cell):
-        return float(cell)
-    if cell.lower() in _MISSING_WORDS:
-        return float("nan")
-    if DECIMAL_COMMA.fullmatch(cell):
-        raise FormatError(
-            f"{named(path)}: line {line}: {shown(cell)} has a decimal comma, this "
-            "format has points; export it with points"
-        )
-    raise FormatError(
-        f"{named(path)}: line {line}: {shown(cell)} is not a number; every line below "
-        "the header must hold numbers only"
-    )
 
 
 def _without_empty_tail(values: FloatArray) -> FloatArray:

@@ -8,14 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from jointbench.acquisition.basics.arrays import (
-    FloatArray,
-    freeze,
+from jointbench.acquisition.basics.array_checks import (
     require_finite,
     require_positive,
     require_shape,
 )
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import ChannelMissing, ShapeError
+from jointbench.acquisition.records.provenance import Provenance
 
 
 class Quantity(StrEnum):
@@ -37,27 +37,6 @@ class Verdict(StrEnum):
     LATE = "late"
     POOR_COHERENCE = "poor_coherence"
     OPERATOR = "operator"
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One step of processing, as provenance keeps it.
-
-    Attributes:
-        name: what was done, for example ``"import"`` or ``"force_window"``.
-        detail: the parameters and reasons, by name; plain text, numbers or flags.
-    """
-
-    name: str
-    detail: tuple[tuple[str, str | float | int | bool], ...] = ()
-
-
-Provenance = tuple[Step, ...]
-
-
-def step(name: str, /, **detail: str | float | int | bool) -> Step:
-    """Make a `Step` from keyword details."""
-    return Step(name, tuple(detail.items()))
 
 
 @dataclass(frozen=True, slots=True)

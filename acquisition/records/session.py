@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 
-from jointbench.acquisition.basics.arrays import require_positive
+from jointbench.acquisition.basics.array_checks import require_positive
 from jointbench.acquisition.basics.errors import ShapeError
-from jointbench.acquisition.records.recordings import Provenance, Recording
+from jointbench.acquisition.records.provenance import Provenance
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.surfaces import Surface
 
 

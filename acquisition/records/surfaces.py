@@ -5,15 +5,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import (
-    BoolArray,
-    FloatArray,
-    freeze,
+from jointbench.acquisition.basics.array_checks import (
     require_finite,
     require_positive,
     require_shape,
 )
-from jointbench.acquisition.records.recordings import Provenance
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
+from jointbench.acquisition.records.provenance import Provenance
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,18 +16,15 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError, UsageError
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
-from jointbench.acquisition.serial_lines.line import (
-    TRIES,
-    Line,
+from jointbench.acquisition.serial_lines.line import TRIES, Line, ask_again, plain_text
+from jointbench.acquisition.serial_lines.line_faults import (
     LineBroken,
     LineSilent,
     ProfileBroken,
     ProfileSilent,
     Unreadable,
-    ask_again,
-    plain_text,
 )
 
 BAUD = 115_200

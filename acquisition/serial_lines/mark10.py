@@ -12,12 +12,8 @@ from dataclasses import dataclass
 
 from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.basics.units import is_unit, to_si
-from jointbench.acquisition.serial_lines.line import (
-    Line,
-    Unreadable,
-    ask_again,
-    plain_text,
-)
+from jointbench.acquisition.serial_lines.line import Line, ask_again, plain_text
+from jointbench.acquisition.serial_lines.line_faults import Unreadable
 
 BAUD = 115_200
 _MOST = 64

@@ -17,15 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.errors import FormatError, InstrumentError
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
-from jointbench.acquisition.serial_lines.line import (
-    Line,
+from jointbench.acquisition.serial_lines.line import Line, ask_again, plain_text
+from jointbench.acquisition.serial_lines.line_faults import (
     LineBroken,
     ProfileBroken,
     Unreadable,
-    ask_again,
-    plain_text,
 )
 
 BAUD = 9600

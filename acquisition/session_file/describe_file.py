@@ -12,22 +12,22 @@ import numpy as np
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.basics.units import example_unit
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
-from jointbench.acquisition.file_access.netcdf_read import (
+from jointbench.acquisition.file_access.hdf5_layout import (
     dimension_names,
     is_dimension_only,
-    read_attribute,
 )
-from jointbench.acquisition.records.recordings import Hit, Provenance
+from jointbench.acquisition.file_access.netcdf_read import read_attribute
+from jointbench.acquisition.records.provenance import Provenance
+from jointbench.acquisition.records.recordings import Hit
 from jointbench.acquisition.session_file.extras import (
     read_instrument,
     read_provenance,
     read_setup,
     read_spacing,
 )
+from jointbench.acquisition.session_file.record_groups import in_order, number
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, damage_named
 from jointbench.acquisition.session_file.streams import (
-    in_order,
-    number,
     read_channels,
     read_hits,
     read_preload,

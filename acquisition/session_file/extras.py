@@ -16,9 +16,10 @@ import h5py
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, FormatError
+from jointbench.acquisition.file_access.hdf5_layout import find_group
 from jointbench.acquisition.file_access.memory_room import require_short_json
+from jointbench.acquisition.file_access.netcdf_encodings import write_flags, write_texts
 from jointbench.acquisition.file_access.netcdf_read import (
-    find_group,
     read_array,
     read_attribute,
     read_flags,
@@ -28,11 +29,9 @@ from jointbench.acquisition.file_access.netcdf_read import (
 from jointbench.acquisition.file_access.netcdf_write import (
     write_attributes,
     write_axis,
-    write_flags,
-    write_texts,
     write_variable,
 )
-from jointbench.acquisition.records.recordings import Provenance, Step
+from jointbench.acquisition.records.provenance import Provenance, Step
 from jointbench.acquisition.records.session import JointSetup, Session
 from jointbench.acquisition.records.surfaces import (
     Areal,
@@ -40,7 +39,11 @@ from jointbench.acquisition.records.surfaces import (
     Surface,
     SurfaceInstrument,
 )
-from jointbench.acquisition.session_file.streams import free_name, narrowest, number
+from jointbench.acquisition.session_file.record_groups import (
+    free_name,
+    narrowest,
+    number,
+)
 
 _OWNERS = ("session", "recording", "surface")
 _INSTRUMENT_NUMBERS = (

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import h5py
 
-from jointbench.acquisition.basics.arrays import require_finite
+from jointbench.acquisition.basics.array_checks import require_finite
+from jointbench.acquisition.file_access.create_netcdf import new_file
 from jointbench.acquisition.file_access.disk_room import DiskRoom
 from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
-from jointbench.acquisition.file_access.netcdf_write import new_file
 from jointbench.acquisition.session_file.extras import write_provenance
 from jointbench.acquisition.session_file.live_read import (
     LiveContent,

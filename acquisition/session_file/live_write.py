@@ -31,7 +31,7 @@ from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.acquisition.file_access.disk_room import DiskRoom
 from jointbench.acquisition.file_access.file_lock import drop_lock, hold_lock
 from jointbench.acquisition.file_access.netcdf_write import write_attributes
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.records.recordings import Channel
 
 LIVE_SCHEMA = "jointbench-live/1"

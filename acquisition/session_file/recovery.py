@@ -18,15 +18,13 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError
+from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.recordings import (
     Channel,
     Hit,
-    Provenance,
     Quantity,
     Recording,
-    Step,
     Verdict,
-    step,
 )
 from jointbench.acquisition.records.session import JointSetup, Session
 from jointbench.acquisition.session_file.live_read import (

@@ -7,7 +7,8 @@ from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
-from jointbench.acquisition.file_access.text_files import file_size, named
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.text_files import file_size
 
 FAMILIES = ("jointbench-session/", "jointbench-live/")
 """How the layouts of finished sessions and of recordings begin."""

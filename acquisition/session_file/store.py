@@ -21,11 +21,12 @@ from pathlib import Path
 import h5py
 
 from jointbench.acquisition.basics.errors import BadData, FormatError
+from jointbench.acquisition.file_access.create_netcdf import new_file
 from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
-from jointbench.acquisition.file_access.netcdf_write import new_file, write_attributes
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.netcdf_write import write_attributes
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.extras import (
     read_provenance,
@@ -37,10 +38,10 @@ from jointbench.acquisition.session_file.extras import (
 )
 from jointbench.acquisition.session_file.live_read import read_live
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
+from jointbench.acquisition.session_file.record_groups import in_order
 from jointbench.acquisition.session_file.recovery import session_from_live
 from jointbench.acquisition.session_file.replaceable import require_session
 from jointbench.acquisition.session_file.streams import (
-    in_order,
     recording_from_group,
     write_recording,
 )

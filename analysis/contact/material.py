@@ -7,7 +7,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, require_positive
+from jointbench.acquisition.basics.array_checks import require_positive
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 
 # From far below the softest gel to ten times the modulus of diamond [Pa]; what lies

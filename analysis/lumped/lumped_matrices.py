@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.provenance import step
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 from jointbench.signal.frf.frf import Frf, FrfKind
 

@@ -7,12 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.acquisition.basics.arrays import (
-    ComplexArray,
-    FloatArray,
-    freeze,
-    require_shape,
-)
+from jointbench.acquisition.basics.array_checks import require_shape
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData
 
 

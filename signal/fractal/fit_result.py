@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.signal.fractal.judgement import Judgement
 from jointbench.signal.fractal.model_choice import Choice
 from jointbench.signal.fractal.self_affine import InstrumentModel

@@ -6,13 +6,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import (
-    FloatArray,
-    freeze,
-    require_ascending,
-    require_shape,
-)
-from jointbench.acquisition.records.recordings import Provenance
+from jointbench.acquisition.basics.array_checks import require_ascending, require_shape
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.records.provenance import Provenance
 
 NORMAL_97_5 = 1.959963984540054
 """97.5 % point of the normal distribution [-]."""

@@ -8,22 +8,15 @@ from enum import StrEnum
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
-from jointbench.acquisition.basics.arrays import (
-    ComplexArray,
-    FloatArray,
-    freeze,
+from jointbench.acquisition.basics.array_checks import (
     require_ascending,
     require_finite,
     require_shape,
 )
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import ShapeError
-from jointbench.acquisition.records.recordings import (
-    Provenance,
-    Quantity,
-    Recording,
-    Step,
-    step,
-)
+from jointbench.acquisition.records.provenance import Provenance, Step, step
+from jointbench.acquisition.records.recordings import Quantity, Recording
 from jointbench.signal.frf.estimators import Estimator, bias_bound, estimate_pair
 from jointbench.signal.frf.innovation_noise import innovation_noise
 from jointbench.signal.hits.campaign_level import compare_levels

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.records.recordings import Provenance
+from jointbench.acquisition.records.provenance import Provenance
 from jointbench.signal.hits.hit_spectra import HitSpectra, Pair
 from jointbench.signal.kalman.smoothing import stage_noise_of
 

@@ -13,13 +13,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import NoHitFound
-from jointbench.acquisition.records.recordings import (
-    Hit,
-    Quantity,
-    Recording,
-    Verdict,
-    step,
-)
+from jointbench.acquisition.records.provenance import step
+from jointbench.acquisition.records.recordings import Hit, Quantity, Recording, Verdict
 from jointbench.signal.hits.hit_verdicts import HitLimits, Judged, judge, noise_level
 
 

@@ -20,7 +20,8 @@ import scipy.optimize
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.acquisition.records.recordings import Recording, response_rows, step
+from jointbench.acquisition.records.provenance import step
+from jointbench.acquisition.records.recordings import Recording, response_rows
 from jointbench.signal.kalman.process_models import StateModel
 
 # Samples that stand still in a row: never fewer are a drop-out, and so many count as

@@ -24,7 +24,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import ChannelMissing
-from jointbench.acquisition.records.recordings import Provenance, Recording, step
+from jointbench.acquisition.records.provenance import Provenance, step
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.kalman.process_models import (
     KalmanModel,
     KalmanSettings,

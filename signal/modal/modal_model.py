@@ -6,15 +6,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from jointbench.acquisition.basics.array_checks import require_shape
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
     ComplexArray,
     FloatArray,
     IntArray,
     freeze,
-    require_shape,
 )
-from jointbench.acquisition.records.recordings import Provenance
+from jointbench.acquisition.records.provenance import Provenance
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.modal.mode_selection import FittedModes
 from jointbench.signal.modal.residue_covariance import residue_uncertainty

@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import NoModeFound, UsageError
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.signal.frf.band import choose_band
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.line_weights import weights_of

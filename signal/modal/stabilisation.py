@@ -13,13 +13,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from jointbench.acquisition.basics.array_checks import require_shape
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
     ComplexArray,
     FloatArray,
     IntArray,
     freeze,
-    require_shape,
 )
 from jointbench.signal.modal.lscf import OrderPoles
 

@@ -15,22 +15,18 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from jointbench.acquisition.basics.array_checks import require_shape
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
     ComplexArray,
     FloatArray,
     IntArray,
     freeze,
-    require_shape,
 )
 from jointbench.acquisition.basics.errors import NoModeFound, UsageError
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.acquisition.records.recordings import (
-    Provenance,
-    Recording,
-    response_rows,
-    step,
-)
+from jointbench.acquisition.records.provenance import Provenance, step
+from jointbench.acquisition.records.recordings import Recording, response_rows
 from jointbench.signal.modal.stabilisation import (
     Stabilisation,
     StabilityLimits,

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze, require_shape
+from jointbench.acquisition.basics.array_checks import require_shape
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.records.surfaces import Profile, Surface
 
 TAPERED = 0.1

@@ -8,7 +8,7 @@ import scipy.ndimage
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Profile, Surface
 from jointbench.signal.surface.levelling import MINIMUM_VALID_POINTS, SurfaceTooSmall
 

@@ -11,7 +11,7 @@ from math import atan2, gcd, hypot, pi
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Areal, Profile
 
 LONGEST_STEP = 5

@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 
 MINIMUM_VALID_POINTS = 16

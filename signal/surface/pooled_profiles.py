@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Profile
 from jointbench.signal.surface.binned_spectrum import pooled_spectrum
 from jointbench.signal.surface.structure_function import (

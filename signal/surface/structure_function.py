@@ -7,17 +7,14 @@ from typing import Literal
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import (
-    BoolArray,
-    FloatArray,
-    IntArray,
-    freeze,
+from jointbench.acquisition.basics.array_checks import (
     require_ascending,
     require_finite,
     require_shape,
 )
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import Provenance, step
+from jointbench.acquisition.records.provenance import Provenance, step
 from jointbench.acquisition.records.surfaces import Profile, Surface
 from jointbench.signal.surface.binned_spectrum import BinnedSpectrum, spectrum_of
 from jointbench.signal.surface.levelling import SurfaceTooSmall, level

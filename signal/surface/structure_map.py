@@ -11,12 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.basics.arrays import (
-    FloatArray,
-    IntArray,
-    freeze,
-    require_shape,
-)
+from jointbench.acquisition.basics.array_checks import require_shape
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Areal, Surface
 from jointbench.signal.surface.levelling import level

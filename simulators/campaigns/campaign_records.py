@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze, require_shape
+from jointbench.acquisition.basics.array_checks import require_shape
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.hidden.campaign_design import (
     FORCE_NOISE,

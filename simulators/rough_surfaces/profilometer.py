@@ -8,7 +8,7 @@ import scipy.ndimage
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, SurfaceInstrument
 
 

@@ -9,9 +9,10 @@ along any line of the surface is the stated power law, from the first lag on.
 import numpy as np
 from scipy.special import gamma as gamma_function
 
-from jointbench.acquisition.basics.arrays import FloatArray, require_positive
+from jointbench.acquisition.basics.array_checks import require_positive
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 from jointbench.simulators.rough_surfaces.brownian import brownian_field, brownian_lines
 

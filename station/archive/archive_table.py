@@ -16,8 +16,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.file_access.content_digest import new_signed_file
-from jointbench.acquisition.file_access.netcdf_write import write_texts, write_variable
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.netcdf_encodings import write_texts
+from jointbench.acquisition.file_access.netcdf_write import write_variable
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.station.files.output_paths import whole_file, write_text
 from jointbench.station.files.spreadsheet_text import escaped
 from jointbench.station.files.table_files import ExportColumn, ExportTable, write_mat

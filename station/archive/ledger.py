@@ -24,11 +24,8 @@ from typing import Any
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.content_digest import Seal
 from jointbench.acquisition.file_access.file_lock import drop_lock, hold_lock
-from jointbench.acquisition.file_access.text_files import (
-    file_size,
-    named,
-    read_bytes,
-)
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.text_files import file_size, read_bytes
 from jointbench.acquisition.records.session import software_version
 from jointbench.station.archive.process_file import Outcome, State
 from jointbench.station.archive.process_outcome import outcome_json

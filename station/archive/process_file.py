@@ -25,7 +25,8 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.file_access.content_digest import require_whole
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
-from jointbench.acquisition.file_access.text_files import file_digest, file_size, named
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.text_files import file_digest, file_size
 from jointbench.acquisition.records.session import Session, software_version
 from jointbench.acquisition.session_file.store import damage_named, read_session
 from jointbench.station.models.recipe import Recipe, recipe_digest

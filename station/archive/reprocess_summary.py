@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from jointbench.acquisition.file_access.text_files import named, visible
+from jointbench.acquisition.file_access.quoting import named, visible
 from jointbench.station.archive.process_file import Outcome, State
 from jointbench.station.archive.process_outcome import outcome_json
 from jointbench.station.archive.reprocess_progress import time_words

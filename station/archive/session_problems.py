@@ -7,7 +7,7 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
-from jointbench.acquisition.records.recordings import Step
+from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.live_read import LiveContent, read_live
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA

@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.console import Console
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.archive.archive_table import (
     Row,
     left_out_words,

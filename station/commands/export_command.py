@@ -17,7 +17,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.basics.units import example_unit
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.formats.samples.universal import SUFFIXES
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session

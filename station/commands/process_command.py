@@ -4,7 +4,7 @@
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.archive.process_file import Outcome, State, Task, process_task
 from jointbench.station.archive.process_outcome import (
     outcome_json,

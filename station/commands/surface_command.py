@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from jointbench.acquisition.formats.heights.height_facts import cautions
-from jointbench.acquisition.records.recordings import Step
+from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.surface_verdict import FractalFit

@@ -15,7 +15,7 @@ from jointbench.acquisition.basics.errors import JointbenchError, UsageError
 from jointbench.acquisition.file_access.content_digest import Seal, seal_of
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
-from jointbench.acquisition.file_access.text_files import shown, visible
+from jointbench.acquisition.file_access.quoting import shown, visible
 from jointbench.acquisition.session_file.store import damage_named
 from jointbench.station.archive.archive_table import TABLE_SCHEMA
 from jointbench.station.archive.ledger import ledger_seal

@@ -9,7 +9,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.station.files.input_files import SESSION_SUFFIXES
 
 RESULTS_SUFFIX = ".results.h5"

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 
 _HEAD_BYTES = 512
 _HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"

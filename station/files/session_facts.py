@@ -4,7 +4,7 @@
 import re
 from pathlib import Path
 
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.records.session import Session
 
 _SPECIMEN = re.compile(r"\bspecimen\s*[:=]\s*([^;,\n]+)", re.IGNORECASE)

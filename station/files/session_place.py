@@ -13,7 +13,7 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.file_lock import locked
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.session_file.replaceable import (
     fresh_path,
     require_replaceable,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Cells of tables that no spreadsheet takes for a formula."""
 
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 
 _FORMULA = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 

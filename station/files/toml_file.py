@@ -11,7 +11,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 from jointbench.acquisition.basics.errors import BadData, UnitError
 from jointbench.acquisition.basics.units import parse_value
-from jointbench.acquisition.file_access.text_files import named, visible
+from jointbench.acquisition.file_access.quoting import named, visible
 from jointbench.station.files.toml_text import load_toml
 
 Model = TypeVar("Model", bound=BaseModel)

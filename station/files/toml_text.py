@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.acquisition.file_access.text_files import file_size, named
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.text_files import file_size
 
 MOST_BYTES = 1_000_000
 MOST_PARTS = 16

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.station.files.output_paths import write_text
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.basics.errors import FormatError
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.samples.universal import read_universal_sets
 from jointbench.station.files.table_files import ExportColumn, ExportTable
 

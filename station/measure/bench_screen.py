@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.text import Text
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.records.recordings import Channel, Verdict
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.hits.live_hits import CutHit

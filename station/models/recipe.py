@@ -18,7 +18,7 @@ from pydantic import (
 )
 
 from jointbench.acquisition.basics.errors import BadData, JointbenchError
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.analysis.contact.models import contact_model
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
 from jointbench.station.files.toml_file import (

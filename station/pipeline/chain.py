@@ -16,7 +16,8 @@ from dataclasses import dataclass, field, replace
 
 from jointbench.acquisition.basics.errors import NoModeFound
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.acquisition.records.recordings import Provenance, Recording
+from jointbench.acquisition.records.provenance import Provenance
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.estimators import Estimator
 from jointbench.signal.frf.frf import Frf, estimate_frf
 from jointbench.signal.hits.find_hits import HitCriteria

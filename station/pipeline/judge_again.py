@@ -5,12 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.errors import NoHitFound
-from jointbench.acquisition.records.recordings import (
-    Hit,
-    Provenance,
-    Recording,
-    Verdict,
-)
+from jointbench.acquisition.records.provenance import Provenance
+from jointbench.acquisition.records.recordings import Hit, Recording, Verdict
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import HitCriteria, find_hits
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import Step
+from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 from jointbench.signal.fractal.weierstrass_fit import DIMENSION_RANGE, fit_weierstrass
 from jointbench.signal.surface.pooled_profiles import pool_profiles

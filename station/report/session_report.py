@@ -3,7 +3,8 @@
 
 from pathlib import Path
 
-from jointbench.acquisition.records.recordings import Step, Verdict
+from jointbench.acquisition.records.provenance import Step
+from jointbench.acquisition.records.recordings import Verdict
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.station.files.output_paths import check_outputs

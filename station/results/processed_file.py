@@ -26,16 +26,15 @@ from typing import Any
 import h5py
 
 from jointbench.acquisition.file_access.content_digest import new_signed_file
+from jointbench.acquisition.file_access.netcdf_encodings import write_flags, write_texts
 from jointbench.acquisition.file_access.netcdf_write import (
     write_attributes,
-    write_flags,
-    write_texts,
     write_variable,
 )
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.acquisition.records.recordings import Recording, Verdict
 from jointbench.acquisition.records.session import software_version
-from jointbench.acquisition.session_file.streams import free_name
+from jointbench.acquisition.session_file.record_groups import free_name
 from jointbench.station.files.session_facts import session_facts
 from jointbench.station.models.recipe import Recipe, recipe_content
 from jointbench.station.pipeline.judge_again import NOT_THERE, VerdictChange

@@ -9,9 +9,11 @@ import h5py
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.acquisition.file_access.netcdf_read import (
+from jointbench.acquisition.file_access.hdf5_layout import (
     dimension_names,
     is_dimension_only,
+)
+from jointbench.acquisition.file_access.netcdf_read import (
     read_array,
     read_attribute,
     read_complex,

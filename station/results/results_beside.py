@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.file_access.text_files import file_digest, named, visible
+from jointbench.acquisition.file_access.quoting import named, visible
+from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.station.files.archive_patterns import RESULTS_SUFFIX
 from jointbench.station.pipeline.preloads import by_preload, of_preload

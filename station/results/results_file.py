@@ -12,11 +12,13 @@ import h5py
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.file_access.content_digest import new_signed_file
-from jointbench.acquisition.file_access.netcdf_write import (
-    write_attributes,
+from jointbench.acquisition.file_access.netcdf_encodings import (
     write_complex,
     write_flags,
     write_texts,
+)
+from jointbench.acquisition.file_access.netcdf_write import (
+    write_attributes,
     write_variable,
 )
 from jointbench.acquisition.file_access.text_files import file_digest

@@ -13,8 +13,8 @@ import h5py
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.file_access.hdf5_layout import find_group
 from jointbench.acquisition.file_access.netcdf_read import (
-    find_group,
     read_array,
     read_attribute,
     read_complex,
@@ -22,7 +22,8 @@ from jointbench.acquisition.file_access.netcdf_read import (
     read_integers,
     read_texts,
 )
-from jointbench.acquisition.records.recordings import Provenance, Recording, Step
+from jointbench.acquisition.records.provenance import Provenance, Step
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.kalman.process_models import (
     KalmanModel,

@@ -16,16 +16,16 @@ import h5py
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.content_digest import require_whole
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
+from jointbench.acquisition.file_access.hdf5_layout import find_group
 from jointbench.acquisition.file_access.memory_room import require_short_json
 from jointbench.acquisition.file_access.netcdf_read import (
-    find_group,
     read_array,
     read_attribute,
     read_flags,
     read_texts,
     require_rows,
 )
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.session_file.store import damage_named
 from jointbench.station.pipeline.judge_again import VerdictChange
 from jointbench.station.results.processed_file import PROCESSED_SCHEMA

@@ -8,7 +8,7 @@ from rich.console import Console, ConsoleOptions, RenderableType
 from rich.segment import Segment
 from rich.text import Text
 
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 
 WIDTH_WITHOUT_TERMINAL = 120
 

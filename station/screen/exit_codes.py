@@ -16,7 +16,7 @@ from jointbench.acquisition.basics.errors import (
     JointbenchError,
     UsageError,
 )
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.screen.interrupt import interruptible
 
 _EXIT_INTERNAL = 1

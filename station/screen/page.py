@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Literal
 
-from jointbench.acquisition.file_access.text_files import visible
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.files.output_paths import write_text
 from jointbench.station.screen.figures import Figure
 

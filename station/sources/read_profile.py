@@ -12,7 +12,8 @@ from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.formats.heights.height_facts import cautions, checked
 from jointbench.acquisition.records.surfaces import Profile
 from jointbench.acquisition.serial_lines import diavite, mitutoyo
-from jointbench.acquisition.serial_lines.line import ProfileBroken, SerialLine
+from jointbench.acquisition.serial_lines.line import SerialLine
+from jointbench.acquisition.serial_lines.line_faults import ProfileBroken
 from jointbench.acquisition.session_file.add_surface import add_surface, require_addable
 from jointbench.acquisition.session_file.replaceable import fresh_path
 from jointbench.station.files.output_paths import (

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import InstrumentError
-from jointbench.acquisition.records.recordings import Recording, step
+from jointbench.acquisition.records.provenance import step
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import JointSetup, Session, new_session
 from jointbench.acquisition.records.source import Source
 from jointbench.signal.hits.find_hits import HitCriteria

@@ -3,9 +3,10 @@
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, require_positive
+from jointbench.acquisition.basics.array_checks import require_positive
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 
 FREQUENCY_RATIO = 1.5  # gamma [-]

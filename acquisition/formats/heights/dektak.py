@@ -14,19 +14,16 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import FormatError, SamplingError, UnitError
 from jointbench.acquisition.basics.units import to_si
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.even_steps import fit_even_steps
-from jointbench.acquisition.formats.heights.height_facts import (
-    caution,
-    range_caution,
-    stated_length,
-)
+from jointbench.acquisition.formats.heights.height_facts import caution, range_caution
 from jointbench.acquisition.formats.heights.printed_grids import (
     length_of,
     masked,
     parse_cells,
 )
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.formats.heights.stated_lengths import stated_length
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 
 _PARAMETERS = "Scan Parameters"

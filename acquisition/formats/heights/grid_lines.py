@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import FormatError, SamplingError
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.tables import Table
 

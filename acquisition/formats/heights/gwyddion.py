@@ -7,15 +7,16 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import FormatError, UnitError
 from jointbench.acquisition.basics.units import to_si
-from jointbench.acquisition.file_access.text_files import named
-from jointbench.acquisition.formats.heights.height_facts import caution, half_digit
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.formats.heights.height_facts import caution
 from jointbench.acquisition.formats.heights.printed_grids import (
     length_of,
     masked,
     rows_of,
 )
-from jointbench.acquisition.formats.tables import NUMBER
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.formats.heights.stated_lengths import half_digit
+from jointbench.acquisition.formats.table_cells import NUMBER
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal
 
 # The labels are translated, their order and the signs around them are not.

@@ -7,17 +7,15 @@ that a trace or a map is not whole, its heights are read at the pitch that holds
 the surface carries a caution that screens, reports and JSON repeat.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.basics.errors import FormatError, UnitError
-from jointbench.acquisition.basics.units import to_si
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.basics.errors import FormatError
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.heights.printed_grids import HIGHEST
-from jointbench.acquisition.formats.tables import NUMBER
-from jointbench.acquisition.records.recordings import Provenance, Step, step
+from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 
 LONGEST = 1.0
@@ -33,40 +31,6 @@ _FLAT_END = 8
 _CAUTION = "caution"
 
 
-@dataclass(frozen=True, slots=True)
-class StatedLength:
-    """A length as it is printed.
-
-    Attributes:
-        value: [m].
-        half_digit: half a unit of its last digit [m].
-    """
-
-    value: float
-    half_digit: float
-
-    def agrees(self, other: "StatedLength") -> bool:
-        """Tell whether two printed lengths may be the same one, rounded."""
-        rounding = self.half_digit + other.half_digit
-        return abs(self.value - other.value) <= rounding * (1 + 1e-9)
-
-
-def stated_length(cell: str) -> StatedLength | None:
-    """Read a printed length with its unit; None where there is none above zero."""
-    text = cell.strip()
-    match = NUMBER.match(text)
-    if match is None:
-        return None
-    try:
-        unit = to_si(text[match.end() :].strip(), "length")
-    except UnitError:
-        return None
-    value = float(match[0]) * unit
-    if not 0 < value < float("inf"):
-        return None
-    return StatedLength(value, half_digit(match[0]) * unit)
-
-
 def caution(text: str) -> Step:
     """Return a step of provenance that says what to keep in mind about heights."""
     return step(_CAUTION, said=text)
@@ -79,17 +43,6 @@ def cautions(provenance: Provenance) -> tuple[str, ...]:
         for one in provenance
         if one.name == _CAUTION
     )
-
-
-def half_digit(cell: str) -> float:
-    """Return half a unit of the last digit of a printed number [its unit].
-
-    >>> half_digit("10.0")
-    0.05
-    """
-    mantissa, _, exponent = cell.lower().partition("e")
-    decimals = len(mantissa.partition(".")[2])
-    return float(f"0.5e{int(exponent or 0) - decimals}")
 
 
 def range_caution(heights: Profile, limit: float) -> tuple[Step, ...]:

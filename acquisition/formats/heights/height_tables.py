@@ -14,7 +14,7 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.basics.units import is_unit
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import (
     SURFACE_EXAMPLES,
     Column,
@@ -24,8 +24,9 @@ from jointbench.acquisition.formats.columns import (
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.header_units import units_words
 from jointbench.acquisition.formats.heights.grid_lines import grid_axis, require_single
-from jointbench.acquisition.formats.tables import Table, split_row
-from jointbench.acquisition.records.recordings import Provenance, Step, step
+from jointbench.acquisition.formats.table_cells import split_row
+from jointbench.acquisition.formats.tables import Table
+from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 
 _LEAST_FILLED = 0.5

@@ -9,7 +9,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.heights.printed_grids import (
     count_of,
     masked,
@@ -17,7 +17,7 @@ from jointbench.acquisition.formats.heights.printed_grids import (
     parse_cells,
     rows_of,
 )
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, SurfaceInstrument
 
 WYKO = "Wyko ASCII Data File Format"

@@ -19,7 +19,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError, HostileFile, UnitError
 from jointbench.acquisition.basics.units import to_si
-from jointbench.acquisition.file_access.text_files import named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.heights.height_facts import caution
 from jointbench.acquisition.formats.heights.keyence_labels import (
     MARK,
@@ -27,13 +27,9 @@ from jointbench.acquisition.formats.heights.keyence_labels import (
     Language,
     decode_keyence,
 )
-from jointbench.acquisition.formats.tables import (
-    DECIMAL_COMMA,
-    MAX_CELLS,
-    NUMBER,
-    parse_cell,
-)
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.formats.table_cells import DECIMAL_COMMA, NUMBER, parse_cell
+from jointbench.acquisition.formats.tables import MAX_CELLS
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, SurfaceInstrument
 
 _MAX_HEADER_ROWS = 100

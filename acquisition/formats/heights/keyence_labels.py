@@ -10,7 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from jointbench.acquisition.basics.errors import FormatError
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 
 MARK = "ImageDataCsv"
 HEAD_BYTES = 8192

@@ -9,8 +9,9 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.acquisition.basics.errors import FormatError, HostileFile, UnitError
 from jointbench.acquisition.basics.units import parse_value
-from jointbench.acquisition.file_access.text_files import named, shown
-from jointbench.acquisition.formats.tables import MAX_CELLS, NUMBER, parse_cell
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.formats.table_cells import NUMBER, parse_cell
+from jointbench.acquisition.formats.tables import MAX_CELLS
 
 HIGHEST = 1e3
 """No profilometer measures a kilometre: beyond it stands a code [m]."""

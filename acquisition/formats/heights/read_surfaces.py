@@ -44,7 +44,7 @@ from jointbench.acquisition.formats.tables import (
     parse_table,
     read_head,
 )
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Surface
 
 _Parser = Callable[[Sequence[str], Path, Step, str], Surface]

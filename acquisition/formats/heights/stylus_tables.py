@@ -22,7 +22,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError, UnitError
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import Column
 from jointbench.acquisition.formats.heights.printed_grids import (
     count_of,
@@ -30,7 +30,7 @@ from jointbench.acquisition.formats.heights.printed_grids import (
     number_of,
     parse_cells,
 )
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 
 _HEAD = 60

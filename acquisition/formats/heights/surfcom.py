@@ -13,19 +13,18 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.basics.errors import FormatError
-from jointbench.acquisition.file_access.text_files import named, shown
-from jointbench.acquisition.formats.heights.height_facts import (
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.formats.heights.height_facts import caution, range_caution
+from jointbench.acquisition.formats.heights.stated_lengths import (
     StatedLength,
-    caution,
     half_digit,
-    range_caution,
 )
 from jointbench.acquisition.formats.heights.surfcom_settings import (
     SurfcomSettings,
     read_settings,
 )
-from jointbench.acquisition.formats.tables import NUMBER, parse_cell
-from jointbench.acquisition.records.recordings import Step, step
+from jointbench.acquisition.formats.table_cells import NUMBER, parse_cell
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 
 SUFFIXES = {".tx1": "primary profile", ".tx2": "roughness profile (filtered)"}

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UnitError
 from jointbench.acquisition.basics.units import parse_value
-from jointbench.acquisition.formats.heights.height_facts import (
+from jointbench.acquisition.formats.heights.stated_lengths import (
     StatedLength,
     stated_length,
 )

@@ -16,7 +16,8 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.basics.units import to_si
-from jointbench.acquisition.file_access.text_files import file_digest, named
+from jointbench.acquisition.file_access.quoting import named
+from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.formats.columns import (
     HITS_EXAMPLE,
     Column,
@@ -30,13 +31,8 @@ from jointbench.acquisition.formats.even_steps import (
 )
 from jointbench.acquisition.formats.header_units import hit_columns_stated, units_words
 from jointbench.acquisition.formats.tables import Table, load_table
-from jointbench.acquisition.records.recordings import (
-    Channel,
-    Quantity,
-    Recording,
-    Step,
-    step,
-)
+from jointbench.acquisition.records.provenance import Step, step
+from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 
 _QUANTITIES = tuple(quantity.value for quantity in Quantity)
 

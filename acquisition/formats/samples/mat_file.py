@@ -17,7 +17,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
 from jointbench.acquisition.file_access.memory_room import require_room
-from jointbench.acquisition.file_access.text_files import file_size, named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import file_size
 
 _NUMERIC = frozenset(
     f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.basics.errors import SamplingError, UnitError, UsageError
-from jointbench.acquisition.file_access.text_files import named
+from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import Column, parse_columns
 from jointbench.acquisition.formats.even_steps import fit_even_steps, roundest
 from jointbench.acquisition.formats.samples.mat_file import (

@@ -22,7 +22,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.hdf5_guards import FileLimits, open_guarded
-from jointbench.acquisition.file_access.text_files import file_size, named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import file_size
 from jointbench.acquisition.formats.stated_channels import (
     MOST_CHANNELS,
     StatedChannel,

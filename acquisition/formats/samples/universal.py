@@ -21,7 +21,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError, HostileFile, SamplingError
 from jointbench.acquisition.file_access.memory_room import require_room
-from jointbench.acquisition.file_access.text_files import named, read_bytes, shown
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import read_bytes
 from jointbench.acquisition.formats.even_steps import roundest
 from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.records.recordings import Quantity, Recording

@@ -18,7 +18,8 @@ from jointbench.acquisition.basics.errors import (
     UsageError,
 )
 from jointbench.acquisition.file_access.memory_room import require_room
-from jointbench.acquisition.file_access.text_files import file_size, named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import file_size
 from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.records.recordings import Recording
 

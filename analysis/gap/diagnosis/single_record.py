@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze, require_shape
+from jointbench.acquisition.basics.array_checks import require_shape
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData, SamplingError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnose import conclude

@@ -12,7 +12,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_array, read_attribute
-from jointbench.acquisition.file_access.text_files import named, shown, visible
+from jointbench.acquisition.file_access.quoting import named, shown, visible
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.two_body_model import two_body_model
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray, require_positive
+from jointbench.acquisition.basics.array_checks import require_positive
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.meshes.elements import shape_functions, volume_rule
 from jointbench.analysis.structures.meshes.mesh import Mesh

@@ -15,7 +15,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.memory_room import VARIABLE, room
-from jointbench.acquisition.file_access.text_files import file_size, named, shown
+from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.file_access.text_files import file_size
 
 CPU = 10
 """[s]"""

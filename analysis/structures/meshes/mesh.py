@@ -7,13 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from jointbench.acquisition.basics.arrays import (
-    FloatArray,
-    IntArray,
-    freeze,
-    require_finite,
-    require_shape,
-)
+from jointbench.acquisition.basics.array_checks import require_finite, require_shape
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.meshes.elements import ELEMENTS, ElementKind
 

@@ -7,7 +7,8 @@ import pytest
 
 from jointbench.acquisition.basics.errors import FormatError, InstrumentError
 from jointbench.acquisition.serial_lines import diavite, mark10, mitutoyo
-from jointbench.acquisition.serial_lines.line import Line, LineBroken, SerialLine
+from jointbench.acquisition.serial_lines.line import Line, SerialLine
+from jointbench.acquisition.serial_lines.line_faults import LineBroken
 from jointbench.simulators.twins.dialogue import (
     DiaviteTwin,
     Mark10Twin,

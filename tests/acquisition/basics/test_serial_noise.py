@@ -7,14 +7,12 @@ import pytest
 
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.serial_lines import diavite, mark10, mitutoyo
-from jointbench.acquisition.serial_lines.line import (
-    TRIES,
+from jointbench.acquisition.serial_lines.line import TRIES, SerialLine, plain_text
+from jointbench.acquisition.serial_lines.line_faults import (
     LineBroken,
     LineSilent,
     ProfileBroken,
-    SerialLine,
     Unreadable,
-    plain_text,
 )
 from jointbench.simulators.twins.dialogue import (
     Answer,

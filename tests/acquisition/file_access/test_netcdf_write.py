@@ -9,21 +9,25 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from jointbench.acquisition.basics.errors import BadData, ShapeError, UsageError
-from jointbench.acquisition.file_access.netcdf_read import (
+from jointbench.acquisition.file_access.create_netcdf import new_file
+from jointbench.acquisition.file_access.hdf5_layout import (
     dimension_names,
     is_dimension_only,
+)
+from jointbench.acquisition.file_access.netcdf_encodings import (
+    write_complex,
+    write_flags,
+    write_texts,
+)
+from jointbench.acquisition.file_access.netcdf_read import (
     read_attribute,
     read_complex,
     read_flags,
     read_texts,
 )
 from jointbench.acquisition.file_access.netcdf_write import (
-    new_file,
     write_attributes,
     write_axis,
-    write_complex,
-    write_flags,
-    write_texts,
     write_variable,
 )
 

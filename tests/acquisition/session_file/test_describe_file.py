@@ -7,19 +7,16 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import BadData, FormatError
-from jointbench.acquisition.file_access.netcdf_write import (
-    new_file,
-    write_axis,
-    write_complex,
-    write_variable,
-)
+from jointbench.acquisition.file_access.create_netcdf import new_file
+from jointbench.acquisition.file_access.netcdf_encodings import write_complex
+from jointbench.acquisition.file_access.netcdf_write import write_axis, write_variable
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.recordings import (
     Channel,
     Hit,
     Quantity,
     Recording,
     Verdict,
-    step,
 )
 from jointbench.acquisition.records.session import JointSetup, new_session
 from jointbench.acquisition.records.surfaces import Areal

@@ -16,14 +16,13 @@ from jointbench.acquisition.basics.errors import (
     ShapeError,
     UsageError,
 )
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.recordings import (
     Channel,
     Hit,
     Quantity,
     Recording,
-    Step,
     Verdict,
-    step,
 )
 from jointbench.acquisition.records.session import JointSetup, Session, new_session
 from jointbench.acquisition.records.surfaces import Areal, Profile, SurfaceInstrument

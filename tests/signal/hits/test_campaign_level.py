@@ -10,12 +10,12 @@ import h5py
 import numpy as np
 import pytest
 
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.recordings import (
     Channel,
     Quantity,
     Recording,
     Verdict,
-    step,
 )
 from jointbench.signal.hits.campaign_level import compare_levels, softest_level
 from jointbench.signal.hits.find_hits import find_hits

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jointbench.acquisition.file_access.text_files import visible
-from jointbench.acquisition.records.recordings import step
+from jointbench.acquisition.file_access.quoting import visible
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.session import JointSetup
 from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 from jointbench.acquisition.session_file.store import read_session, write_session

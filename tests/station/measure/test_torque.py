@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from jointbench.acquisition.basics.errors import BadData, InstrumentError
-from jointbench.acquisition.records.recordings import Step
+from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.serial_lines.mark10 import Reading
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.simulators.twins.dialogue import Mark10Twin, WrenchTwin

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.recordings import (
     Channel,
     Quantity,
     Recording,
     Verdict,
-    step,
 )
 from jointbench.signal.frf.estimators import Estimator
 from jointbench.signal.frf.frf import estimate_frf

@@ -4,12 +4,9 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import FormatError
-from jointbench.acquisition.formats.heights.height_facts import (
-    cautions,
-    checked,
-    half_digit,
-)
+from jointbench.acquisition.formats.heights.height_facts import cautions, checked
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
+from jointbench.acquisition.formats.heights.stated_lengths import half_digit
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 from jointbench.simulators.rough_surfaces.surface_files import (
     write_dektak,
