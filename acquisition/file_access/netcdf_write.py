@@ -2,10 +2,11 @@
 """HDF5 that netCDF-4 readers understand: dimension scales, units, even axes.
 
 Both the session file and the results file beside it are written through these
-helpers, those of `netcdf_encodings` and `create_netcdf`. They keep to what every reader has: no compound types, no variable-length
-data, no plug-in filters; complex numbers are two real variables, texts are character
-arrays with an `_Encoding`, and an even axis is whole numbers with `scale_factor` and
-`add_offset`, which readers that know CF turn into seconds or metres by themselves.
+helpers, those of `netcdf_encodings` and `create_netcdf`. They keep to what every
+reader has: no compound types, no variable-length data, no plug-in filters; complex
+numbers are two real variables, texts are character arrays with an `_Encoding`, and an
+even axis is whole numbers with `scale_factor` and `add_offset`, which readers that
+know CF turn into seconds or metres by themselves.
 
 Source:
     netCDF-4 file format specification (Unidata), HDF5 dimension scales;
