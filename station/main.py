@@ -17,36 +17,41 @@ from jointbench.station.commands.bench_commands import (
 )
 from jointbench.station.commands.contact_command import contact_command
 from jointbench.station.commands.identify_command import identify_command
-from jointbench.station.commands.options import (
-    GAP_HELP,
-    Band,
-    Columns,
-    Debug,
-    Direction,
-    Directions,
-    Drop,
-    EstimatorName,
-    Files,
-    Force,
-    Form,
-    FullScale,
-    GeometryFile,
-    Json,
-    Keep,
-    Model,
-    Order,
-    Outliers,
-    OutputOnly,
-    Page,
-    Point,
-    Pool,
-    Preload,
-    Results,
-    Universal,
-    WaveRatio,
-)
 from jointbench.station.commands.process_commands import mount
 from jointbench.station.commands.profile_command import profile_command
+from jointbench.station.commands.shared_options.heights_options import (
+    Direction,
+    Directions,
+    Form,
+    Outliers,
+    Pool,
+    WaveRatio,
+)
+from jointbench.station.commands.shared_options.input_options import (
+    Columns,
+    Files,
+    FullScale,
+    Point,
+    Preload,
+)
+from jointbench.station.commands.shared_options.joint_options import GAP_HELP, Model
+from jointbench.station.commands.shared_options.modal_options import (
+    Band,
+    Drop,
+    EstimatorName,
+    GeometryFile,
+    Keep,
+    Order,
+    OutputOnly,
+)
+from jointbench.station.commands.shared_options.output_options import (
+    Debug,
+    Force,
+    Json,
+    Page,
+    Results,
+    Universal,
+)
 from jointbench.station.screen.exit_codes import EXIT_QUALITY, exit_code, show_traceback
 
 __all__ = ["app", "exit_code", "run"]

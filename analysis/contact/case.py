@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.damping import DampingChoice
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.preload import Preload

@@ -6,9 +6,10 @@ from numpy.typing import ArrayLike
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import PRESSURE_RANGE, ContactMaterial
-from jointbench.analysis.contact.models import ContactModel, contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
+from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.solve import solve_largest_area
 from jointbench.analysis.contact.sums import JointSums, joint_sums
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.energy import joint_energy, two_regime_energy
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel
 

@@ -13,19 +13,15 @@ from itertools import pairwise
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.contact.asperity import (
+from jointbench.analysis.contact.asperity import log_critical_area
+from jointbench.analysis.contact.asperity_laws import REGIME_BOUNDS, PowerLaw
+from jointbench.analysis.contact.fractal_surface import (
     FractalSurface,
     excess,
-    log_critical_area,
     surface_yield_ratio,
 )
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import (
-    REGIME_BOUNDS,
-    ContactModel,
-    PowerLaw,
-    regime_laws,
-)
+from jointbench.analysis.contact.models import ContactModel, regime_laws
 from jointbench.analysis.contact.sums import power_integral
 
 # e^-45 of an integral is below rounding; that length is cut into panels of Gauss's.

@@ -7,12 +7,11 @@ from numpy.typing import ArrayLike
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.asperity import (
-    FractalSurface,
     asperity_load,
-    excess,
     interference,
     log_critical_area,
 )
+from jointbench.analysis.contact.fractal_surface import FractalSurface, excess
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.sums import JointSums, joint_sums

@@ -13,20 +13,19 @@ from itertools import pairwise
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.contact.asperity import (
+from jointbench.analysis.contact.asperity import log_ratio_at_unit_area
+from jointbench.analysis.contact.asperity_laws import (
+    REGIME_BOUNDS,
+    PowerLaw,
+    bears_nothing,
+)
+from jointbench.analysis.contact.fractal_surface import (
     FractalSurface,
     excess,
-    log_ratio_at_unit_area,
     surface_yield_ratio,
 )
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import (
-    REGIME_BOUNDS,
-    ContactModel,
-    PowerLaw,
-    bears_nothing,
-    regime_laws,
-)
+from jointbench.analysis.contact.models import ContactModel, regime_laws
 
 # Joints are taken so many at a time: their arrays fit the processor's cache.
 _BLOCK = 4096

@@ -15,21 +15,22 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.contact.asperity import (
-    FractalSurface,
-    excess,
     log_critical_area,
     log_ratio_at_unit_area,
+)
+from jointbench.analysis.contact.asperity_laws import (
+    REGIME_BOUNDS,
+    AsperityLaw,
+    PowerLaw,
+    bears_nothing,
+)
+from jointbench.analysis.contact.fractal_surface import (
+    FractalSurface,
+    excess,
     surface_yield_ratio,
 )
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import (
-    REGIME_BOUNDS,
-    AsperityLaw,
-    ContactModel,
-    PowerLaw,
-    bears_nothing,
-    regime_laws,
-)
+from jointbench.analysis.contact.models import ContactModel, regime_laws
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,23 +4,23 @@
 from dataclasses import replace
 from enum import StrEnum
 
-from jointbench.analysis.contact.material import YieldCriterion
-from jointbench.analysis.contact.models import (
+from jointbench.analysis.contact.asperity_laws import (
     ABSENT,
+    AsperityLaw,
+    FullyPlastic,
+    PowerLaw,
+    bears_nothing,
+)
+from jointbench.analysis.contact.material import YieldCriterion
+from jointbench.analysis.contact.model_catalogue import (
     HERTZ,
     KOGUT_ETSION_1,
     KOGUT_ETSION_2,
     PLASTIC_PROFILE,
     PLASTIC_SURFACE,
-    PROFILE,
-    SURFACE,
-    AsperityLaw,
-    ContactModel,
-    FullyPlastic,
-    Interaction,
-    PowerLaw,
-    bears_nothing,
 )
+from jointbench.analysis.contact.models import ContactModel, Interaction
+from jointbench.analysis.contact.topography import PROFILE, SURFACE
 
 
 class ContactTerm(StrEnum):

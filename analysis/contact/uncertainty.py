@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.damping import damping_coefficient, loss_factor
@@ -18,6 +17,7 @@ from jointbench.analysis.contact.draws import (
     central_interval,
     draw_inputs,
 )
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.tangential import tangential_stiffness
 
 SURFACE_INPUT = "surface (D and G)"

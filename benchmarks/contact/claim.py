@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
 
 REPRODUCES = "reproduces"
 CORRECTED = "reproduces with a correction"

@@ -14,13 +14,11 @@ import numpy as np
 import plate_rig
 from claim import CANNOT, CORRECTED, DOES_NOT, REPRODUCES, Claim
 
-from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.asperity_laws import FullyPlastic
 from jointbench.analysis.contact.energy import joint_energy
-from jointbench.analysis.contact.models import (
-    FullyPlastic,
-    Interaction,
-    contact_model,
-)
+from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.model_catalogue import contact_model
+from jointbench.analysis.contact.models import Interaction
 from jointbench.analysis.contact.solve import solve_largest_area
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "contact-published-claims.md"

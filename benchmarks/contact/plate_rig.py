@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 from claim import stiffness
 
-from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.damping import (
     DampingChoice,
     EnergyForm,
@@ -16,9 +15,10 @@ from jointbench.analysis.contact.damping import (
     damping_ratio,
     loss_factor,
 )
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import preload_of
 from jointbench.analysis.contact.material import ContactMaterial, effective_modulus
-from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.preload import preload_from_torque
 from jointbench.analysis.contact.solve import solve_largest_area
 from jointbench.signal.fractal.fractal_fit import fractal_from_line

@@ -29,7 +29,7 @@ KINDS = ("null", "single")
 def no_coarse_stages() -> None:
     """Fit whole records from the first step on."""
     from jointbench.analysis.gap.diagnosis import base_fit
-    from jointbench.analysis.gap.residuals.fit_records import FULL
+    from jointbench.analysis.gap.residuals.evaluation_stages import FULL
     from jointbench.analysis.gap.search import selection_round as race
 
     base_fit.BASE_STAGES = ((FULL, 19), (FULL, 20))
@@ -65,10 +65,11 @@ def no_pulls() -> None:
 
 def one_start() -> None:
     """Give a candidate one start of its own, as its directed test foretells it."""
+    from jointbench.analysis.gap.search import race_starts
     from jointbench.analysis.gap.search import selection_round as race
 
     race.STARTS = 1
-    race.SHARES = (1.0,)
+    race_starts.SHARES = (1.0,)
     race.HUGE = np.inf
 
 

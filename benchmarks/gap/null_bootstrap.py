@@ -34,7 +34,8 @@ from null_page import QUANTILES, page
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
-from jointbench.analysis.gap.judgement.naming import gate, noise_sd
+from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.naming import gate
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem

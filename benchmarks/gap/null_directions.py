@@ -10,7 +10,8 @@ from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
-from jointbench.analysis.gap.response.predict_records import prepare_excitation, respond
+from jointbench.analysis.gap.response.excitation import prepare_excitation
+from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.gap.search.screening import PROBE, SCREEN, start_grid
 
 HIDDEN = 1e-7

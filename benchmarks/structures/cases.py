@@ -17,7 +17,7 @@ from jointbench.analysis.structures.matrices.structure import (
 )
 from jointbench.analysis.structures.meshes.mesh import box_mesh
 from jointbench.analysis.structures.reduction.mounted_sensors import MountedSensor
-from jointbench.analysis.structures.reduction.predict_response import JointValues
+from jointbench.analysis.structures.reduction.predict_modes import JointValues
 
 MARBLE = Material(youngs_modulus=55e9, poisson_ratio=0.25, density=2600.0)
 PLATE = (0.5, 0.3, 0.05)

@@ -15,8 +15,10 @@ from jointbench.analysis.structures.matrices.element_assembly import assemble
 from jointbench.analysis.structures.meshes.elements import ElementKind
 from jointbench.analysis.structures.meshes.mesh import box_mesh
 from jointbench.analysis.structures.reduction.full_modes import lowest_modes
-from jointbench.station.screen.figures import PALETTE, axis, figure, line
-from jointbench.station.screen.page import Plot, Report, Section, write_report
+from jointbench.station.screen.figures import axis, figure
+from jointbench.station.screen.page import write_report
+from jointbench.station.screen.page_parts import Plot, Report, Section
+from jointbench.station.screen.traces import PALETTE, line
 
 # Legendre-Ritz, upper bounds within 1e-5 (design note on joint simulation, section 1).
 CONVERGED = np.array([916.16, 923.22, 2006.9, 2379.2, 2462.8, 2986.6])

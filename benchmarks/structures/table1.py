@@ -32,13 +32,8 @@ from jointbench.analysis.structures.reduction.full_modes import (
     solve_full,
 )
 from jointbench.station.report.structure_report import shape_figure
-from jointbench.station.screen.page import (
-    DataTable,
-    Plot,
-    Report,
-    Section,
-    write_report,
-)
+from jointbench.station.screen.page import write_report
+from jointbench.station.screen.page_parts import DataTable, Plot, Report, Section
 
 COLUMN, CELLS, ON_TOP = (0.694, 0.191, 0.415), (6, 2, 4), 96.0
 HEADS = ("measured", "printed, joint", "ours, joint", "printed, glued", "ours, glued")

@@ -34,12 +34,11 @@ from jointbench.station.commands.identify_structure_command import (
     run_identify_structure,
 )
 from jointbench.station.joints.structure_contact import TheoryTable
-from jointbench.station.joints.theory import (
+from jointbench.station.joints.theory import against_theory, theory_json
+from jointbench.station.joints.theory_records import (
     IdentifiedState,
     JointQuantity,
     StateEstimate,
-    against_theory,
-    theory_json,
 )
 from jointbench.station.measure.bench_session import run_measure
 

@@ -7,13 +7,13 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.lag_weights import weigh
 from jointbench.signal.fractal.least_squares import (
     GlsFit,
     Model,
     by_own_weights,
     fit_model,
     settle,
-    weigh,
 )
 from jointbench.signal.fractal.self_affine import InstrumentModel, tip_radius
 

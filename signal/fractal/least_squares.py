@@ -9,12 +9,13 @@ covariance depends on the surface, so it is renewed with the fitted one.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import LinAlgError, cholesky, solve_triangular
+from scipy.linalg import solve_triangular
 from scipy.stats import chi2 as chi2_distribution
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.fractal.bounded_search import Found, search
 from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.lag_weights import Weights, weigh
 from jointbench.signal.fractal.self_affine import InstrumentModel, SeenSurface
 
 _EXPONENT_RANGE = (0.02, 1.98)
@@ -33,8 +34,6 @@ _CORNER_STARTS = (0.03, 0.5)
 """Corners from which the search starts, over the longest lag [-]."""
 _CORNER_RANGE = (0.5, 10.0)
 """Corners searched, from so many samples to so many longest lags [-]."""
-_JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
-"""Variance added on the diagonal, as a share of it [-]; the first that suffices."""
 _SMALLEST_INFORMATION = 1e-6
 """Singular value of the scaled Jacobian taken for smaller ones [-]."""
 _RENEWALS = 2
@@ -108,42 +107,6 @@ class GlsFit:
         return float(np.sqrt(self.covariance[0, 0])) / 2
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Weights:
-    """How the lags are weighed.
-
-    Attributes:
-        reference: S that the residuals are taken relative to [m^2], shape (n_lags,).
-        root: lower Cholesky root of the covariance of S over `reference` [-].
-    """
-
-    reference: FloatArray
-    root: FloatArray
-
-    @property
-    def log_determinant(self) -> float:
-        """Logarithm of the determinant of the covariance of S."""
-        size = np.diag(self.root) * self.reference
-        return 2 * float(np.sum(np.log(size)))
-
-
-def weigh(
-    problem: FractalProblem, at: SeenSurface, *, scatter: FloatArray | None = None
-) -> Weights:
-    """Return the weights that belong to a surface and its instrument.
-
-    Args:
-        problem: the structure function to fit.
-        at: the surface and instrument.
-        scatter: covariance of S to take in place of the one at `at`, shape (n, n) [-].
-    """
-    reference = problem.predicted(at)
-    # A poor start may lose all to levelling; the values themselves then stand in.
-    reference = np.where(reference > 0, reference, problem.estimate.value)
-    own = problem.scatter(at) if scatter is None else scatter
-    return Weights(reference, lower_root(own + problem.misfit(at)))
-
-
 def fit_model(
     problem: FractalProblem,
     model: Model,
@@ -201,21 +164,6 @@ def by_own_weights(problem: FractalProblem, fit: GlsFit) -> GlsFit:
     gap = (problem.estimate.value - fit.predicted) / own.reference
     white = solve_triangular(own.root, gap, lower=True)
     return replace(fit, chi2=float(white @ white), log_determinant=own.log_determinant)
-
-
-def lower_root(covariance: FloatArray) -> FloatArray:
-    """Return the lower Cholesky root, with as little added variance as it takes.
-
-    On very smooth surfaces neighbouring lags tell the same to more digits than the
-    sums have; the added variance keeps their last digits out of the fit.
-    """
-    diagonal = np.diag(np.diag(covariance))
-    for jitter in _JITTERS:
-        try:
-            return np.asarray(cholesky(covariance + jitter * diagonal, lower=True))
-        except LinAlgError:
-            continue
-    return np.asarray(np.sqrt(diagonal))
 
 
 def _result(

@@ -11,7 +11,8 @@ from scipy.stats import chi2
 
 from jointbench.acquisition.basics.arrays import IntArray
 from jointbench.signal.fractal.fit_problem import FractalProblem
-from jointbench.signal.fractal.least_squares import GlsFit, lower_root
+from jointbench.signal.fractal.lag_weights import lower_root
+from jointbench.signal.fractal.least_squares import GlsFit
 
 LAGS = 4
 """Lags of the test [-]."""

@@ -13,13 +13,8 @@ from jointbench.signal.fractal.instrument_choice import (
     choose_instrument,
     no_doubt,
 )
-from jointbench.signal.fractal.least_squares import (
-    GlsFit,
-    Model,
-    Weights,
-    fit_model,
-    settle,
-)
+from jointbench.signal.fractal.lag_weights import Weights
+from jointbench.signal.fractal.least_squares import GlsFit, Model, fit_model, settle
 from jointbench.signal.fractal.long_lags import long_lag_probability
 from jointbench.signal.fractal.self_affine import rolled_off
 

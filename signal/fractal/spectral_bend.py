@@ -7,7 +7,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.fractal.fit_problem import FractalProblem
-from jointbench.signal.fractal.self_affine import SeenSurface, tip_fall
+from jointbench.signal.fractal.instrument_blur import tip_fall
+from jointbench.signal.fractal.self_affine import SeenSurface
 from jointbench.signal.surface.structure_constant import spectral_integral
 
 _CLEAR_GAIN = 14.0

@@ -21,12 +21,10 @@ from jointbench.acquisition.records.recordings import (
     common_response,
     response_rows,
 )
+from jointbench.signal.hits.block_length import choose_block
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.windows import HammerWindow, apply_window
 
-# Segments shorter than this share of the median are padded, not allowed to cut others.
-_SHORT = 0.5
-_FFT_FACTORS = (2, 3, 5, 7)
 # A constant that a filter went over still varies by this share of itself.
 _ROUNDING = 1e-12
 
@@ -144,42 +142,6 @@ def require_alive(recording: Recording, hit: Hit) -> None:
             f"{hit.trigger / recording.sample_rate:.4g} s; check the cable and the "
             "sensor, or leave the channel out"
         )
-
-
-def choose_block(lengths: Sequence[int]) -> tuple[int, str]:
-    """Choose the block that all hits share.
-
-    Cutting beats padding where a response still rings at the end: on the lines of its
-    own block a cut decay is a rational function with the same poles, on the lines of a
-    padded block it is not. So the block is the shortest segment, rounded down to a
-    length the FFT likes; only segments far shorter than the usual are padded.
-
-    Args:
-        lengths: samples of each segment.
-
-    Returns:
-        Samples of the block, and the reason in words.
-    """
-    usual = float(np.median(lengths))
-    shortest = min(n for n in lengths if n >= _SHORT * usual)
-    block = fast_length(shortest)
-    padded = sum(n < block for n in lengths)
-    return block, (
-        f"{block} samples from segments of {min(lengths)} to {max(lengths)}"
-        f" ({padded} padded with zeros)"
-    )
-
-
-def fast_length(most: int) -> int:
-    """Return the largest length up to `most` with factors 2, 3, 5 and 7 only."""
-    for length in range(most, 1, -1):
-        rest = length
-        for factor in _FFT_FACTORS:
-            while rest % factor == 0:
-                rest //= factor
-        if rest == 1:
-            return length
-    return most
 
 
 def pair_up(

@@ -9,7 +9,7 @@ where the residual at an edge exceeds the noise, a pole beyond it is fitted too.
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.signal.modal.lsfd import FrfLines
+from jointbench.signal.modal.frf_lines import FrfLines
 from jointbench.signal.modal.pole_refinement import refine_poles
 
 # Lines at an edge whose residual tells of something beyond: this share of the band.

@@ -11,7 +11,7 @@ and taking every chance correlation of a few lines for a real one.
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.signal.modal.lsfd import FrfLines, measured_width
+from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 
 # Around a mode: this many half-power half-widths, and this many lines, each side.
 _REACH_WIDTHS = 4.0

@@ -18,32 +18,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
-from jointbench.signal.frf.frf import Frf
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.signal.modal.frf_lines import FrfLines
+from jointbench.signal.modal.normal_equations import (
+    correlations,
+    gram_matrices,
+    inverses,
+    stacked,
+)
 
 # Powers of s of the residual terms, beside the derivative of the FRF's kind.
 _RESIDUAL_POWERS = (-2, -1, 0, 1, 2, 3, 4, 5, 6)
-_RIDGE = 1e-13
-# Up to here the products of columns cost more than they save.
-_FEW_FRFS = 8
-# Products of columns are formed for this many lines at a time, to stay in the cache.
-_LINES_AT_ONCE = 512
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class FrfLines:
-    """The lines of an FRF that are being fitted.
-
-    Attributes:
-        laplace: s of each line [rad/s], shape (n_lines,).
-        response: FRF, one row for each pair of output and input, shape
-            (n_frf, n_lines).
-        derivatives: q of the FRF's kind.
-    """
-
-    laplace: ComplexArray
-    response: ComplexArray
-    derivatives: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -105,34 +90,11 @@ def residual_terms(lines: FrfLines, fit: LinearFit) -> ResidualTerms:
     scale = np.abs(s[s.size // 2])
     powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
     # The fit has these columns made orthogonal to each other: taken apart again here.
-    columns = _stacked(powers * (s**lines.derivatives)[:, None])
+    columns = stacked(powers * (s**lines.derivatives)[:, None])
     size = np.linalg.norm(columns, axis=0)
-    terms = np.linalg.lstsq(columns / size, _stacked(parts.T), rcond=None)[0].T / size
+    terms = np.linalg.lstsq(columns / size, stacked(parts.T), rcond=None)[0].T / size
     lower = terms[:, _RESIDUAL_POWERS.index(-2)] * scale**2
     return ResidualTerms(lower, terms[:, _RESIDUAL_POWERS.index(0)])
-
-
-def measured_width(lines: FrfLines, pole: ComplexArray) -> FloatArray:
-    """Return half the half-power width of each peak as measured [rad/s].
-
-    The exponential window's decay rate is part of it.
-    """
-    return np.asarray(np.abs(pole.real - lines.laplace[0].real))
-
-
-def lines_of(frf: Frf, keep: BoolArray) -> FrfLines:
-    """Take the kept lines of an FRF.
-
-    Args:
-        frf: any kind.
-        keep: True for the lines to fit, shape (n_lines,).
-
-    Returns:
-        The lines with one row a pair of output and input, inputs varying fastest.
-    """
-    laplace = np.asarray(2j * np.pi * frf.frequency[keep] + frf.added_decay_rate)
-    response = frf.response[:, :, keep].reshape(-1, laplace.size)
-    return FrfLines(laplace, response, frf.kind.derivatives)
 
 
 def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
@@ -163,7 +125,7 @@ def _residual_terms(s: ComplexArray, power: ComplexArray) -> ComplexArray:
     """
     scale = np.abs(s[s.size // 2])
     terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
-    rows = _stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
+    rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
     return _unstacked(np.linalg.qr(rows)[0])
 
 
@@ -172,13 +134,8 @@ def modal_size(pole: ComplexArray) -> int:
     return 2 * pole.size + len(_RESIDUAL_POWERS)
 
 
-def _stacked(values: ComplexArray) -> FloatArray:
-    """Return real and imaginary parts one below the other, as real rows."""
-    return np.concatenate((values.real, values.imag))
-
-
 def _unstacked(rows: FloatArray) -> ComplexArray:
-    """Undo `_stacked`."""
+    """Undo `stacked`."""
     half = rows.shape[0] // 2
     return np.asarray(rows[:half] + 1j * rows[half:])
 
@@ -222,58 +179,6 @@ def fit_residues(
     inverse[np.ix_(np.arange(n_frf), used, used)] = solved
     significance = _wald(coefficients, inverse, pole.size)
     return LinearFit(coefficients, coefficients @ basis.T, significance)
-
-
-def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
-    """Return Re(columns^H diag(weight) columns) for all rows of weights.
-
-    With many rows, each product of two columns serves them all.
-
-    Args:
-        columns: shape (n_lines, n).
-        weight: shape (n_frf, n_lines).
-
-    Returns:
-        Shape (n_frf, n, n).
-    """
-    if weight.shape[0] <= _FEW_FRFS:
-        rows = _stacked(columns)
-        scaled = (rows * np.sqrt(np.tile(w, 2))[:, None] for w in weight)
-        return np.array([part.T @ part for part in scaled])
-    size = columns.shape[1]
-    upper = np.triu_indices(size)
-    packed = np.zeros((weight.shape[0], upper[0].size))
-    for first in range(0, columns.shape[0], _LINES_AT_ONCE):
-        part = np.ascontiguousarray(columns[first : first + _LINES_AT_ONCE].T)
-        real, imag = part.real.copy(), part.imag.copy()
-        pairs = [real[i] * real[i:] + imag[i] * imag[i:] for i in range(size)]
-        packed += weight[:, first : first + part.shape[1]] @ np.vstack(pairs).T
-    gram = np.empty((weight.shape[0], size, size))
-    gram[:, upper[0], upper[1]] = gram[:, upper[1], upper[0]] = packed
-    return gram
-
-
-def correlations(columns: ComplexArray, values: ComplexArray) -> FloatArray:
-    """Return Re(columns^H values) row by row, shape (n_frf, n)."""
-    return np.asarray((values @ columns.conj()).real)
-
-
-def inverses(gram: FloatArray) -> FloatArray:
-    """Invert Gram matrices after scaling them to a unit diagonal.
-
-    Args:
-        gram: symmetric, shape (..., n, n).
-
-    Returns:
-        Same shape.
-    """
-    # Rounding can leave the square of next to nothing below zero.
-    diagonal = np.sqrt(np.maximum(np.einsum("...ii->...i", gram), 0.0))
-    scale = 1.0 / np.where(diagonal > 0.0, diagonal, 1.0)
-    outer = scale[..., :, None] * scale[..., None, :]
-    return np.asarray(
-        np.linalg.inv(gram * outer + _RIDGE * np.eye(gram.shape[-1])) * outer
-    )
 
 
 def _wald(coefficients: FloatArray, inverse: FloatArray, n_modes: int) -> FloatArray:

@@ -19,6 +19,7 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.signal.modal.computational_modes import find_beyond
 from jointbench.signal.modal.fit_residuals import misfit_around
+from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
     local_level,
@@ -26,12 +27,7 @@ from jointbench.signal.modal.line_noise import (
     model_error,
 )
 from jointbench.signal.modal.lscf import Progress
-from jointbench.signal.modal.lsfd import (
-    FrfLines,
-    LinearFit,
-    fit_residues,
-    measured_width,
-)
+from jointbench.signal.modal.lsfd import LinearFit, fit_residues
 from jointbench.signal.modal.pole_refinement import (
     RefinedPoles,
     refine_poles,

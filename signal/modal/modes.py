@@ -14,8 +14,8 @@ from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.line_weights import weights_of
 from jointbench.signal.kalman.process_models import StageGain
 from jointbench.signal.kalman.smoothing import stage_gain_of
+from jointbench.signal.modal.frf_lines import FrfLines, lines_of
 from jointbench.signal.modal.lscf import Progress, fit_poles
-from jointbench.signal.modal.lsfd import FrfLines, lines_of
 from jointbench.signal.modal.manual_selection import Choices, overrule
 from jointbench.signal.modal.modal_model import ModalModel, build_model
 from jointbench.signal.modal.mode_selection import FittedModes, fit_modes

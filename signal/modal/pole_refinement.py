@@ -13,14 +13,12 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.signal.modal.fit_residuals import misfit_around
-from jointbench.signal.modal.lsfd import (
-    FrfLines,
+from jointbench.signal.modal.frf_lines import FrfLines, measured_width
+from jointbench.signal.modal.lsfd import modal_basis, modal_size
+from jointbench.signal.modal.normal_equations import (
     correlations,
     gram_matrices,
     inverses,
-    measured_width,
-    modal_basis,
-    modal_size,
 )
 
 # Stop when no pole moves by more than this share of its own half-power width.

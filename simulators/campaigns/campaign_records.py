@@ -9,13 +9,9 @@ import numpy as np
 from jointbench.acquisition.basics.array_checks import require_shape
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.hidden.campaign_design import (
-    FORCE_NOISE,
-    SAMPLES,
-    CampaignDesign,
-    draw_design,
-)
+from jointbench.simulators.hidden.campaign_design import CampaignDesign, draw_design
 from jointbench.simulators.hidden.campaign_response import simulate_records
+from jointbench.simulators.hidden.campaign_sampling import FORCE_NOISE, SAMPLES
 from jointbench.simulators.hidden.effect_draws import (
     FAMILIES,
     OUTSIDE_CATALOGUE,

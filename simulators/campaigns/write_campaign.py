@@ -10,7 +10,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.simulators.campaigns.campaign_records import SimulatedCampaign
-from jointbench.simulators.hidden.campaign_design import NOMINAL_SIGMA, SAMPLE_RATE
+from jointbench.simulators.hidden.campaign_design import NOMINAL_SIGMA
+from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 
 SCHEMA = "two-body-campaign/1"
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.simulators.chassis import inventory as stock
+from jointbench.simulators.chassis import device_properties as properties
 from jointbench.simulators.chassis.faults import Fault, FaultKind
 from jointbench.simulators.chassis.inventory import Inventory
 from jointbench.simulators.chassis.protocol import Daqmx, Refusal, attribute_of
@@ -138,7 +138,7 @@ class ReadingService(TaskService):
         }
         if attribute not in counters:
             raise Refusal(
-                stock.UNKNOWN_ATTRIBUTE,
+                properties.UNKNOWN_ATTRIBUTE,
                 f"Specified property is not supported: {attribute:#x}",
             )
         return counters[attribute]()

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 import grpc
 
+from jointbench.simulators.chassis import device_properties as properties
 from jointbench.simulators.chassis import inventory as stock
 from jointbench.simulators.chassis.inventory import Inventory
 from jointbench.simulators.chassis.protocol import (
@@ -70,7 +71,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
     @answered
     def GetSystemInfoAttributeUInt32(self, request: Any, context: Any) -> Any:
         """Answer for the version of the driver."""
-        value = stock.DRIVER_VERSION.get(attribute_of(request), 0)
+        value = properties.DRIVER_VERSION.get(attribute_of(request), 0)
         return Daqmx.GetSystemInfoAttributeUInt32Response(value=value)
 
     @answered
@@ -82,7 +83,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
     @answered
     def GetDeviceAttributeString(self, request: Any, context: Any) -> Any:
         """Answer for product and channels."""
-        text = stock.device_text(
+        text = properties.device_text(
             self.inventory, request.device_name, attribute_of(request)
         )
         return Daqmx.GetDeviceAttributeStringResponse(value=text)
@@ -90,7 +91,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
     @answered
     def GetDeviceAttributeBool(self, request: Any, context: Any) -> Any:
         """Answer for what the device is and can do."""
-        flag = stock.device_flag(
+        flag = properties.device_flag(
             self.inventory, request.device_name, attribute_of(request)
         )
         return Daqmx.GetDeviceAttributeBoolResponse(value=flag)
@@ -98,7 +99,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
     @answered
     def GetDeviceAttributeDouble(self, request: Any, context: Any) -> Any:
         """Answer for rates."""
-        value = stock.device_number(
+        value = properties.device_number(
             self.inventory, request.device_name, attribute_of(request)
         )
         return Daqmx.GetDeviceAttributeDoubleResponse(value=value)
@@ -106,7 +107,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
     @answered
     def GetDeviceAttributeUInt32(self, request: Any, context: Any) -> Any:
         """Answer for the serial number."""
-        value = stock.device_number(
+        value = properties.device_number(
             self.inventory, request.device_name, attribute_of(request)
         )
         return Daqmx.GetDeviceAttributeUInt32Response(value=int(value))
@@ -114,7 +115,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
     @answered
     def GetDeviceAttributeDoubleArray(self, request: Any, context: Any) -> Any:
         """Answer for ranges and currents."""
-        values = stock.device_ranges(
+        values = properties.device_ranges(
             self.inventory, request.device_name, attribute_of(request)
         )
         return Daqmx.GetDeviceAttributeDoubleArrayResponse(value=values)
@@ -122,7 +123,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
     @answered
     def GetPhysicalChanAttributeUInt32(self, request: Any, context: Any) -> Any:
         """Answer for the TEDS of a sensor."""
-        value = stock.teds_number(
+        value = properties.teds_number(
             self.inventory, request.physical_channel, attribute_of(request)
         )
         return Daqmx.GetPhysicalChanAttributeUInt32Response(value=value)

@@ -7,12 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.simulators.hidden.campaign_sampling import PRETRIGGER, SAMPLE_RATE
 from jointbench.simulators.measuring.hammer import Pulse
-
-SAMPLE_RATE = 16384.0  # [Hz]
-SAMPLES = 2048  # per record
-PRETRIGGER = 128  # samples before the hit
-FORCE_NOISE = 0.4  # force noise [N] per acceleration noise [m/s^2]
 
 BASE_NAMES = ("m1", "m2", "k0", "c0", "kj", "cj")
 # One-sigma relative errors of the nominal sheet: masses are weighed.

@@ -7,16 +7,16 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.hidden.campaign_design import (
-    SAMPLE_RATE,
-    SAMPLES,
     CampaignCondition,
     CampaignDesign,
 )
+from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE, SAMPLES
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect, change_plant
 from jointbench.simulators.hidden.sensor_faults import clip_samples, distort_signals
 from jointbench.simulators.measuring.converter import AntiAlias, decimate
 from jointbench.simulators.measuring.hammer import pulse_force
-from jointbench.simulators.mechanics.plant import step_plant, two_bodies
+from jointbench.simulators.mechanics.plant import two_bodies
+from jointbench.simulators.mechanics.plant_march import step_plant
 
 # Pass band 0.42 of the sample rate, as a sigma-delta converter has it.
 CONVERTER = AntiAlias(

@@ -12,8 +12,9 @@ import numpy as np
 import scipy.integrate
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.hidden.campaign_design import SAMPLE_RATE, CampaignDesign
+from jointbench.simulators.hidden.campaign_design import CampaignDesign
 from jointbench.simulators.hidden.campaign_response import sketch_responses
+from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 from jointbench.simulators.mechanics.plant import plant_modes, two_bodies
 

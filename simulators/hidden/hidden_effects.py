@@ -8,11 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.hidden.campaign_design import (
-    SAMPLE_RATE,
-    SAMPLES,
-    CampaignCondition,
-)
+from jointbench.simulators.hidden.campaign_design import CampaignCondition
+from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE, SAMPLES
 from jointbench.simulators.hidden.sensor_faults import SENSOR_FAULTS, Parameters
 from jointbench.simulators.mechanics.joint_laws import JointLaw, LawKind
 from jointbench.simulators.mechanics.plant import GROUND, Plant, PlantLink

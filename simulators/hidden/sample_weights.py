@@ -10,11 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.simulators.hidden.campaign_design import (
-    FORCE_NOISE,
-    SAMPLE_RATE,
-    CampaignDesign,
-)
+from jointbench.simulators.hidden.campaign_design import CampaignDesign
+from jointbench.simulators.hidden.campaign_sampling import FORCE_NOISE, SAMPLE_RATE
 
 
 @dataclass(frozen=True, slots=True, eq=False)

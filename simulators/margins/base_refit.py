@@ -14,12 +14,14 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.simulators.hidden.campaign_design import (
     BASE_NAMES,
     NOMINAL_SIGMA,
-    PRETRIGGER,
-    SAMPLE_RATE,
-    SAMPLES,
     CampaignDesign,
 )
 from jointbench.simulators.hidden.campaign_response import sketch_responses
+from jointbench.simulators.hidden.campaign_sampling import (
+    PRETRIGGER,
+    SAMPLE_RATE,
+    SAMPLES,
+)
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 from jointbench.simulators.hidden.sample_weights import (
     SampleWeights,

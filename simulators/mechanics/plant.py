@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lumped bodies on links, stepped through time: the specimen behind every bench.
+"""Lumped bodies on links, and their modes: the specimen behind every bench.
 
 The simulators own their physics: nothing here is shared with the analysis that is
 judged on it. The modes are those of the linear links alone.
@@ -14,10 +14,7 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freez
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.mechanics.joint_laws import (
     JointLaw,
-    pack_laws,
-    resting_sliders,
 )
-from jointbench.simulators.mechanics.time_integration import LinearPart, march
 
 GROUND = -1
 
@@ -138,68 +135,3 @@ def plant_modes(plant: Plant) -> PlantModes:
     shapes = shapes / shapes[largest, np.arange(order.size)]
     magnitude = np.abs(poles[order])
     return PlantModes(magnitude / (2 * np.pi), -poles[order].real / magnitude, shapes)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlantState:
-    """All that a plant carries from one stretch of time to the next.
-
-    Attributes:
-        time: [s].
-        values: displacements [m], velocities [m/s], then one state of each law,
-            shape (2 n_bodies + n_laws,).
-        sliders: memory of all sliders, shape (2, n_sliders).
-    """
-
-    time: float
-    values: FloatArray
-    sliders: FloatArray
-
-    def __post_init__(self) -> None:
-        """Make the arrays read-only."""
-        freeze(self, "values", "sliders")
-
-
-def rest_state(plant: Plant) -> PlantState:
-    """Return the state at rest at time 0."""
-    laws = pack_laws(plant.laws)
-    values = np.zeros(2 * len(plant.masses) + laws.kind.size)
-    return PlantState(0.0, values, resting_sliders(laws))
-
-
-def step_plant(
-    plant: Plant,
-    force: FloatArray,
-    *,
-    body: int,
-    time_step: float,
-    state: PlantState | None = None,
-) -> tuple[FloatArray, PlantState]:
-    """March the plant through time under a force on one body.
-
-    Args:
-        plant: the bodies, links and laws.
-        force: at every half step [N], shape (2 n + 1,) for n steps.
-        body: index of the body that is struck.
-        time_step: [s].
-        state: at the start; rest if None.
-
-    Returns:
-        Accelerations at the start of each step [m/s^2], shape (n_bodies, n), and the
-        state after the last step.
-    """
-    start = rest_state(plant) if state is None else state
-    _, stiffness, damping = plant_matrices(plant)
-    inverse_mass = 1 / np.asarray(plant.masses, dtype=float)
-    values, sliders = start.values.copy(), start.sliders.copy()
-    acceleration = march(
-        LinearPart(inverse_mass, stiffness, damping),
-        pack_laws(plant.laws),
-        np.array(force, dtype=float),
-        body,
-        (start.time, time_step),
-        values,
-        sliders,
-    )
-    end = start.time + time_step * acceleration.shape[1]
-    return np.asarray(acceleration), PlantState(end, values, sliders)

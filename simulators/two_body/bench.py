@@ -22,13 +22,8 @@ from jointbench.simulators.measuring.hammer import (
     pulse_force,
     swing,
 )
-from jointbench.simulators.mechanics.plant import (
-    Plant,
-    plant_modes,
-    rest_state,
-    step_plant,
-    two_bodies,
-)
+from jointbench.simulators.mechanics.plant import Plant, plant_modes, two_bodies
+from jointbench.simulators.mechanics.plant_march import rest_state, step_plant
 from jointbench.simulators.two_body.bolts import bolt_preload, bolt_torque
 
 # Samples made at a time: the noise is seeded for each such piece, so that sample k

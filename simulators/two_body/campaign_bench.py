@@ -18,7 +18,8 @@ from jointbench.simulators.campaigns.campaign_records import (
     SimulatedCampaign,
     quick_campaign,
 )
-from jointbench.simulators.hidden.campaign_design import GRIDS, SAMPLE_RATE
+from jointbench.simulators.hidden.campaign_design import GRIDS
+from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 _BETWEEN_RUNS = 20.0  # [s] a hand needs from hit to hit

@@ -17,14 +17,8 @@ from jointbench.station.archive.archive_table import (
     write_table,
     writer_of,
 )
-from jointbench.station.archive.trends import (
-    OVER,
-    Trend,
-    check_trend,
-    trend_rows,
-    trends_json,
-    trends_of,
-)
+from jointbench.station.archive.trend_output import trend_rows, trends_json
+from jointbench.station.archive.trends import OVER, Trend, check_trend, trends_of
 from jointbench.station.files.archive_patterns import result_files
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.results.results_read import StoredResult, without_copies

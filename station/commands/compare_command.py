@@ -17,13 +17,8 @@ from jointbench.station.archive.compare_results import (
 )
 from jointbench.station.files.archive_patterns import result_files
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.screen.terminal import (
-    console,
-    table,
-    with_sd,
-    working,
-    write_json,
-)
+from jointbench.station.screen.terminal import console, table, working, write_json
+from jointbench.station.screen.value_text import with_sd
 
 MOST_SHOWN = 40
 FEW_SHOWN = 5

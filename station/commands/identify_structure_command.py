@@ -39,12 +39,12 @@ from jointbench.station.joints.structure_states import (
     measured_states,
 )
 from jointbench.station.joints.theory import (
-    TheoryRow,
     against_theory,
     identified_states,
     known_preloads,
     theory_json,
 )
+from jointbench.station.joints.theory_records import TheoryRow
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import WHAT_IS_SHOWN, parameter_text
 from jointbench.station.screen.terminal import console, table, working, write_json

@@ -13,13 +13,8 @@ from jointbench.signal.output_only.output_only_modes import (
 )
 from jointbench.station.files.input_files import read_recordings
 from jointbench.station.files.output_paths import check_outputs
-from jointbench.station.screen.terminal import (
-    console,
-    table,
-    with_sd,
-    working,
-    write_json,
-)
+from jointbench.station.screen.terminal import console, table, working, write_json
+from jointbench.station.screen.value_text import with_sd
 
 
 def run_output_only(

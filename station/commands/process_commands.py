@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from jointbench.station.commands.options import Debug, Json
+from jointbench.station.commands.shared_options.output_options import Debug, Json
 from jointbench.station.screen.exit_codes import EXIT_QUALITY
 
 _RecipeFile = Annotated[

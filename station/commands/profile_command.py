@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.station.commands.options import Debug, Force, Json
+from jointbench.station.commands.shared_options.output_options import Debug, Force, Json
 
 INSTRUMENTS = ("diavite", "mitutoyo")
 

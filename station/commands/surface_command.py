@@ -11,6 +11,7 @@ from jointbench.signal.fractal.fractal_fit import fit_fractal
 from jointbench.signal.fractal.surface_verdict import FractalFit
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.pipeline.pooled_surface import pooled_beside, pooled_structure
 from jointbench.station.pipeline.roughness_words import (
     HEADING,
     roughness_words,
@@ -18,8 +19,6 @@ from jointbench.station.pipeline.roughness_words import (
 from jointbench.station.pipeline.surface_options import (
     PLAIN,
     SurfaceOptions,
-    pooled_beside,
-    pooled_structure,
     require_suited,
 )
 from jointbench.station.pipeline.surface_stages import (
@@ -30,14 +29,8 @@ from jointbench.station.pipeline.surface_stages import (
     fit_json,
     surface_json,
 )
-from jointbench.station.screen.terminal import (
-    console,
-    engineering,
-    table,
-    with_sd,
-    working,
-    write_json,
-)
+from jointbench.station.screen.terminal import console, table, working, write_json
+from jointbench.station.screen.value_text import engineering, with_sd
 
 
 def run_surface(

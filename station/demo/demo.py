@@ -40,7 +40,8 @@ from jointbench.station.report.modal_table import show_modal
 from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session
 from jointbench.station.report.session_report import compose, joint_link
 from jointbench.station.results.results_file import results_path, write_results
-from jointbench.station.screen.page import DataTable, Section, write_report
+from jointbench.station.screen.page import write_report
+from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.terminal import console, table, working, write_json
 from jointbench.station.screen.truth_table import TruthComparison, as_json
 

@@ -20,7 +20,7 @@ from jointbench.analysis.gap.response.threads import side_by_side
 from jointbench.station.gap.gap_inputs import GapRequest, examine
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.report.gap_report import gap_report
-from jointbench.station.screen.page import DataTable, Section
+from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.truth_table import TruthComparison, compare_value
 from jointbench.station.sources.visit_file import write_visit

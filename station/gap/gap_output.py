@@ -10,19 +10,18 @@ from rich.table import Table
 from rich.text import Text
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
+from jointbench.station.report.gap_numbers import percent, short, sure
 from jointbench.station.report.gap_sentences import (
     SHEET,
     SMALL_GAP,
     headline,
     next_step,
-    percent,
     place,
-    short,
-    sure,
     why_lost,
 )
 from jointbench.station.screen.escaping_console import seen
-from jointbench.station.screen.terminal import console, with_sd
+from jointbench.station.screen.terminal import console
+from jointbench.station.screen.value_text import with_sd
 
 _MOST_CANDIDATES = 6
 _MOST_SLICES = 3

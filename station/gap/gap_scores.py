@@ -4,8 +4,8 @@
 from collections.abc import Sequence
 
 from jointbench.analysis.gap.diagnosis.single_record import StretchScore
-from jointbench.station.screen.page import DataTable, Section
-from jointbench.station.screen.terminal import engineering
+from jointbench.station.screen.page_parts import DataTable, Section
+from jointbench.station.screen.value_text import engineering
 
 UNPREFIXED = frozenset({"V", "m", "m/s", "m/s^2", "N"})
 """Units that take an SI prefix; all others are written as they stand."""

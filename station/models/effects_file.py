@@ -18,7 +18,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue.probes import PROBES
-from jointbench.analysis.gap.model.effect import PROBE_FAMILY, Parameter
+from jointbench.analysis.gap.model.effect import PROBE_FAMILY
+from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.response.effect_hooks import (
     ElementState,
     HitConditions,

@@ -9,7 +9,7 @@ import json
 import re
 from hashlib import sha256
 from pathlib import Path, PureWindowsPath
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
@@ -19,28 +19,23 @@ from pydantic import (
 
 from jointbench.acquisition.basics.errors import BadData, JointbenchError
 from jointbench.acquisition.file_access.quoting import named, shown
-from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
 from jointbench.station.files.toml_file import (
-    AUTO,
-    NONE,
     StrictTable,
     read_toml,
-    with_unit,
 )
 from jointbench.station.models.bench_model import BenchModel, Force, Pressure
+from jointbench.station.models.recipe_modal_parts import (
+    FrfPart,
+    HitsPart,
+    KalmanPart,
+    ModesPart,
+    WindowsPart,
+)
 
 _NAME = re.compile(r"\w([\w .-]{0,58}\w)?")
 """A recipe's name becomes part of file names: of the results, of the ledger."""
-
-
-_Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
-_Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]
-_Share = Annotated[float, with_unit("ratio"), Field(ge=0, le=1)]
-_NotNegative = Annotated[float, Field(ge=0)]
-# The limit is one of the number alone: asked of "auto" it ends in an internal error.
-_WindowTime = Annotated[_NotNegative | None, with_unit("time", AUTO, NONE)]
-_WindowRate = Annotated[_NotNegative | None, with_unit("frequency", AUTO, NONE)]
 
 
 def _beside(text: str) -> str:
@@ -52,72 +47,6 @@ def _beside(text: str) -> str:
 
 
 _FileBeside = Annotated[str, Field(min_length=1), AfterValidator(_beside)]
-
-
-class HitsPart(StrictTable):
-    """How hits are found and judged again; see `HitCriteria` and `HitLimits`."""
-
-    trigger_level: Force | None = None
-    pretrigger: _Seconds | None = None
-    dead_time: _Seconds | None = None
-    rearm_fraction: _Share | None = None
-    noise_factor: Annotated[float, Field(gt=0)] | None = None
-    peak_fraction: _Share | None = None
-    minimum_length: _Seconds | None = None
-    overload_fraction: _Share | None = None
-    flat_samples: Annotated[int, Field(ge=2)] | None = None
-    double_ratio: _Share | None = None
-    weak_ratio: _Share | None = None
-    weak_force: Force | None = None
-    again: bool = True
-    keep_operator: bool = True
-
-
-class WindowsPart(StrictTable):
-    """Windows: a time or a rate, "auto" (chosen by the hits) or "none"."""
-
-    force_width: _WindowTime = None
-    exponential: _WindowRate = None
-    lead: _WindowTime = None
-
-
-class FrfPart(StrictTable):
-    """The estimator of the FRF."""
-
-    estimator: Literal["H1", "H2", "Hv"] = "H1"
-
-
-class KalmanPart(StrictTable):
-    """The Kalman stage; see `KalmanSettings`."""
-
-    use: bool = True
-    model: Literal["level_slope", "oscillator"] = "level_slope"
-    cutoff: _Hertz | None = None
-    smooth: bool = True
-    frequency: _Hertz | None = None
-    damping_ratio: _Share | None = None
-
-    @model_validator(mode="after")
-    def _oscillator_has_a_frequency(self) -> "KalmanPart":
-        if self.model == "oscillator" and self.frequency is None:
-            raise ValueError("an oscillator needs its frequency, as '310 Hz'")
-        return self
-
-
-class ModesPart(StrictTable):
-    """Band, order and choices by hand; see `ModalSettings`."""
-
-    band: tuple[_Hertz, _Hertz] | None = None
-    highest_order: Annotated[int, Field(ge=2, le=200)] | None = None
-    refine: bool = True
-    keep: tuple[_Hertz, ...] = ()
-    drop: tuple[_Hertz, ...] = ()
-
-    @model_validator(mode="after")
-    def _band_ascends(self) -> "ModesPart":
-        if self.band is not None and not self.band[0] < self.band[1]:
-            raise ValueError(f"band is {self.band} Hz; write the lower end first")
-        return self
 
 
 class SurfacePart(StrictTable):

@@ -11,10 +11,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.basics.units import parse_value
-from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.case import ContactCase
 from jointbench.analysis.contact.curve import require_surface
 from jointbench.analysis.contact.draws import StiffnessInterval
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import preload_of
 from jointbench.analysis.contact.models import ContactModel, Mode
 from jointbench.analysis.contact.predict import (

@@ -15,7 +15,8 @@ from jointbench.analysis.contact.damping import (
     LossConvention,
 )
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import ContactModel, Mode, contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
+from jointbench.analysis.contact.models import ContactModel, Mode
 from jointbench.analysis.contact.preload import Preload, preload_from_torque
 from jointbench.analysis.contact.terms import ContactTerm, with_term
 from jointbench.station.pipeline.contact_options import ContactOptions

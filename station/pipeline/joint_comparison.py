@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.case import ContactCase, ContactConditions
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.signal.surface.structure_function import StructureFunction

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.signal.fractal.surface_verdict import Scaling
-from jointbench.station.screen.terminal import engineering
+from jointbench.station.screen.value_text import engineering
 
 HEADING = "G (95 %), or S at its pivot"
 

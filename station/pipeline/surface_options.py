@@ -2,7 +2,7 @@
 """What the options of ``jointbench surface`` ask beside the fit of each surface."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,15 +10,13 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 from jointbench.signal.fractal.weierstrass_fit import DIMENSION_RANGE, fit_weierstrass
-from jointbench.signal.surface.pooled_profiles import pool_profiles
-from jointbench.signal.surface.quantisation_step import height_step
 from jointbench.signal.surface.structure_function import (
     StructureFunction,
     structure_function,
 )
 from jointbench.signal.surface.structure_map import isotropy
 from jointbench.signal.surface.surface_treatment import UNTREATED, SurfaceTreatment
-from jointbench.station.screen.terminal import engineering, with_sd
+from jointbench.station.screen.value_text import engineering, with_sd
 
 _AT_THE_END = 1e-3
 """A D this near to the end of its range is no D [-]."""
@@ -201,48 +199,3 @@ def _weierstrass(surface: Surface, gamma: float) -> Beside:
         "misfit": found.misfit,
     }
     return Beside((line,), (("weierstrass", keys),))
-
-
-def pooled_structure(
-    given: Sequence[Surface], flat: Sequence[Surface]
-) -> StructureFunction:
-    """Return the structure function of all profiles as one.
-
-    Args:
-        given: profiles as they were read.
-        flat: the same, treated.
-
-    Raises:
-        UsageError: fewer than two profiles, or their spacings differ.
-    """
-    found = pool_profiles([one for one in flat if isinstance(one, Profile)])
-    steps = [height_step(one.heights[one.valid]) for one in given]
-    return replace(found, quantum=max(steps))
-
-
-def pooled_beside(
-    estimate: StructureFunction, dimensions: Sequence[float | None]
-) -> Beside:
-    """Say how D and S of the single profiles scatter.
-
-    Args:
-        estimate: of all profiles.
-        dimensions: D of each profile, None where it has none [-].
-    """
-    known = [one for one in dimensions if one is not None]
-    spread = float(np.std(known, ddof=1)) if len(known) > 1 else None
-    line = (
-        f"{len(known)} of {len(dimensions)} profiles have a D of their own"
-        f"{'' if spread is None else f', which scatters by {spread:.2g}'}"
-    )
-    strips = estimate.faces[0].blocks
-    error = None
-    if len(strips):
-        error = (np.std(strips, axis=0, ddof=1) / np.sqrt(len(strips))).tolist()
-    keys = {
-        "dimension_scatter": spread,
-        "lag_m": estimate.lag.tolist(),
-        "value_m2": estimate.value.tolist(),
-        "value_sd_m2": error,
-    }
-    return Beside((line,), tuple(keys.items()))

@@ -12,8 +12,10 @@ from jointbench.signal.hits.leakage import estimate_leakage
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 from jointbench.signal.modal.mode_confidence import rate_modes
 from jointbench.station.pipeline.chain import ModalChain
-from jointbench.station.screen.figures import PALETTE, axis, figure, line, thin
-from jointbench.station.screen.page import Plot, Section, Text
+from jointbench.station.screen.figures import axis, figure
+from jointbench.station.screen.page_parts import Plot, Section, Text
+from jointbench.station.screen.plot_numbers import thin
+from jointbench.station.screen.traces import PALETTE, line
 
 _MOST_POINTS = 3000
 

@@ -23,17 +23,18 @@ from jointbench.station.pipeline.contact_request import (
     parse_sweep,
 )
 from jointbench.station.pipeline.roughness_words import contact_surface_words
-from jointbench.station.screen.figures import PALETTE, axis, figure, line
-from jointbench.station.screen.page import (
+from jointbench.station.screen.figures import axis, figure
+from jointbench.station.screen.page import write_report
+from jointbench.station.screen.page_parts import (
     DataTable,
     Item,
     Plot,
     Report,
     Section,
     Text,
-    write_report,
 )
 from jointbench.station.screen.terminal import console, table, write_json
+from jointbench.station.screen.traces import PALETTE, line
 
 LABELS = {
     "load": "preload [N]",

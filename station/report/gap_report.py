@@ -4,25 +4,23 @@
 from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Gap
 from jointbench.analysis.gap.model.evidence_records import Exhibit
+from jointbench.station.report.gap_bars import view_grid
 from jointbench.station.report.gap_figures import (
     misfit_spectrum,
     response_function,
-    view_grid,
     wish_figure,
 )
+from jointbench.station.report.gap_numbers import percent, short, sure
 from jointbench.station.report.gap_sentences import (
     SMALL_GAP,
     effect_words,
     headline,
     next_step,
-    percent,
     place,
-    short,
-    sure,
     why_lost,
 )
 from jointbench.station.report.gap_summary_figure import hero
-from jointbench.station.screen.page import (
+from jointbench.station.screen.page_parts import (
     DataTable,
     Item,
     Plot,
@@ -31,7 +29,7 @@ from jointbench.station.screen.page import (
     Text,
     Tile,
 )
-from jointbench.station.screen.terminal import with_sd
+from jointbench.station.screen.value_text import with_sd
 
 MOST_CANDIDATES = 12
 MOST_SLICES = 3

@@ -9,19 +9,12 @@ import numpy as np
 
 from jointbench.analysis.gap.model.diagnosis_record import Gap
 from jointbench.analysis.gap.model.evidence_records import Curves, Exhibit
-from jointbench.station.report.gap_figures import (
-    AFTER,
-    BEFORE,
-    LEGEND,
-    MEASURED,
-    bar_axes,
-    bars,
-    pretty,
-    spectrum,
-    spectrum_axes,
-)
+from jointbench.station.report.gap_bars import bar_axes, bars
+from jointbench.station.report.gap_figures import pretty, spectrum, spectrum_axes
 from jointbench.station.report.gap_sentences import SHEET
-from jointbench.station.screen.figures import Figure, Trace, axis, band, figure, line
+from jointbench.station.report.gap_style import AFTER, BEFORE, LEGEND, MEASURED
+from jointbench.station.screen.figures import Figure, axis, figure
+from jointbench.station.screen.traces import Trace, band, line
 
 Pulls = Mapping[str, tuple[float, float]]
 NOISE = "rgba(42, 157, 143, 0.22)"

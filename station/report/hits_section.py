@@ -12,16 +12,10 @@ from jointbench.acquisition.records.recordings import (
     Verdict,
     response_rows,
 )
-from jointbench.station.screen.figures import (
-    GREY,
-    PALETTE,
-    Trace,
-    axis,
-    figure,
-    line,
-    thin,
-)
-from jointbench.station.screen.page import DataTable, Plot, Section
+from jointbench.station.screen.figures import axis, figure
+from jointbench.station.screen.page_parts import DataTable, Plot, Section
+from jointbench.station.screen.plot_numbers import thin
+from jointbench.station.screen.traces import GREY, PALETTE, Trace, line
 
 BEFORE_TRIGGER = 1.5e-3
 """Time shown before the trigger in the picture of the pulses [s]."""

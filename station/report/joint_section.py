@@ -3,19 +3,11 @@
 
 from jointbench.analysis.lumped.identified import Identification
 from jointbench.station.pipeline.joint_comparison import ContactPrediction
-from jointbench.station.screen.figures import (
-    GREY,
-    PALETTE,
-    Trace,
-    axis,
-    band,
-    figure,
-    line,
-    markers,
-)
+from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.joint_text import interval_text, parameter_text
-from jointbench.station.screen.page import DataTable, Item, Plot, Section, Text
-from jointbench.station.screen.terminal import with_sd
+from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
+from jointbench.station.screen.traces import GREY, PALETTE, Trace, band, line, markers
+from jointbench.station.screen.value_text import with_sd
 
 
 def joint_section(

@@ -14,19 +14,11 @@ from jointbench.station.pipeline.modal_summary import (
 )
 from jointbench.station.report.checks_section import checks_section, systematic_words
 from jointbench.station.report.shapes_section import shapes_section
-from jointbench.station.screen.figures import (
-    GREY,
-    PALETTE,
-    Figure,
-    Trace,
-    axis,
-    figure,
-    line,
-    markers,
-    thin,
-)
-from jointbench.station.screen.page import DataTable, Plot, Section, Text
-from jointbench.station.screen.terminal import with_sd
+from jointbench.station.screen.figures import Figure, axis, figure
+from jointbench.station.screen.page_parts import DataTable, Plot, Section, Text
+from jointbench.station.screen.plot_numbers import thin
+from jointbench.station.screen.traces import GREY, PALETTE, Trace, line, markers
+from jointbench.station.screen.value_text import with_sd
 
 MOST_POINTS = 4000
 HALF_TURN = 180.0

@@ -15,7 +15,8 @@ from jointbench.signal.modal.mode_confidence import (
 )
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.modal_notes import ModalNotes
-from jointbench.station.screen.terminal import console, table, with_sd
+from jointbench.station.screen.terminal import console, table
+from jointbench.station.screen.value_text import with_sd
 
 COLUMNS = (
     "mode",

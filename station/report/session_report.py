@@ -21,16 +21,10 @@ from jointbench.station.report.session_analysis import SessionAnalysis, analyse_
 from jointbench.station.report.surface_section import surface_section
 from jointbench.station.results.results_beside import stored_results
 from jointbench.station.screen.joint_text import interval_text
-from jointbench.station.screen.page import (
-    DataTable,
-    Report,
-    Section,
-    Text,
-    Tile,
-    placed_sections,
-    write_report,
-)
-from jointbench.station.screen.terminal import console, engineering, with_sd, write_json
+from jointbench.station.screen.page import placed_sections, write_report
+from jointbench.station.screen.page_parts import DataTable, Report, Section, Text, Tile
+from jointbench.station.screen.terminal import console, write_json
+from jointbench.station.screen.value_text import engineering, with_sd
 
 MODES_IN_TILE = 3
 LONGEST_DETAIL = 300

@@ -9,16 +9,10 @@ from jointbench.signal.modal.modal_mass import NormalisedShapes, mass_normalise
 from jointbench.signal.modal.shape_checks import check_shapes
 from jointbench.station.models.geometry_file import DrawnShapes, Geometry, draw_shapes
 from jointbench.station.pipeline.chain import ModalChain
-from jointbench.station.screen.figures import (
-    FONT,
-    GREY,
-    PALETTE,
-    Figure,
-    figure,
-    heatmap,
-    numbers,
-)
-from jointbench.station.screen.page import DataTable, Item, Plot, Section, Text
+from jointbench.station.screen.figures import FONT, Figure, figure
+from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
+from jointbench.station.screen.plot_numbers import numbers
+from jointbench.station.screen.traces import GREY, PALETTE, heatmap
 
 _FRAMES = 16
 _MILLISECONDS = 60

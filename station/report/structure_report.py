@@ -19,16 +19,10 @@ from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     solve_reduced,
 )
-from jointbench.station.screen.figures import (
-    PALETTE,
-    Figure,
-    axis,
-    figure,
-    line,
-    numbers,
-)
+from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.joint_text import interval_text
-from jointbench.station.screen.page import (
+from jointbench.station.screen.page import write_report
+from jointbench.station.screen.page_parts import (
     DataTable,
     Item,
     Plot,
@@ -36,9 +30,10 @@ from jointbench.station.screen.page import (
     Section,
     Text,
     Tile,
-    write_report,
 )
-from jointbench.station.screen.terminal import with_sd
+from jointbench.station.screen.plot_numbers import numbers
+from jointbench.station.screen.traces import PALETTE, line
+from jointbench.station.screen.value_text import with_sd
 
 SHAPES_SHOWN = 6
 SHARE_OF_SIZE = 0.06

@@ -8,19 +8,18 @@ import numpy as np
 from jointbench.acquisition.records.surfaces import Areal, Profile
 from jointbench.station.pipeline.roughness_words import HEADING, roughness_words
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
-from jointbench.station.screen.figures import (
+from jointbench.station.screen.figures import axis, figure
+from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
+from jointbench.station.screen.plot_numbers import thin
+from jointbench.station.screen.traces import (
     GREY,
     PALETTE,
     Trace,
-    axis,
-    figure,
     heatmap,
     line,
     markers,
-    thin,
 )
-from jointbench.station.screen.page import DataTable, Item, Plot, Section, Text
-from jointbench.station.screen.terminal import engineering, with_sd
+from jointbench.station.screen.value_text import engineering, with_sd
 
 MOST_POINTS = 3000
 MOST_PIXELS = 260

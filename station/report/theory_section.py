@@ -3,16 +3,17 @@
 
 from collections.abc import Sequence
 
-from jointbench.station.joints.theory import (
+from jointbench.station.joints.theory import unit_of
+from jointbench.station.joints.theory_records import (
     JointQuantity,
     StateEstimate,
     TheoryRow,
-    unit_of,
 )
-from jointbench.station.screen.figures import PALETTE, Trace, axis, figure
+from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.joint_text import interval_text
-from jointbench.station.screen.page import DataTable, Item, Plot, Section, Text
+from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.terminal import console, table
+from jointbench.station.screen.traces import PALETTE, Trace
 
 TITLE = "Identified joint beside the contact law (95 % intervals)"
 NOTE = (

@@ -2,7 +2,7 @@
 """How a joint's parameter is written: its value, or all that is admissible."""
 
 from jointbench.analysis.lumped.identified import JointParameter
-from jointbench.station.screen.terminal import with_sd
+from jointbench.station.screen.value_text import with_sd
 
 WHAT_IS_SHOWN = "(± one standard deviation; where it is open, all that is admissible)"
 

@@ -1,86 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""A report as data, and its rendering to one HTML file that needs no network."""
+"""Rendering of a report to one HTML file that needs no network."""
 
 import json
 import re
 import secrets
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
-from typing import Literal
 
 from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.files.output_paths import write_text
-from jointbench.station.screen.figures import Figure
+from jointbench.station.screen.page_parts import Plot, Report, Section
 
 _PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
 """Columns of words, which read from the left."""
 # plotly.js reads tags in texts, links among them; ours have no attributes.
 _FOREIGN_TAG = re.compile(r"<(?!/?(?:br|b|i|sub|sup|extra)/?>)")
-
-
-@dataclass(frozen=True, slots=True)
-class Tile:
-    """One headline number."""
-
-    label: str
-    value: str
-    note: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Text:
-    """One paragraph; a notice is set apart."""
-
-    text: str
-    kind: Literal["text", "notice"] = "text"
-
-
-@dataclass(frozen=True, slots=True)
-class DataTable:
-    """A table; cells found in `bad_words` are shown as failures."""
-
-    caption: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    bad_words: frozenset[str] = frozenset()
-    kind: Literal["table"] = "table"
-
-
-@dataclass(frozen=True, slots=True)
-class Plot:
-    """A figure under an identifier that is unique within the page."""
-
-    identifier: str
-    caption: str
-    figure: Figure
-    height: int = 380
-    kind: Literal["figure"] = "figure"
-
-
-Item = Text | DataTable | Plot
-
-
-@dataclass(frozen=True, slots=True)
-class Section:
-    """A titled part of the page."""
-
-    anchor: str
-    title: str
-    items: tuple[Item, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Report:
-    """Everything that a page shows."""
-
-    title: str
-    lead: str
-    software: str
-    simulated: bool
-    tiles: tuple[Tile, ...]
-    sections: tuple[Section, ...] = field(default=())
 
 
 def placed_sections(sections: Sequence[Section], at: str) -> list[Section]:

@@ -22,7 +22,8 @@ from jointbench.station.files.output_paths import (
     write_text,
 )
 from jointbench.station.pipeline.roughness_words import caution_lines
-from jointbench.station.screen.terminal import console, engineering, table, write_json
+from jointbench.station.screen.terminal import console, table, write_json
+from jointbench.station.screen.value_text import engineering
 from jointbench.station.sources.serial_port import line_name
 
 TABLE_HEAD = "x [um],z [um]"

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import CONTACT_MODELS, contact_model
+from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
 
 
 @settings(max_examples=60, deadline=None)

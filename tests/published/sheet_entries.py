@@ -9,13 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.analysis.contact import printed_2023 as eq
-from jointbench.analysis.contact.asperity import (
-    FractalSurface,
-)
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import (
-    contact_model,
-)
+from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.sums import joint_sums
 
 TABLE = Path(__file__).parents[3] / "shared" / "design" / "physics_checks.json"

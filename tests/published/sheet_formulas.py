@@ -16,16 +16,14 @@ from sheet_entries import (
 )
 
 from jointbench.analysis.contact.asperity import (
-    FractalSurface,
     asperity_load,
     asperity_stiffness,
     interference,
     log_critical_area,
 )
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import (
-    contact_model,
-)
+from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.sums import joint_sums, power_integral
 
 

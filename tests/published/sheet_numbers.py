@@ -11,19 +11,13 @@ from sheet_entries import (
     surface_of,
 )
 
-from jointbench.analysis.contact.asperity import (
-    asperity_load,
-    log_critical_area,
-)
+from jointbench.analysis.contact.asperity import asperity_load, log_critical_area
+from jointbench.analysis.contact.asperity_laws import FullyPlastic
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.damping import damping_ratio
 from jointbench.analysis.contact.material import ContactMaterial, effective_modulus
-from jointbench.analysis.contact.models import (
-    PRINTED_STAGE_2,
-    FullyPlastic,
-    contact_model,
-    interaction_share,
-)
+from jointbench.analysis.contact.model_catalogue import PRINTED_STAGE_2, contact_model
+from jointbench.analysis.contact.models import interaction_share
 from jointbench.analysis.contact.preload import preload_from_torque
 from jointbench.analysis.contact.tangential import (
     contact_shear,

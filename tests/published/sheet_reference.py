@@ -11,14 +11,11 @@ from sheet_entries import (
     surface_of,
 )
 
+from jointbench.analysis.contact.asperity_laws import FullyPlastic
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.energy import joint_energy, two_regime_energy
-from jointbench.analysis.contact.models import (
-    PRINTED_STAGE_2,
-    FullyPlastic,
-    Interaction,
-    contact_model,
-)
+from jointbench.analysis.contact.model_catalogue import PRINTED_STAGE_2, contact_model
+from jointbench.analysis.contact.models import Interaction
 
 SEED = {"hertz": Interaction.NONE, "seed": Interaction.AS_PRINTED}
 SEED["consistent"] = Interaction.SELF_CONSISTENT

@@ -9,19 +9,15 @@ import pytest
 from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.asperity_laws import REGIMES, PowerLaw, Regime
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import (
     ContactMaterial,
     YieldCriterion,
     effective_modulus,
 )
-from jointbench.analysis.contact.models import (
-    REGIMES,
-    Interaction,
-    PowerLaw,
-    Regime,
-    contact_model,
-)
+from jointbench.analysis.contact.model_catalogue import contact_model
+from jointbench.analysis.contact.models import Interaction
 from jointbench.analysis.contact.predict import predict_contact
 from jointbench.analysis.contact.preload import preload_from_torque
 from jointbench.analysis.contact.sums import joint_sums

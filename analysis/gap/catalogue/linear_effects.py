@@ -4,7 +4,12 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.analysis.gap.model.effect import Effect, Parameter, Reported, Transform
+from jointbench.analysis.gap.model.effect import Effect
+from jointbench.analysis.gap.model.effect_parameter import (
+    Parameter,
+    Reported,
+    Transform,
+)
 from jointbench.analysis.gap.response.effect_hooks import (
     ElementState,
     HitConditions,

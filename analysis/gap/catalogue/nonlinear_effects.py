@@ -4,7 +4,12 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.model.effect import Effect, Parameter, Reported, Transform
+from jointbench.analysis.gap.model.effect import Effect
+from jointbench.analysis.gap.model.effect_parameter import (
+    Parameter,
+    Reported,
+    Transform,
+)
 from jointbench.analysis.gap.response import force_integration as march
 from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
 from jointbench.analysis.gap.response.slider_integration import slider_tables

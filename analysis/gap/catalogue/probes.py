@@ -16,12 +16,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.catalogue.linear_effects import MAXWELL
-from jointbench.analysis.gap.model.effect import (
-    PROBE_FAMILY,
-    Effect,
-    Parameter,
-    Transform,
-)
+from jointbench.analysis.gap.model.effect import PROBE_FAMILY, Effect
+from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
 from jointbench.analysis.gap.response.curve_integration import Curve
 from jointbench.analysis.gap.response.curve_law import curve_law
 from jointbench.analysis.gap.response.effect_hooks import (

@@ -12,9 +12,10 @@ from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.evidence import make_exhibit
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.verdict import verdict_on
+from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
+from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
-from jointbench.analysis.gap.judgement.naming import noise_sd, weakest
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.model.diagnosis_record import (
@@ -25,13 +26,11 @@ from jointbench.analysis.gap.model.diagnosis_record import (
     NamedEffect,
     Ranked,
 )
-from jointbench.analysis.gap.model.effect import (
-    Candidate,
-    Reported,
-    Term,
-)
+from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.model.effect_parameter import Reported
 from jointbench.analysis.gap.residuals.bench_protocol import Bench, values_of
-from jointbench.analysis.gap.residuals.fit_records import FULL, Fit
+from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench

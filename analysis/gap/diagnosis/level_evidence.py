@@ -22,7 +22,8 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     IntArray,
 )
-from jointbench.analysis.gap.residuals.fit_records import Fit, Stage
+from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.settling import joint_at

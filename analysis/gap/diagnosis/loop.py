@@ -8,10 +8,9 @@ import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
 from jointbench.analysis.gap.judgement.judging import Hopes, far_off, judge
-from jointbench.analysis.gap.judgement.naming import (
+from jointbench.analysis.gap.judgement.naming import Gate, gate
+from jointbench.analysis.gap.judgement.rivals import (
     CROWDED_WITHIN,
-    Gate,
-    gate,
     rivals,
     without_twins,
 )

@@ -8,7 +8,9 @@ import numpy as np
 from jointbench.analysis.gap.diagnosis.location import counted_samples
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.campaign_limits import flat_tops
-from jointbench.analysis.gap.judgement.naming import GLOBAL_SD, noise_sd, rival_within
+from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.naming import GLOBAL_SD
+from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import labels_of, words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit

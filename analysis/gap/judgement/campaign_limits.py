@@ -5,7 +5,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.campaign import Campaign
-from jointbench.analysis.gap.residuals.noise_models import repeat_groups
+from jointbench.analysis.gap.residuals.hit_scatter import repeat_groups
 
 _ONE_LEVEL = 1.5
 """Ratio of the hardest hit to the softest below which all have one level."""

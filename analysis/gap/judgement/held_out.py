@@ -14,15 +14,10 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray, freeze
-from jointbench.analysis.gap.model.effect import Transform
+from jointbench.analysis.gap.model.effect_parameter import Transform
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.fit_records import (
-    FINE,
-    MIDDLE,
-    Blocks,
-    Fit,
-    Stage,
-)
+from jointbench.analysis.gap.residuals.evaluation_stages import FINE, MIDDLE, Stage
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import minimise
 

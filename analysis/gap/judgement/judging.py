@@ -6,25 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.analysis.gap.judgement.naming import (
-    AMPLITUDE_SD,
-    Gate,
-    gate,
-    weakest_amplitude,
-)
+from jointbench.analysis.gap.judgement.amplitudes import AMPLITUDE_SD, weakest_amplitude
+from jointbench.analysis.gap.judgement.naming import Gate, gate
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY, labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.fit_records import EVERYDAY, FULL, Fit
+from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FULL
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.race_starts import started
 from jointbench.analysis.gap.search.restarts import caught_up
 from jointbench.analysis.gap.search.screening import Screening, screen
-from jointbench.analysis.gap.search.selection_round import (
-    Progress,
-    finish,
-    score,
-    started,
-)
+from jointbench.analysis.gap.search.selection_round import Progress, finish, score
 
 _REJUDGED = 30
 _AGREED = 2.0

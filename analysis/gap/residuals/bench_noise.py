@@ -10,17 +10,20 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
-from jointbench.analysis.gap.residuals.fit_records import EVERYDAY, FULL, Settled
+from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FULL
+from jointbench.analysis.gap.residuals.fit_records import Settled
+from jointbench.analysis.gap.residuals.hit_scatter import (
+    gain_scatter,
+    regress,
+    repeat_groups,
+    without_trend,
+)
 from jointbench.analysis.gap.residuals.lumped_residual import SomeBench, settle
 from jointbench.analysis.gap.residuals.noise_models import (
     FORCE_SHAPES,
     Noise,
     channel_sigma,
-    gain_scatter,
-    regress,
-    repeat_groups,
     whitening_basis,
-    without_trend,
 )
 from jointbench.analysis.gap.residuals.settling import (
     hit_stiffness,
@@ -28,7 +31,8 @@ from jointbench.analysis.gap.residuals.settling import (
     mean_stiffness,
 )
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
-from jointbench.analysis.gap.response.predict_records import prepare_excitation, respond
+from jointbench.analysis.gap.response.excitation import prepare_excitation
+from jointbench.analysis.gap.response.predict_records import respond
 
 TELLS_NOTHING = 0.3
 """Misfit over response above which a fit says nothing about the settling."""

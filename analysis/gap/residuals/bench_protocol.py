@@ -8,7 +8,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
-from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit, Stage
+from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 
 
 class Scaled(Protocol):

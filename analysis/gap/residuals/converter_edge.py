@@ -16,9 +16,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Term
-from jointbench.analysis.gap.residuals.fit_records import EVERYDAY, FINE, FULL
+from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FINE, FULL
 from jointbench.analysis.gap.residuals.lumped_residual import SomeBench
-from jointbench.analysis.gap.response.predict_records import pass_band_end
+from jointbench.analysis.gap.response.excitation import pass_band_end
 
 KNOTS = np.arange(0.37, 0.505, 0.01)
 """Middles of the splines over the sample rate."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Records of a fit: how it is evaluated, how its rows belong together, its minimum."""
+"""Records of a fit: how its rows belong together, its minimum."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,28 +8,6 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
-
-
-@dataclass(frozen=True, slots=True)
-class Stage:
-    """How thoroughly a residual is evaluated.
-
-    Attributes:
-        window: decay of the exponential window [s], or None for the whole record;
-            short windows make the cost of a misplaced resonance smooth.
-        oversampling: steps of the nonlinear march per sample.
-    """
-
-    window: float | None = None
-    oversampling: int = 4
-
-
-MIDDLE = Stage(oversampling=2)
-FULL = Stage()
-FINE = Stage(oversampling=8)
-EVERYDAY = 30.0
-"""Chi2 over dof beyond which a misfit is a missing effect of everyday size: directed
-tests may point the wrong way, and nothing can be told of noise, settling or filter."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,7 +14,8 @@ from jointbench.analysis.gap.catalogue.probes import PROBES
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
-from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled, Stage
+from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled
 from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.settling import (
     changes_joint,
@@ -25,11 +26,8 @@ from jointbench.analysis.gap.residuals.settling import (
 )
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import HitConditions, LumpedEffect
-from jointbench.analysis.gap.response.predict_records import (
-    Excitation,
-    prepare_excitation,
-    respond,
-)
+from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation
+from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.gap.response.search_effort import spend
 
 WINDOW_REACH = 3.5

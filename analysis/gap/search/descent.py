@@ -6,7 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.residuals.fit_records import FULL, Fit, Stage
+from jointbench.analysis.gap.residuals.evaluation_stages import FULL, Stage
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
 from jointbench.analysis.gap.response.threads import each
 

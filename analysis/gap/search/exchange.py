@@ -5,7 +5,8 @@ from collections.abc import Collection
 
 from jointbench.analysis.gap.model.effect import labels_of, may_join
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.fit_records import MIDDLE, Fit
+from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.far_pairs import without
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.selection_round import Progress, race

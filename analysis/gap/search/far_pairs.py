@@ -14,11 +14,13 @@ import numpy as np
 
 from jointbench.analysis.gap.model.effect import labels_of, may_join, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.fit_records import Fit, Stage
+from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import fit_stages, minimise
+from jointbench.analysis.gap.search.race_starts import along
 from jointbench.analysis.gap.search.screening import screen
-from jointbench.analysis.gap.search.selection_round import Progress, along
+from jointbench.analysis.gap.search.selection_round import Progress
 
 _SHORT = Stage(0.005, 2)
 _LONGER = Stage(0.016, 2)

@@ -8,10 +8,12 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.fit_records import MIDDLE, Fit
+from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
-from jointbench.analysis.gap.search.selection_round import MOST_STEPS, Progress, finish
+from jointbench.analysis.gap.search.race_starts import MOST_STEPS
+from jointbench.analysis.gap.search.selection_round import Progress, finish
 
 ASTRAY = 4.0
 """Sd off its sheet from which a base has lost its way."""

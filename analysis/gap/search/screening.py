@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.fit_records import Fit, Stage
+from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.response.threads import each
 
 PROBE = 1e-6

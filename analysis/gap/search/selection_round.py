@@ -2,21 +2,20 @@
 """The race of the candidates: joint refits, coarse to fine, the hopeless dropped."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.fit_records import (
+from jointbench.analysis.gap.residuals.evaluation_stages import (
     EVERYDAY,
     FINE,
     FULL,
     MIDDLE,
-    Fit,
     Stage,
 )
+from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import (
     BASE_STAGES,
@@ -24,6 +23,7 @@ from jointbench.analysis.gap.search.descent import (
     cost_at,
     minimise,
 )
+from jointbench.analysis.gap.search.race_starts import MOST_STEPS, Runner, along
 from jointbench.analysis.gap.search.screening import Direction, Screening
 
 Progress = Callable[[str], None]
@@ -45,29 +45,11 @@ _ROUNDS = ((3, 12, 2), (5, 8, 1))
 """Steps of every start still in the race, how many go on, and how many of one set."""
 _LEAST = 0.04
 """Share of the largest directed drop below which an effect is no candidate."""
-MOST_STEPS = 16
 STARTS = 3
 """Starts of a candidate that has a shape of its own."""
 _SWAP_PROBE = 1e-4
 _MARCH_ERROR = 50.0
 """Chi2 between two step sizes above which the finer one is taken."""
-SHARES = (1.0, 0.3, 0.1)
-"""Shares of a foretold step that are tried as starts."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Runner:
-    """One start of one candidate set, as far as it has come."""
-
-    problem: FitProblem
-    x: FloatArray
-    cost: float
-    fit: Fit | None = None
-
-    @property
-    def label(self) -> str:
-        """The candidates in words, in an order of their own."""
-        return words_of(self.problem.candidates)
 
 
 def score(bench: Bench, fit: Fit) -> float:
@@ -223,47 +205,6 @@ def _far(
             done.append(_run(r, stage, iterations))
         runners = _keep(done, keep)
     return runners
-
-
-def along(problem: FitProblem, fit: Fit, direction: Direction, stage: Stage) -> Runner:
-    """Return the best start on the way that a directed test foretells.
-
-    The effect comes in and the base gives way together; what is far from small is
-    not foretold well, so shorter ways are looked at too.
-
-    Args:
-        problem: of the fit's effects and the one tested, in that order.
-        fit: that was tested.
-        direction: the test.
-        stage: at which starts are compared.
-    """
-    full = np.concatenate([fit.x + direction.shift, direction.coordinates])
-    trials = [np.concatenate([fit.x, direction.coordinates])]
-    for share in SHARES:
-        trial = full.copy()
-        trial[: fit.x.size] = fit.x + share * direction.shift
-        if not direction.candidate.effect.parameters[0].starts:
-            trial[fit.x.size] *= share
-        trials.append(trial)
-    trials = [np.clip(x, problem.lower, problem.upper) for x in trials]
-    costs = []
-    for x in trials:
-        costs.append(cost_at(problem, x, stage))
-    best = int(np.argmin(costs))
-    return Runner(problem, trials[best], costs[best])
-
-
-def started(bench: Bench, fit: Fit, direction: Direction) -> Fit:
-    """Return a first fit of what a directed test points to.
-
-    Args:
-        bench: measurement and model.
-        fit: what the candidate is added to.
-        direction: the test.
-    """
-    problem = make_problem(bench, (*fit.candidates, direction.candidate))
-    runner = along(problem, fit, direction, MIDDLE)
-    return minimise(problem, runner.x, MIDDLE, iterations=MOST_STEPS)
 
 
 def _runner(problem: FitProblem, x: FloatArray) -> Runner:

@@ -46,7 +46,7 @@ from jointbench.analysis.structures.identification.structure_evidence import (
 )
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.full_modes import frequency_of, solve_full
-from jointbench.analysis.structures.reduction.predict_response import (
+from jointbench.analysis.structures.reduction.predict_modes import (
     JointValues,
     damping_ratios,
     energy_shares,

@@ -9,7 +9,7 @@ from jointbench.analysis.structures.identification.stiffness_problem import (
     StiffnessProblem,
     values_of,
 )
-from jointbench.analysis.structures.reduction.predict_response import (
+from jointbench.analysis.structures.reduction.predict_modes import (
     damping_ratios,
     modal_state,
 )

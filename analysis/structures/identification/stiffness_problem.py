@@ -12,7 +12,7 @@ from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
     misfit,
 )
-from jointbench.analysis.structures.reduction.predict_response import JointValues
+from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 
 # A search may leave the box of the reduction by this factor at the most.

@@ -15,13 +15,13 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
-from jointbench.analysis.structures.reduction.predict_response import (
+from jointbench.analysis.structures.reduction.predict_modes import (
     JointValues,
     ModalState,
     damping_ratios,
     modal_state,
-    predict_frf,
 )
+from jointbench.analysis.structures.reduction.predict_response import predict_frf
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     solve_reduced,

@@ -5,7 +5,8 @@ from typing import Any
 
 from jointbench.analysis.contact.case import ContactCase, ContactConditions
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import ContactModel, Mode, contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
+from jointbench.analysis.contact.models import ContactModel, Mode
 from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.spread import ContactSpread
 from jointbench.analysis.contact.surface import ContactSurface

@@ -7,15 +7,16 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.asperity import (
-    FractalSurface,
     asperity_load,
     asperity_stiffness,
     interference,
     interference_ratio,
     log_critical_area,
 )
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import Interaction, contact_model
+from jointbench.analysis.contact.model_catalogue import contact_model
+from jointbench.analysis.contact.models import Interaction
 
 MATERIAL = ContactMaterial(69.3e9, 2.265e9, 0.25)
 PROFILE = FractalSurface(np.array(1.5), np.array(1e-9), np.array(2.265e9))

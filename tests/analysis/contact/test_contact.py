@@ -7,19 +7,15 @@ from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.analysis.contact.asperity_laws import Regime
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.material import (
     ContactMaterial,
     YieldCriterion,
     yield_ratio,
 )
-from jointbench.analysis.contact.models import (
-    CONTACT_MODELS,
-    Interaction,
-    Regime,
-    contact_model,
-    interaction_share,
-)
+from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
+from jointbench.analysis.contact.models import Interaction, interaction_share
 from jointbench.analysis.contact.predict import ContactVerdict, predict_contact
 
 IRON = ContactMaterial(69.3e9, 2.265e9, 0.25)

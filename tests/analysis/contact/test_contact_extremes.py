@@ -6,11 +6,11 @@ from contact_cases import joint_case
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.asperity import FractalSurface
 from jointbench.analysis.contact.curve import contact_curve
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import log_largest_of_stiffness
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import CONTACT_MODELS
+from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS
 from jointbench.analysis.contact.predict import ContactVerdict, predict_contact
 
 mpmath = pytest.importorskip("mpmath", reason="an oracle of the tests only")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from jointbench.analysis.contact.asperity import FractalSurface
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import CONTACT_MODELS, contact_model
+from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
 from jointbench.analysis.contact.sums import joint_sums
 
 DRAWS = 2000

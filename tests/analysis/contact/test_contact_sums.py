@@ -10,13 +10,13 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from jointbench.analysis.contact.asperity import (
-    FractalSurface,
     asperity_load,
     asperity_stiffness,
     log_critical_area,
 )
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import CONTACT_MODELS, contact_model
+from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
 from jointbench.analysis.contact.solve import solve_largest_area
 from jointbench.analysis.contact.sums import joint_sums, power_integral
 

@@ -12,7 +12,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.asperity import FractalSurface, interference
+from jointbench.analysis.contact.asperity import interference
+from jointbench.analysis.contact.asperity_laws import REGIMES, Regime
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.damping import (
     DampingChoice,
@@ -23,16 +24,11 @@ from jointbench.analysis.contact.damping import (
     loss_factor,
 )
 from jointbench.analysis.contact.energy import joint_energy, recovered_share
+from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import approach_stiffness, preload_of
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.models import (
-    CONTACT_MODELS,
-    REGIMES,
-    Interaction,
-    Mode,
-    Regime,
-    contact_model,
-)
+from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
+from jointbench.analysis.contact.models import Interaction, Mode
 from jointbench.analysis.contact.predict import ContactVerdict, predict_contact
 from jointbench.analysis.contact.printed import printed_warnings
 from jointbench.analysis.contact.solve import solve_largest_area

@@ -14,7 +14,7 @@ from jointbench.analysis.gap.model.diagnosis_record import (
 from jointbench.station.gap import gap_output
 from jointbench.station.report.gap_report import gap_report
 from jointbench.station.report.gap_sentences import next_step
-from jointbench.station.screen.page import Text
+from jointbench.station.screen.page_parts import Text
 
 LINEAR = re.compile(r"(?<!not )in proportion to the hit|cause is linear")
 BENT = re.compile(

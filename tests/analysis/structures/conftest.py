@@ -22,7 +22,7 @@ from jointbench.analysis.structures.reduction.mounted_sensors import (
     readout,
     sensor_rows,
 )
-from jointbench.analysis.structures.reduction.predict_response import JointValues
+from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduce import reduce_structure
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 

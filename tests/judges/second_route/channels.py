@@ -13,7 +13,7 @@ from second_route.motion import UPSAMPLING
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
-from jointbench.analysis.gap.response.predict_records import Excitation
+from jointbench.analysis.gap.response.excitation import Excitation
 
 Values = Mapping[str, float]
 AT_SAMPLES = ("saturation", "hum")

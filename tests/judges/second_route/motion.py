@@ -16,7 +16,8 @@ from second_route.system import System
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.gap.response.predict_records import Excitation, undamped
+from jointbench.analysis.gap.response.excitation import Excitation
+from jointbench.analysis.gap.response.predict_records import undamped
 
 UPSAMPLING = 16
 """Points per sample between which a cubic spline carries the force: 2e-6 of a line at

@@ -20,7 +20,7 @@ from second_route.laws import (
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
-from jointbench.analysis.gap.response.predict_records import Excitation
+from jointbench.analysis.gap.response.excitation import Excitation
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 LINEAR = (

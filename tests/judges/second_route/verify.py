@@ -24,7 +24,8 @@ from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
-from jointbench.analysis.gap.response.predict_records import Excitation, respond
+from jointbench.analysis.gap.response.excitation import Excitation
+from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 TOLERANCE = 1e-9

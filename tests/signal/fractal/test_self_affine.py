@@ -8,15 +8,14 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from jointbench.signal.fractal.levelling_loss import levelling_loss
-from jointbench.signal.fractal.self_affine import (
-    SeenSurface,
+from jointbench.signal.fractal.instrument_blur import (
     band_limited_power,
     blurred_power,
-    rolled_off,
     tip_fall,
     traced_power,
 )
+from jointbench.signal.fractal.levelling_loss import levelling_loss
+from jointbench.signal.fractal.self_affine import SeenSurface, rolled_off
 from jointbench.signal.surface.structure_constant import spectral_integral
 
 EXPONENTS = [0.5, 1.0, 1.5]

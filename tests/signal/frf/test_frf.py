@@ -17,8 +17,8 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.records.recordings import Quantity, Recording, Verdict
 from jointbench.signal.frf.estimators import Estimator
 from jointbench.signal.frf.frf import Frf, FrfKind, estimate_frf
+from jointbench.signal.hits.block_length import choose_block, fast_length
 from jointbench.signal.hits.find_hits import find_hits
-from jointbench.signal.hits.hit_spectra import choose_block, fast_length
 from jointbench.signal.hits.windows import HammerWindow
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.fit_residuals import misfit_around
-from jointbench.signal.modal.lsfd import lines_of
+from jointbench.signal.modal.frf_lines import lines_of
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
 LINES = np.arange(0.0, 1200.0)

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from jointbench.signal.frf.frf import Frf, FrfKind
-from jointbench.signal.modal.lsfd import fit_residues, lines_of, residual_terms
+from jointbench.signal.modal.frf_lines import lines_of
+from jointbench.signal.modal.lsfd import fit_residues, residual_terms
 from jointbench.signal.modal.modal_model import split_residues
 
 LINES = np.arange(20.0, 1000.0, 0.5)

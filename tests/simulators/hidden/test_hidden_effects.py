@@ -7,11 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.hidden.campaign_design import SAMPLE_RATE, draw_design
+from jointbench.simulators.hidden.campaign_design import draw_design
 from jointbench.simulators.hidden.campaign_response import (
     simulate_records,
     sketch_responses,
 )
+from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 DESIGN = draw_design(3, grid="small")

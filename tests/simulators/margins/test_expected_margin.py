@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from jointbench.simulators.hidden.campaign_design import SAMPLE_RATE, draw_design
+from jointbench.simulators.hidden.campaign_design import draw_design
 from jointbench.simulators.hidden.campaign_response import sketch_responses
+from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 from jointbench.simulators.hidden.sample_weights import sample_weights, weigh
 from jointbench.simulators.margins.base_refit import project

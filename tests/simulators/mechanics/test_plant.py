@@ -10,12 +10,11 @@ from jointbench.simulators.mechanics.plant import (
     GROUND,
     Plant,
     PlantLink,
-    PlantState,
     plant_matrices,
     plant_modes,
-    step_plant,
     two_bodies,
 )
+from jointbench.simulators.mechanics.plant_march import PlantState, step_plant
 
 BENCH = two_bodies(m1=9.0, m2=4.6, k0=2.2e7, c0=320.0, kj=6.0e7, cj=240.0)
 

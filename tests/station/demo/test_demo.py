@@ -19,13 +19,8 @@ from jointbench.station.demo.demo_bench import HITS
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.models.bench_model import BenchModel
 from jointbench.station.pipeline.modal_options import modal_settings
-from jointbench.station.screen.page import (
-    DataTable,
-    Report,
-    Section,
-    Text,
-    render,
-)
+from jointbench.station.screen.page import render
+from jointbench.station.screen.page_parts import DataTable, Report, Section, Text
 
 
 @pytest.fixture(scope="module")

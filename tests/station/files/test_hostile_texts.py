@@ -15,7 +15,8 @@ from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.station.files.spreadsheet_text import escaped
 from jointbench.station.main import app, exit_code
-from jointbench.station.screen.page import DataTable, Plot, Report, Section, render
+from jointbench.station.screen.page import render
+from jointbench.station.screen.page_parts import DataTable, Plot, Report, Section
 
 COMMANDS = "\x07\x08\x1b\x7f\x9b\x9d"
 DIRECTIONS = "\u061c\u200f\u202e\u2066"

@@ -12,12 +12,11 @@ from numpy.testing import assert_allclose
 from jointbench.analysis.contact.predict import predict_contact
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.station.joints.structure_contact import TheoryTable
-from jointbench.station.joints.theory import (
+from jointbench.station.joints.theory import against_theory, theory_json
+from jointbench.station.joints.theory_records import (
     IdentifiedState,
     JointQuantity,
     StateEstimate,
-    against_theory,
-    theory_json,
 )
 from jointbench.station.main import app
 from jointbench.station.report.theory_section import theory_section

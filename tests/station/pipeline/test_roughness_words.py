@@ -17,7 +17,7 @@ from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.roughness_words import contact_surface_words
 from jointbench.station.pipeline.stage_store import StageStore
 from jointbench.station.report.surface_section import surface_section
-from jointbench.station.screen.page import DataTable
+from jointbench.station.screen.page_parts import DataTable
 
 MATERIAL = ["--modulus=29.3 GPa", "--hardness=1.5 GPa", "--load=4 kN", "--model=ke_2d"]
 

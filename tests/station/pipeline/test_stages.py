@@ -12,13 +12,8 @@ from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.recipe import (
-    ContactPart,
-    HitsPart,
-    IdentificationPart,
-    KalmanPart,
-    Recipe,
-)
+from jointbench.station.models.recipe import ContactPart, IdentificationPart, Recipe
+from jointbench.station.models.recipe_modal_parts import HitsPart, KalmanPart
 from jointbench.station.pipeline.chain import ChainSettings, run_chain
 from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.recipe_settings import chain_settings

@@ -23,7 +23,8 @@ from jointbench.station.report.gap_sentences import (
     next_step,
     why_lost,
 )
-from jointbench.station.screen.page import DataTable, Plot, render
+from jointbench.station.screen.page import render
+from jointbench.station.screen.page_parts import DataTable, Plot
 
 VERDICTS = ("none", "named", "ambiguous", "unknown")
 LATE = ("delay", "channel:a1", [4e-5])

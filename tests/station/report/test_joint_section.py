@@ -8,7 +8,7 @@ from jointbench.analysis.lumped.lumped_modes import solve_modes
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.station.report.joint_section import joint_section
 from jointbench.station.screen.joint_text import interval_text
-from jointbench.station.screen.page import DataTable
+from jointbench.station.screen.page_parts import DataTable
 
 
 def test_a_link_with_two_solutions_shows_the_range_of_both() -> None:

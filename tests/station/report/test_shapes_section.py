@@ -12,7 +12,8 @@ from jointbench.station.models.geometry_file import Geometry, draw_shapes
 from jointbench.station.pipeline.chain import ModalChain, run_chain
 from jointbench.station.report.checks_section import checks_section
 from jointbench.station.report.shapes_section import shapes_section
-from jointbench.station.screen.page import Plot, Report, Text, write_report
+from jointbench.station.screen.page import write_report
+from jointbench.station.screen.page_parts import Plot, Report, Text
 
 RATE = 2048.0
 FREQUENCY, DAMPING = np.array([90.0, 240.0, 410.0]), np.array([0.01, 0.008, 0.012])

@@ -2,7 +2,7 @@
 
 import pytest
 
-from jointbench.station.screen.terminal import engineering, with_sd
+from jointbench.station.screen.value_text import engineering, with_sd
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.linear_effects import CROSS_TALK
-from jointbench.analysis.gap.judgement.naming import EXACT, MODEL_ERROR
+from jointbench.analysis.gap.judgement.expected_misfit import EXACT, MODEL_ERROR
 from jointbench.analysis.gap.response.curve_integration import (
     REACH,
     finest_of,
@@ -170,7 +170,8 @@ def own_effect(folder: Path, sites: tuple[str, ...], hooks: str) -> Path:
     head = """
 import numpy as np
 from jointbench.analysis.gap.response.curve_law import curve_law
-from jointbench.analysis.gap.model.effect import Effect, Parameter
+from jointbench.analysis.gap.model.effect import Effect
+from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 EFFECT = Effect("own", "own", (Parameter("a", "-", off=0.0),), "nowhere")
 """

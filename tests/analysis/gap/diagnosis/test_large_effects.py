@@ -4,7 +4,8 @@
 import gap_bench as made
 import numpy as np
 
-from jointbench.analysis.gap.judgement.naming import GLOBAL_SD, noise_sd
+from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.naming import GLOBAL_SD
 from jointbench.analysis.gap.residuals.bench_noise import refine_noise
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem

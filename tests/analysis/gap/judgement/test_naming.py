@@ -13,7 +13,9 @@ from jointbench.analysis.gap.catalogue.nonlinear_effects import (
     JENKINS,
     SATURATION,
 )
-from jointbench.analysis.gap.judgement.naming import at_the_end, forgiven, without_twins
+from jointbench.analysis.gap.judgement.amplitudes import at_the_end
+from jointbench.analysis.gap.judgement.expected_misfit import forgiven
+from jointbench.analysis.gap.judgement.rivals import without_twins
 from jointbench.analysis.gap.model.effect import Candidate, Effect, Site
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.make_bench import make_bench

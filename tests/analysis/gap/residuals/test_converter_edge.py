@@ -16,7 +16,7 @@ from jointbench.analysis.gap.residuals.bench_noise import refine_noise
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
-from jointbench.analysis.gap.response.predict_records import pass_band_end
+from jointbench.analysis.gap.response.excitation import pass_band_end
 from jointbench.simulators.campaigns.campaign_records import SimulatedCampaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.simulators.hidden.campaign_design import draw_design

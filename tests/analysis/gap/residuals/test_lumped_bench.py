@@ -9,12 +9,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.hit_scatter import gain_scatter, without_trend
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.residuals.noise_models import (
     channel_sigma,
-    gain_scatter,
     whitening_basis,
-    without_trend,
 )
 from jointbench.analysis.gap.response.dynamic_stiffness import invert
 from jointbench.analysis.gap.response.predict_records import respond

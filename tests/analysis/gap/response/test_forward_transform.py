@@ -7,13 +7,10 @@ import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.make_bench import make_bench
-from jointbench.analysis.gap.response import predict_records as forward
+from jointbench.analysis.gap.response import excitation as forward
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
-from jointbench.analysis.gap.response.predict_records import (
-    Excitation,
-    prepare_excitation,
-    respond,
-)
+from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation
+from jointbench.analysis.gap.response.predict_records import respond
 
 CAMPAIGN = made.quiet_campaign()
 BENCH = make_bench(CAMPAIGN)

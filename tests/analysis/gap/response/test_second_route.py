@@ -19,8 +19,9 @@ from second_route.verify import (
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
-from jointbench.analysis.gap.judgement.naming import noise_sd
-from jointbench.analysis.gap.model.effect import Effect, Parameter
+from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.model.effect import Effect
+from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench

@@ -17,13 +17,13 @@ from jointbench.analysis.gap.model.effect import (
     PROBE_FAMILY,
     Candidate,
     Effect,
-    Parameter,
     Site,
     Term,
-    Transform,
     labels_of,
 )
-from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit, Stage
+from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
+from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.exchange import exchanged

@@ -22,11 +22,11 @@ from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
 )
 from jointbench.analysis.structures.matrices.structure import Structure
-from jointbench.analysis.structures.reduction.predict_response import (
+from jointbench.analysis.structures.reduction.predict_modes import (
     JointValues,
-    predict_frf,
     predict_modes,
 )
+from jointbench.analysis.structures.reduction.predict_response import predict_frf
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.signal.frf.frf import Frf, FrfKind
 

@@ -13,11 +13,13 @@ from jointbench.analysis.structures.reduction.mounted_sensors import (
     readout,
     sensor_rows,
 )
-from jointbench.analysis.structures.reduction.predict_response import (
+from jointbench.analysis.structures.reduction.predict_modes import (
     JointValues,
+    predict_modes,
+)
+from jointbench.analysis.structures.reduction.predict_response import (
     predict_complex_modes,
     predict_frf,
-    predict_modes,
     response_to_force,
 )
 from jointbench.analysis.structures.reduction.reduce import reduce_structure

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""How sure the effects of a fit are: their distance from nothing, and from the end."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from jointbench.analysis.gap.model.effect import labels_of
+from jointbench.analysis.gap.residuals.fit_records import Fit
+
+AMPLITUDE_SD = 4.0
+_AT_THE_END = 1e-3
+"""Share of its range within which a parameter counts as standing at its end."""
+_LOOSE = 0.3
+"""Sd over the range beyond which a parameter stands nowhere in particular."""
+
+
+def at_the_end(fit: Fit) -> str:
+    """Say which shape of a law is driven to the end of its range, if any is.
+
+    Such a law is stretched over another one: a Bouc-Wen element of a very sharp corner
+    is a Jenkins slider.
+    """
+    sd, at = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0)), fit.n_base
+    for term in fit.terms:
+        for k, p in enumerate(term.candidate.effect.parameters):
+            low, high = p.bounds
+            span, u = high - low, term.coordinates[k]
+            if k and sd[at + k] < _LOOSE * span and np.isfinite(span):
+                if min(u - low, high - u) < _AT_THE_END * span:
+                    return f"{p.name} of {term.candidate.label} is at its limit"
+        at += len(term.coordinates)
+    return ""
+
+
+def weakest(fit: Fit, others: Sequence[Fit]) -> float:
+    """Return how many sd the weakest effect of a fit is from being off.
+
+    By the rise of the cost where a fit without it is at hand, else by its amplitude:
+    the amplitude of a weak law of friction is loose although the law is needed.
+    """
+    own, sure = labels_of(fit.candidates), []
+    for candidate in fit.candidates:
+        rest = own - {candidate.label}
+        without = [f.cost for f in others if labels_of(f.candidates) == rest]
+        if not without:
+            return weakest_amplitude(fit)
+        sure.append(np.sqrt(max(min(without) - fit.cost, 0.0)))
+    return float(min(sure, default=np.inf))
+
+
+def weakest_amplitude(fit: Fit) -> float:
+    """Return the smallest distance of an amplitude from OFF, in sd."""
+    sd = np.sqrt(np.maximum(np.diag(fit.covariance), 1e-300))
+    at, worst = fit.n_base, np.inf
+    for candidate in fit.candidates:
+        first = candidate.effect.parameters[0]
+        if first.upper - first.lower > 1e-3:
+            worst = min(worst, abs(fit.x[at]) / sd[at])
+        at += len(candidate.effect.parameters)
+    return float(worst)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Which fits the best one is not told apart from."""
+
+from collections.abc import Sequence
+
+from jointbench.analysis.gap.model.effect import labels_of
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
+from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.search.selection_round import score
+
+_RIVAL_WITHIN = 15.0
+"""Score within which a rival is not told apart."""
+CROWDED_WITHIN = 60.0
+"""The same where one site bears two effects: two laws together bend as many do."""
+_TWIN_WITHIN = 0.5
+"""Score within which the same fault at one channel and at all is one statement."""
+_EVERYWHERE = "all"
+
+
+def rival_within(best: Fit) -> float:
+    """Return the score behind the best within which a rival is not told apart."""
+    sites = [c.site for c in best.candidates]
+    return _RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
+
+
+def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+    """Return the fits that the best one is not told apart from, it included.
+
+    An explanation that holds the best one and more is no rival of it: what it adds
+    did not earn its charge.
+    """
+    if not fits:
+        return []
+    best, own = score(bench, fits[0]), labels_of(fits[0].candidates)
+    near = rival_within(fits[0])
+    return [
+        f
+        for f in fits
+        if score(bench, f) < best + near
+        and (f is fits[0] or not own < labels_of(f.candidates))
+    ]
+
+
+def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+    """Drop fits that say the same as a fault of all channels alike.
+
+    A range of the converter that only one channel reaches is the range of all.
+    """
+    return [
+        f
+        for f in fits
+        if not any(
+            _twin_of(f, c) and abs(score(bench, f) - score(bench, c)) < _TWIN_WITHIN
+            for c in fits
+        )
+    ]
+
+
+def _twin_of(fit: Fit, common: Fit) -> bool:
+    """Tell whether a fit is another one with a fault of all at one channel only."""
+    own = [c for c in fit.candidates if c not in common.candidates]
+    other = [c for c in common.candidates if c not in fit.candidates]
+    if len(own) != 1 or len(other) != 1 or other[0].site.name != _EVERYWHERE:
+        return False
+    return own[0].effect.name == other[0].effect.name

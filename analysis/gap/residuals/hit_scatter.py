@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""Scatter from hit to hit: of the hand, of the joint, and what goes with a pattern."""
+
+import itertools
+
+import numpy as np
+import scipy.stats
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+
+_SCATTER_MAX = 0.004
+_SCATTER_TRIED = 2e-7
+_SCATTER_MIN = 2e-5
+"""No hand and no joint repeats to better than that: what seems to scatter by less is
+a small effect, or chance, and counts as no scatter."""
+_UNLIKELY = 0.0025
+"""Chance of repeats as close as those seen, below which a scatter is ruled out."""
+_TREND_CHANCE = 3e-4
+"""Chance of a pattern over the records, below which it is a trend and no scatter."""
+
+
+def repeat_groups(
+    hit: IntArray, level: FloatArray, preload: FloatArray
+) -> list[IntArray]:
+    """Return the records of each condition that was measured more than once."""
+    keys = list(zip(hit.tolist(), level.tolist(), preload.tolist(), strict=True))
+    groups = []
+    for key in sorted(set(keys)):
+        rows = np.array([i for i, k in enumerate(keys) if k == key])
+        if rows.size > 1:
+            groups.append(rows)
+    return groups
+
+
+def gain_scatter(
+    gains: FloatArray, variances: FloatArray, groups: list[IntArray]
+) -> float:
+    """Estimate the relative gain scatter from hit to hit.
+
+    Repeats of a condition differ by scatter and noise alone, but there are few of
+    them; all records together say more, but a missing effect speaks through them
+    too. So the estimate from all records is taken, held between the likeliest value
+    and the upper limit that the repeats allow: steps^2/(v + s^2) is a chi2 pivot.
+
+    Args:
+        gains: regression of each residual on its response [-], shape (n_records,).
+        variances: of the gains by noise alone, same shape.
+        groups: records that repeat a condition.
+
+    Returns:
+        Standard deviation of the gain [-].
+    """
+    grid = _scatter_grid() ** 2
+    everywhere = _deviance(gains, variances, grid)
+    wide = float(grid[int(np.argmin(everywhere))])
+    pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
+    if not pairs:
+        return _believed(np.sqrt(wide))
+    first, second = (np.array(x) for x in zip(*pairs, strict=True))
+    steps = (gains[first] - gains[second]) / np.sqrt(2.0)
+    spread = (variances[first] + variances[second]) / 2
+    low = float(grid[int(np.argmin(_deviance(steps, spread, grid)))])
+    pivot = np.sum(steps**2 / (spread + grid[:, None]), axis=1)
+    allowed = grid[pivot > scipy.stats.chi2.ppf(_UNLIKELY, steps.size)]
+    high = max(float(allowed.max(initial=0.0)), low)
+    return _believed(np.sqrt(np.clip(wide, low, high)))
+
+
+def _believed(scatter: float) -> float:
+    """Return a scatter, 0 where neither hand nor joint repeats so well."""
+    return float(scatter) if scatter >= _SCATTER_MIN else 0.0
+
+
+def without_trend(
+    values: FloatArray, variances: FloatArray, patterns: FloatArray
+) -> FloatArray:
+    """Take out of one value a record the pattern that explains them best, if one does.
+
+    A trend over the records is no scatter, but counts as scatter if nothing is done:
+    then it hides itself. Only a pattern that chance would hardly make is taken out.
+    Records say very different amounts (a soft hit hardly anything), so that each
+    counts by its own variance and the scatter that the pattern leaves. Their weighted
+    mean stays: the base has already brought it to nothing.
+
+    Args:
+        values: shape (n_records,).
+        variances: of the values by noise alone, same shape.
+        patterns: what records could depend on, shape (n_patterns, n_records).
+
+    Returns:
+        Values less their dependence on one pattern, shape (n_records,).
+    """
+    best, least = values, _TREND_CHANCE
+    for pattern in patterns:
+        q = pattern - pattern.mean()
+        if q @ q < 1e-12 or values.size < 4:
+            continue
+        slope, squared, middle = _trend(values, variances, q)
+        chance = float(scipy.stats.f.sf(squared, 1, values.size - 2))
+        if chance < least:
+            best, least = values - slope * (q - middle), chance
+    return best
+
+
+def _trend(
+    values: FloatArray, variances: FloatArray, q: FloatArray
+) -> tuple[float, float, float]:
+    """Return the slope along a pattern, the square of slope over sd, and its middle.
+
+    The middle is the weighted mean of the pattern.
+
+    Source:
+        Weighted least squares of a mean and a slope, the scatter by restricted
+        maximum likelihood (Patterson and Thompson 1971) on the grid of scatters.
+    """
+    grid = _scatter_grid() ** 2
+    total = variances + grid[:, None]
+    weight = 1 / total
+    columns = np.stack([np.ones_like(q), q], axis=1)
+    normal = np.einsum("sr,ri,rj->sij", weight, columns, columns)
+    right = np.einsum("sr,ri,r->si", weight, columns, values)
+    solution = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
+    left = values - solution @ columns.T
+    deviance = np.sum(left**2 * weight + np.log(total), axis=1)
+    deviance += np.linalg.slogdet(normal)[1]
+    at = int(np.argmin(deviance))
+    slope = float(solution[at, 1])
+    middle = float(weight[at] @ q / weight[at].sum())
+    return slope, slope**2 / float(np.linalg.inv(normal[at])[1, 1]), middle
+
+
+def _scatter_grid() -> FloatArray:
+    """Return the scatters that are tried [-], the first none at all."""
+    return np.concatenate([[0.0], np.geomspace(_SCATTER_TRIED, _SCATTER_MAX, 360)])
+
+
+def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:
+    """Return -2 log likelihood of x ~ N(0, v + grid), shape of grid."""
+    total = v[None, :] + grid[:, None]
+    return np.asarray(np.sum(x**2 / total + np.log(total), axis=1))
+
+
+def regress(
+    residual: FloatArray, ways: FloatArray, basis: FloatArray, shrink: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Regress residuals on the ways to scatter, both over sigma, force noise whitened.
+
+    Args:
+        residual: shape (n_records, n_rows).
+        ways: shape (n_records, n_ways, n_rows).
+        basis: of the force noise, shape (n_records, n_kept, n_rows).
+        shrink: of it, shape (n_records, n_kept, 1).
+
+    Returns:
+        Coefficients [-] and their variances, shape (n_records, n_ways) each.
+    """
+    both = np.concatenate([residual[:, None, :], ways], axis=1).transpose(0, 2, 1)
+    both = both - basis.transpose(0, 2, 1) @ (shrink * (basis @ both))
+    r, w = both[:, :, :1], both[:, :, 1:]
+    turned = w.transpose(0, 2, 1)
+    inverse = np.linalg.pinv(turned @ w)
+    coefficients = (inverse @ (turned @ r))[:, :, 0]
+    return coefficients, np.diagonal(inverse, axis1=1, axis2=2).copy()

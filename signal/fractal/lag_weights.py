@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""How the lags of a structure function are weighed: the Cholesky root of its noise."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError, cholesky
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.fractal.fit_problem import FractalProblem
+from jointbench.signal.fractal.self_affine import SeenSurface
+
+_JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
+"""Variance added on the diagonal, as a share of it [-]; the first that suffices."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Weights:
+    """How the lags are weighed.
+
+    Attributes:
+        reference: S that the residuals are taken relative to [m^2], shape (n_lags,).
+        root: lower Cholesky root of the covariance of S over `reference` [-].
+    """
+
+    reference: FloatArray
+    root: FloatArray
+
+    @property
+    def log_determinant(self) -> float:
+        """Logarithm of the determinant of the covariance of S."""
+        size = np.diag(self.root) * self.reference
+        return 2 * float(np.sum(np.log(size)))
+
+
+def weigh(
+    problem: FractalProblem, at: SeenSurface, *, scatter: FloatArray | None = None
+) -> Weights:
+    """Return the weights that belong to a surface and its instrument.
+
+    Args:
+        problem: the structure function to fit.
+        at: the surface and instrument.
+        scatter: covariance of S to take in place of the one at `at`, shape (n, n) [-].
+    """
+    reference = problem.predicted(at)
+    # A poor start may lose all to levelling; the values themselves then stand in.
+    reference = np.where(reference > 0, reference, problem.estimate.value)
+    own = problem.scatter(at) if scatter is None else scatter
+    return Weights(reference, lower_root(own + problem.misfit(at)))
+
+
+def lower_root(covariance: FloatArray) -> FloatArray:
+    """Return the lower Cholesky root, with as little added variance as it takes.
+
+    On very smooth surfaces neighbouring lags tell the same to more digits than the
+    sums have; the added variance keeps their last digits out of the fit.
+    """
+    diagonal = np.diag(np.diag(covariance))
+    for jitter in _JITTERS:
+        try:
+            return np.asarray(cholesky(covariance + jitter * diagonal, lower=True))
+        except LinAlgError:
+            continue
+    return np.asarray(np.sqrt(diagonal))

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""The lines of an FRF that are being fitted, and the width of its peaks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
+from jointbench.signal.frf.frf import Frf
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FrfLines:
+    """The lines of an FRF that are being fitted.
+
+    Attributes:
+        laplace: s of each line [rad/s], shape (n_lines,).
+        response: FRF, one row for each pair of output and input, shape
+            (n_frf, n_lines).
+        derivatives: q of the FRF's kind.
+    """
+
+    laplace: ComplexArray
+    response: ComplexArray
+    derivatives: int
+
+
+def measured_width(lines: FrfLines, pole: ComplexArray) -> FloatArray:
+    """Return half the half-power width of each peak as measured [rad/s].
+
+    The exponential window's decay rate is part of it.
+    """
+    return np.asarray(np.abs(pole.real - lines.laplace[0].real))
+
+
+def lines_of(frf: Frf, keep: BoolArray) -> FrfLines:
+    """Take the kept lines of an FRF.
+
+    Args:
+        frf: any kind.
+        keep: True for the lines to fit, shape (n_lines,).
+
+    Returns:
+        The lines with one row a pair of output and input, inputs varying fastest.
+    """
+    laplace = np.asarray(2j * np.pi * frf.frequency[keep] + frf.added_decay_rate)
+    response = frf.response[:, :, keep].reshape(-1, laplace.size)
+    return FrfLines(laplace, response, frf.kind.derivatives)

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: MIT
+"""How every record of a campaign is sampled, and the noise of its force."""
+
+SAMPLE_RATE = 16384.0  # [Hz]
+SAMPLES = 2048  # per record
+PRETRIGGER = 128  # samples before the hit
+FORCE_NOISE = 0.4  # force noise [N] per acceleration noise [m/s^2]

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""The tables of a structure model file: what each holds, in which units."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from jointbench.analysis.structures.matrices.parts import (
+    SupportKind,
+)
+from jointbench.analysis.structures.meshes.elements import ElementKind
+from jointbench.station.files.toml_file import StrictTable, with_unit
+
+_Length = Annotated[float, with_unit("length")]
+_Point = tuple[_Length, _Length, _Length]
+_Span = tuple[_Length, _Length]
+_Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
+_Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
+_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
+_Trust = Annotated[float, with_unit("ratio"), Field(ge=0, lt=1)]
+
+
+class MaterialTable(StrictTable):
+    """An isotropic solid: modulus [Pa], density [kg/m^3], loss factor [-]."""
+
+    youngs_modulus: Annotated[float, with_unit("pressure"), Field(gt=0)]
+    density: Annotated[float, with_unit("density"), Field(gt=0)]
+    poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5)] = 0.3
+    loss_factor: Annotated[float, Field(ge=0, lt=1)] = 0.0
+
+
+class SolidTable(StrictTable):
+    """A box with cells, or a mesh file; K and M files replace the assembly."""
+
+    material: str | None = None
+    box: _Point | None = None
+    cells: tuple[int, int, int] | None = None
+    origin: _Point = (0.0, 0.0, 0.0)
+    element: ElementKind = ElementKind.HEX20
+    mesh: Path | None = None
+    mesh_unit: _Length = 1.0
+    stiffness: Path | None = None
+    mass: Path | None = None
+
+    @model_validator(mode="after")
+    def _one_geometry(self) -> "SolidTable":
+        if (self.box is None) == (self.mesh is None) or (
+            self.box is not None and self.cells is None
+        ):
+            raise ValueError("give either box and cells, or mesh")
+        if (self.stiffness is None) != (self.mass is None):
+            raise ValueError("give both stiffness and mass files, or neither")
+        if self.stiffness is None and self.material is None:
+            raise ValueError("name its material, or give stiffness and mass files")
+        return self
+
+
+class PatchTable(StrictTable):
+    """A part of the joint's plane: a rectangle, or a bolt spot."""
+
+    rectangle: tuple[_Span, _Span] | None = None
+    centre: _Span | None = None
+    radius: _Length | None = None
+
+    @model_validator(mode="after")
+    def _one_form(self) -> "PatchTable":
+        spot = self.centre is not None and self.radius is not None
+        if spot == (self.rectangle is not None):
+            raise ValueError("give either rectangle, or centre and radius")
+        return self
+
+
+class JointTable(StrictTable):
+    """Where two bodies, or a body and ``ground``, touch."""
+
+    between: tuple[str, str]
+    face: str | None = None
+    patches: tuple[PatchTable, ...] = ()
+    glued: bool = False
+
+
+class SupportTable(StrictTable):
+    """A face held by the ground; stiffness: normal and two tangential totals."""
+
+    body: str
+    face: str
+    kind: SupportKind = SupportKind.FIXED
+    stiffness: tuple[_Stiffness, _Stiffness, _Stiffness] = (0.0, 0.0, 0.0)
+
+
+class SensorTable(StrictTable):
+    """A channel, or a hit point: where it sits, its direction, the mass on it."""
+
+    body: str
+    position: _Point
+    direction: tuple[float, float, float]
+    mass: Annotated[float, with_unit("mass"), Field(ge=0)] = 0.0
+
+
+class MeasuredTable(StrictTable):
+    """Frequencies as a paper prints them, where there is no session."""
+
+    frequencies: tuple[_Frequency, ...] = Field(min_length=1)
+    relative_sd: _Share = 0.002
+
+
+class IdentifyTable(StrictTable):
+    """What to identify from: frequencies, modes (with shapes) or the FRFs.
+
+    The standard deviations, relative, are those of the model (mesh, material): they
+    widen those of measured frequencies and damping ratios.
+    """
+
+    data: Literal["frequencies", "modes", "frf"] = "modes"
+    modes: Annotated[int, Field(gt=0, le=200)] | None = None
+    sought: tuple[str, ...] | None = None
+    shared: tuple[str, ...] = ()
+    stiffness_box: tuple[_Stiffness, _Stiffness] = (1e6, 1e11)
+    lines: Annotated[int, Field(gt=3)] = 200
+    frequency_sd: _Trust = 0.0
+    damping_sd: _Trust = 0.0
