@@ -35,7 +35,7 @@ from jointbench.station.commands.shared_options.input_options import (
     Preload,
 )
 from jointbench.station.commands.shared_options.joint_options import GAP_HELP, Model
-from jointbench.station.commands.shared_options.modal_options import (
+from jointbench.station.commands.shared_options.mode_fit_options import (
     Band,
     Drop,
     EstimatorName,

@@ -4,7 +4,9 @@ import ast
 import graphlib
 import subprocess
 import sys
-from collections.abc import Collection, Mapping
+import tomllib
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -39,6 +41,9 @@ NOT_AT_START = (
 
 
 MOST_PARAMETERS = 8
+MOST_MODULES = 25
+MOST_NAMES = 8
+MOST_LARGE_VOCABULARIES = 19
 
 
 def sources(room: str) -> list[Path]:
@@ -173,6 +178,73 @@ def test_no_function_has_more_than_eight_parameters(room: str) -> None:
         and parameters_of(node) > MOST_PARAMETERS
     }
     assert over <= callbacks()
+
+
+def folders() -> Counter[str]:
+    """Return how many modules each product folder holds itself, by its path."""
+    paths = [path for room in ROOMS for path in sources(room)]
+    return Counter(path.parent.relative_to(ROOT).as_posix() for path in paths)
+
+
+def assigned(node: ast.stmt) -> Iterator[str]:
+    """Return the names that a top-level statement gives to constants."""
+    targets: list[ast.expr] = []
+    if isinstance(node, ast.Assign):
+        targets = node.targets
+    elif isinstance(node, ast.AnnAssign):
+        targets = [node.target]
+    for target in targets:
+        yield from (one.id for one in ast.walk(target) if isinstance(one, ast.Name))
+
+
+def public_names(path: Path) -> set[str]:
+    """Return the constants, functions and classes that a module offers."""
+    names: set[str] = set()
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            names.add(node.name)
+        names.update(assigned(node))
+    return {name for name in names if not name.startswith("_")}
+
+
+def test_no_folder_holds_more_than_twenty_five_modules() -> None:
+    """A folder that nobody can take in at a glance is several folders."""
+    over = {folder: n for folder, n in folders().items() if n > MOST_MODULES}
+    assert not over
+
+
+def test_every_folder_of_modules_is_packaged() -> None:
+    """A folder that the package list forgets is missing from an installed product."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    setuptools = project["tool"]["setuptools"]
+    wanted = {f"jointbench.{f.replace('/', '.')}": f for f in folders()}
+    assert not wanted.keys() - set(setuptools["packages"])
+    assert not wanted.items() - setuptools["package-dir"].items()
+
+
+def test_a_class_name_stands_in_one_file_and_a_file_name_in_one_folder() -> None:
+    """One name for one thing: who searches for it finds one place."""
+    paths = [path for room in ROOMS for path in sources(room)]
+    classes = {
+        (node.name, path)
+        for path in paths
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.ClassDef)
+    }
+    files = Counter(path.name for path in paths)
+    places = Counter(name for name, _ in classes)
+    assert not [name for name, n in (files + places).items() if n > 1]
+
+
+def test_few_modules_offer_more_than_eight_names() -> None:
+    """A file that offers many names has several meanings, but for a few tables."""
+    over = {
+        path.relative_to(ROOT).as_posix()
+        for room in ROOMS
+        for path in sources(room)
+        if len(public_names(path)) > MOST_NAMES
+    }
+    assert len(over) <= MOST_LARGE_VOCABULARIES, sorted(over)
 
 
 @pytest.mark.parametrize("room", ROOMS)

@@ -8,7 +8,7 @@ import typer
 
 from jointbench.station.commands.shared_options.input_options import Sessions
 from jointbench.station.commands.shared_options.joint_options import Cache, Faces
-from jointbench.station.commands.shared_options.modal_options import Band
+from jointbench.station.commands.shared_options.mode_fit_options import Band
 from jointbench.station.commands.shared_options.output_options import Debug, Json, Page
 from jointbench.station.screen.exit_codes import EXIT_QUALITY
 
