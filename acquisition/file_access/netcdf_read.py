@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads back what `netcdf` writes. Open the file with `guards.open_guarded` first."""
+"""Read back what `netcdf_write` writes, from a file that `hdf5_guards` opened."""
 
 import h5py
 import numpy as np
