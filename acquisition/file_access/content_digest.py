@@ -67,7 +67,7 @@ def seal_of(file: h5py.File) -> Seal:
     """Compare the content of a file with its digest; one without is not read.
 
     Args:
-        file: opened by `guards.open_guarded`, as all of it is read.
+        file: opened by `hdf5_guards.open_guarded`, as all of it is read.
     """
     stored = read_attribute(file, DIGEST)
     if stored is None:

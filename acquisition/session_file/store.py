@@ -11,7 +11,7 @@ Layout, version 1::
     /provenance          what was done, step by step
 
 Results never go into it: they are written beside it, so that raw data can be made
-read-only. See `session_streams` and `session_extras` for the groups.
+read-only. See `streams` and `extras` for the groups.
 """
 
 from collections.abc import Iterator

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Recordings and hits as groups of a session file; `session_file` puts them together.
+"""Recordings and hits as groups of a session file; `store` puts them together.
 
 Each recording is one group that xarray opens by itself::
 

@@ -2,7 +2,7 @@
 """The loops of the Kalman stage: samples one by one, compiled.
 
 One sample at a time is all a Kalman filter can do, and in Python that costs some 90 us;
-compiled it is below 0.1 us. The gains come from `kalman_gains`.
+compiled it is below 0.1 us. The gains come from `steady_gains`.
 """
 
 import numpy as np

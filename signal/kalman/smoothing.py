@@ -10,7 +10,7 @@ their ratio. So by default the stage is a fixed-interval (Rauch-Tung-Striebel) s
 applied to all channels alike, and what it does at each mode is recorded.
 
 filterpy's filter gives the gains, which do not depend on the data, once for each
-configuration (`kalman_gains`); compiled loops apply them to all channels.
+configuration (`steady_gains`); compiled loops apply them to all channels.
 
 Source:
     Rauch, Tung and Striebel, AIAA J. 3 (1965) 1445; Harvey, Forecasting, Structural

@@ -3,7 +3,7 @@
 
 The gains of a linear filter depend on its model, not on the samples. filterpy's filter
 is stepped without samples once for each configuration; its gains and covariances are
-kept, and the compiled loops of `kalman_loops` apply them to every sample and channel.
+kept, and the compiled loops of `recursion` apply them to every sample and channel.
 
 filterpy keeps its state in public attributes of changing shape; here that ends: arrays
 of fixed shape in, arrays of fixed shape out. This is the only file that imports it, and

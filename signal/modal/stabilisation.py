@@ -4,7 +4,7 @@
 A pole of the structure comes back at every order; one made of noise wanders. From each
 order to the next, poles are matched one to one (so that two modes 0.8 % apart can never
 share a pole), and a chain of matches is a track. A track that keeps still for long
-enough is a candidate mode; whether it is one, `selection` decides on the FRF itself.
+enough is a candidate mode; whether it is one, `mode_selection` decides on the FRF.
 """
 
 from collections.abc import Sequence

@@ -2,7 +2,7 @@
 """The session engine: everything that arrives is stored first and judged afterwards.
 
 The engine never waits for the operator: a hit that falls while somebody reads the
-screen counts like any other. What a hit means for the plan is `measure_points`' affair.
+screen counts like any other. What a hit means for the plan is `points`' affair.
 """
 
 import numpy as np

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a results file holds, as tables for other programs: see `export_files`."""
+"""What a results file holds, as tables for other programs: see `export_command`."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -28,7 +28,7 @@ def reference_states(
     """Filter and smooth one channel sample by sample in filterpy.
 
     Args:
-        model: from `kalman_model.state_model`.
+        model: from `process_models.state_model`.
         samples: shape (n_samples,).
         at_rest: start from a state of zero instead of the first sample.
         lost: True for samples to predict only, shape (n_samples,); None for none.
