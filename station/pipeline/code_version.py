@@ -19,37 +19,37 @@ from pathlib import Path
 _PACKAGE = "jointbench"
 _LIBRARIES = ("filterpy", "numba", "numpy", "scipy")
 CALLERS = (
-    "station.chain",
-    "station.joint_stages",
-    "station.process_session",
-    "station.record_codec",
-    "station.stage_store",
+    "station.pipeline.chain",
+    "station.pipeline.joint_stages",
+    "station.pipeline.process_session",
+    "station.pipeline.record_codec",
+    "station.pipeline.stage_store",
 )
 """Behind every stage: what calls it and keeps its record; what they import is not."""
 STAGE_MODULES = {
-    "hits": ("station.judge_again",),
-    "kalman": ("signal.kalman", "signal.windows"),
-    "frf": ("signal.frf", "signal.windows"),
-    "modes": ("signal.modes",),
+    "hits": ("station.pipeline.judge_again",),
+    "kalman": ("signal.kalman.smoothing", "signal.hits.windows"),
+    "frf": ("signal.frf.frf", "signal.hits.windows"),
+    "modes": ("signal.modal.modes",),
     "fill": (
-        "signal.frf",
-        "signal.kalman",
-        "signal.modes",
-        "signal.oscillator_bank",
-        "signal.windows",
+        "signal.frf.frf",
+        "signal.kalman.smoothing",
+        "signal.modal.modes",
+        "signal.kalman.oscillator_bank",
+        "signal.hits.windows",
     ),
-    "structure": ("signal.structure_function",),
-    "surface": ("signal.fractal",),
-    "contact": ("station.contact", "station.joint"),
-    "joint": ("station.identify",),
+    "structure": ("signal.surface.structure_function",),
+    "surface": ("signal.fractal.fractal_fit",),
+    "contact": ("station.pipeline.contact_prediction", "station.pipeline.joint_comparison"),
+    "joint": ("station.pipeline.link_stage",),
     "gap": (
-        "analysis.gap.catalogue",
-        "analysis.gap.diagnose",
-        "analysis.gap.records",
-        "analysis.gap.session_campaign",
-        "station.gap_model",
+        "analysis.gap.catalogue.catalogue",
+        "analysis.gap.diagnosis.diagnose",
+        "analysis.gap.model.diagnosis_record",
+        "analysis.gap.intake.session_campaign",
+        "station.models.gap_model",
     ),
-    "result": ("station.process_session", "station.processed_file"),
+    "result": ("station.pipeline.process_session", "station.results.processed_file"),
 }
 """Modules that do the work of each stage; `result` is the whole results file."""
 _FROM = re.compile(

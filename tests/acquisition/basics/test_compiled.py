@@ -77,17 +77,17 @@ def test_the_digest_of_a_march_counts_what_is_inlined(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Each other file that is compiled into it changes it."""
-    package = "jointbench.analysis.gap"
-    before = digest_of(f"{package}.march")
+    package = "jointbench.analysis.gap.response"
+    before = digest_of(f"{package}.force_integration")
     own = Path.read_bytes
-    for name in ("slider_march", "curve_march", "march"):
+    for name in ("slider_integration", "curve_integration", "force_integration"):
         monkeypatch.setattr(
             Path,
             "read_bytes",
             lambda path, n=name: own(path) + b"#" * (path.stem == n),
         )
         digest_of.cache_clear()
-        assert digest_of(f"{package}.march") != before, name
+        assert digest_of(f"{package}.force_integration") != before, name
     monkeypatch.undo()
     digest_of.cache_clear()
-    assert digest_of(f"{package}.march") == before
+    assert digest_of(f"{package}.force_integration") == before

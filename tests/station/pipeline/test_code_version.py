@@ -91,7 +91,7 @@ def test_imports_are_found_as_the_parser_finds_them(stage: str) -> None:
 def test_every_stage_that_is_run_names_its_modules() -> None:
     """A stage key of a name without modules would hang on all code; none does."""
     calls = set()
-    for path in (ROOT / "station").glob("*.py"):
+    for path in (ROOT / "station").rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and ast.unparse(node.func) in (
                 "stages.key",
