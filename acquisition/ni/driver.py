@@ -29,7 +29,7 @@ from nidaqmx.system import System
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.ni.answers import (
+from jointbench.acquisition.ni.driver_answers import (
     ConnectionLost,
     Module,
     Teds,

@@ -21,7 +21,7 @@ from nidaqmx.errors import (
 )
 
 from jointbench.acquisition.basics.errors import InstrumentError
-from jointbench.acquisition.ni.answers import (
+from jointbench.acquisition.ni.driver_answers import (
     ConnectionLost,
     NotYet,
     Overrun,

@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import InstrumentError
-from jointbench.acquisition.ni.answers import (
+from jointbench.acquisition.ni.driver import AnalogTask, Chassis
+from jointbench.acquisition.ni.driver_answers import (
     ConnectionLost,
     NotYet,
     Overrun,
     Stopped,
 )
-from jointbench.acquisition.ni.driver import AnalogTask, Chassis
-from jointbench.acquisition.ni.oldest import read_oldest
+from jointbench.acquisition.ni.oldest_sample import read_oldest
 from jointbench.acquisition.ni.sensors import Sensor
 from jointbench.acquisition.ni.stream_records import (
     Block,

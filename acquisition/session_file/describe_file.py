@@ -19,18 +19,18 @@ from jointbench.acquisition.file_access.hdf5_layout import (
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.records.provenance import Provenance
 from jointbench.acquisition.records.recordings import Hit
-from jointbench.acquisition.session_file.extras import (
-    read_instrument,
-    read_provenance,
-    read_setup,
-    read_spacing,
-)
 from jointbench.acquisition.session_file.record_groups import in_order, number
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, damage_named
 from jointbench.acquisition.session_file.streams import (
     read_channels,
     read_hits,
     read_preload,
+)
+from jointbench.acquisition.session_file.surfaces_and_setup import (
+    read_instrument,
+    read_provenance,
+    read_setup,
+    read_spacing,
 )
 
 Description = dict[str, object]

@@ -16,7 +16,6 @@ from jointbench.acquisition.file_access.create_netcdf import new_file
 from jointbench.acquisition.file_access.disk_room import DiskRoom
 from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
-from jointbench.acquisition.session_file.extras import write_provenance
 from jointbench.acquisition.session_file.live_read import (
     LiveContent,
     LiveSpan,
@@ -25,8 +24,8 @@ from jointbench.acquisition.session_file.live_read import (
     read_pieces,
 )
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
+from jointbench.acquisition.session_file.overwrite_guard import require_session
 from jointbench.acquisition.session_file.recovery import is_finished, outline_live
-from jointbench.acquisition.session_file.replaceable import require_session
 from jointbench.acquisition.session_file.store import (
     SESSION_SCHEMA,
     SESSION_TITLE,
@@ -35,6 +34,7 @@ from jointbench.acquisition.session_file.store import (
     write_head,
 )
 from jointbench.acquisition.session_file.streams import write_recording_in_pieces
+from jointbench.acquisition.session_file.surfaces_and_setup import write_provenance
 
 # The time axis packs to less than this share of a byte a sample.
 _AXIS_SHARE = 0.125

@@ -28,22 +28,22 @@ from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.netcdf_write import write_attributes
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.records.session import Session
-from jointbench.acquisition.session_file.extras import (
+from jointbench.acquisition.session_file.live_read import read_live
+from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
+from jointbench.acquisition.session_file.overwrite_guard import require_session
+from jointbench.acquisition.session_file.record_groups import in_order
+from jointbench.acquisition.session_file.recovery import session_from_live
+from jointbench.acquisition.session_file.streams import (
+    recording_from_group,
+    write_recording,
+)
+from jointbench.acquisition.session_file.surfaces_and_setup import (
     read_provenance,
     read_setup,
     surface_from_group,
     write_provenance,
     write_setup,
     write_surface,
-)
-from jointbench.acquisition.session_file.live_read import read_live
-from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
-from jointbench.acquisition.session_file.record_groups import in_order
-from jointbench.acquisition.session_file.recovery import session_from_live
-from jointbench.acquisition.session_file.replaceable import require_session
-from jointbench.acquisition.session_file.streams import (
-    recording_from_group,
-    write_recording,
 )
 
 SESSION_SCHEMA = "jointbench-session/1"

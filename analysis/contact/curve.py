@@ -7,11 +7,11 @@ from numpy.typing import ArrayLike
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import JointSums, joint_sums
 from jointbench.analysis.contact.material import PRESSURE_RANGE, ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.solve import solve_largest_area
-from jointbench.analysis.contact.sums import JointSums, joint_sums
 
 # From a single atom's grip to a mountain's weight [N].
 _LOAD_RANGE = (1e-9, 1e12)

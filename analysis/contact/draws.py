@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.case import ContactCase
+from jointbench.analysis.contact.contact_case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve
 
 

@@ -20,9 +20,9 @@ from jointbench.analysis.contact.fractal_surface import (
     excess,
     surface_yield_ratio,
 )
+from jointbench.analysis.contact.joint_sums import power_integral
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, regime_laws
-from jointbench.analysis.contact.sums import power_integral
 
 # e^-45 of an integral is below rounding; that length is cut into panels of Gauss's.
 _LONGEST = 45.0

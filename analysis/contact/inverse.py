@@ -12,9 +12,9 @@ from jointbench.analysis.contact.asperity import (
     log_critical_area,
 )
 from jointbench.analysis.contact.fractal_surface import FractalSurface, excess
+from jointbench.analysis.contact.joint_sums import JointSums, joint_sums
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel
-from jointbench.analysis.contact.sums import JointSums, joint_sums
 
 # ln of areas from far below an atom's to far above a planet's [m^2].
 _LOG_AREAS = (-690.0, 690.0)

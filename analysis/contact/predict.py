@@ -11,16 +11,16 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.asperity_laws import REGIMES, Regime
-from jointbench.analysis.contact.case import ContactCase
+from jointbench.analysis.contact.contact_case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.damping import damping_coefficient, loss_factor
 from jointbench.analysis.contact.inverse import approach_stiffness
+from jointbench.analysis.contact.joint_sums import JointSums
 from jointbench.analysis.contact.models import Mode
-from jointbench.analysis.contact.printed import (
+from jointbench.analysis.contact.printed_formulas import (
     printed_stiffness_parts,
     printed_warnings,
 )
-from jointbench.analysis.contact.sums import JointSums
 from jointbench.analysis.contact.tangential import tangential_stiffness
 
 DAMPING_REASON = (

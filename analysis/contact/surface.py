@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.spread import ContactSpread
-from jointbench.signal.fractal.surface_verdict import (
+from jointbench.signal.fractal.verdict_records import (
     NORMAL_97_5,
     WIDEST_ROUGHNESS,
     FractalFit,

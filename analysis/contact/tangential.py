@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.contact.asperity_laws import REGIMES, PowerLaw, Regime
+from jointbench.analysis.contact.joint_sums import JointSums
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, regime_laws
-from jointbench.analysis.contact.sums import JointSums
 
 
 def sticking_share(

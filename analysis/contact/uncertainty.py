@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.contact.case import ContactCase
+from jointbench.analysis.contact.contact_case import ContactCase
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.damping import damping_coefficient, loss_factor
 from jointbench.analysis.contact.draws import (

@@ -33,7 +33,7 @@ from jointbench.station.measure.chassis import OpenChassis, SimulatedHand, open_
 from jointbench.station.measure.plan import read_plan
 from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.pipeline.chain import run_chain
-from jointbench.station.pipeline.preloads import by_preload
+from jointbench.station.pipeline.recordings_by_preload import by_preload
 from jointbench.station.screen.terminal import console
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "plates.toml"

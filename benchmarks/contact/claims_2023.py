@@ -15,7 +15,7 @@ from claim import (
 )
 
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.printed import PrintedTerm, printed_terms
+from jointbench.analysis.contact.printed_formulas import PrintedTerm, printed_terms
 
 PAPER = "2023"
 # Fig. 7: E = 69.3 GPa, nu = 0.25, HB = 231.

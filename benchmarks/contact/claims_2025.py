@@ -17,10 +17,10 @@ from printed_errors import what_errors_ask
 
 from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import largest_area_of_real_area
+from jointbench.analysis.contact.joint_sums import joint_sums
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.models import interaction_share
-from jointbench.analysis.contact.preload import preload_from_torque
-from jointbench.analysis.contact.sums import joint_sums
+from jointbench.analysis.contact.torque_to_preload import preload_from_torque
 from jointbench.signal.fractal.fractal_fit import fractal_from_line
 
 PAPER = "2025"

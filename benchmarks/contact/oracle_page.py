@@ -16,10 +16,10 @@ from scipy.special import gamma
 
 from jointbench.analysis.contact.asperity import interference
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import power_integral
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.models import interaction_share
-from jointbench.analysis.contact.sums import power_integral
 
 HERE = Path(__file__).resolve()
 TABLE = HERE.with_name("oracle.json")

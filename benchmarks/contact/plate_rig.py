@@ -19,8 +19,8 @@ from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import preload_of
 from jointbench.analysis.contact.material import ContactMaterial, effective_modulus
 from jointbench.analysis.contact.model_catalogue import contact_model
-from jointbench.analysis.contact.preload import preload_from_torque
 from jointbench.analysis.contact.solve import solve_largest_area
+from jointbench.analysis.contact.torque_to_preload import preload_from_torque
 from jointbench.signal.fractal.fractal_fit import fractal_from_line
 
 MEASURED, DAMPING = 2.8667e7, 1.2713e7  # [N/m], [N s/m], both printed

@@ -27,11 +27,11 @@ from jointbench.station.commands.identify_links_command import describes_structu
 from jointbench.station.commands.verify_command import run_verify
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.measure.plan import read_plan
-from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.geometry_file import Geometry
-from jointbench.station.models.recipe import read_recipe
 from jointbench.station.results.processed_file import PROCESSED_SCHEMA
 from jointbench.station.results.results_read import read_result
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.geometry_file import Geometry
+from jointbench.station.schemas.recipe import read_recipe
 
 MAT = "time.t:s,force.F:N,acceleration.a1:m/s^2"
 TABLE = "time:s,force:N,acceleration:m/s^2"

@@ -42,8 +42,8 @@ from jointbench.acquisition.records.surfaces import Profile, SurfaceInstrument
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.station.archive.process_file import Task, process_task
 from jointbench.station.files.universal_samples import write_universal_samples
-from jointbench.station.models.recipe import Recipe
 from jointbench.station.results.results_read import read_result
+from jointbench.station.schemas.recipe import Recipe
 
 MEMORY = 3 * 2**30
 """Address space of a child beyond what it starts with [bytes]."""

@@ -18,7 +18,7 @@ from runs import load_words
 from jointbench.acquisition.records.session import new_session
 from jointbench.acquisition.session_file.store import write_session
 from jointbench.station.archive.process_file import State, Task, process_task
-from jointbench.station.models.recipe import Recipe
+from jointbench.station.schemas.recipe import Recipe
 
 WARM = 200
 """Files after which all is loaded that will be."""

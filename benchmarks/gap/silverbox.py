@@ -18,7 +18,7 @@ from pathlib import Path
 from jointbench.analysis.gap.diagnosis.single_record import diagnose_record
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.record_campaign import read_record
-from jointbench.station.models.bench_model import BenchModel
+from jointbench.station.schemas.bench_model import BenchModel
 
 MODEL = Path(__file__).parents[2] / "examples" / "silverbox.toml"
 

@@ -33,8 +33,8 @@ from jointbench.simulators.plates.plates import (
 from jointbench.station.commands.identify_structure_command import (
     run_identify_structure,
 )
+from jointbench.station.joints.contact_comparison import against_theory, theory_json
 from jointbench.station.joints.structure_contact import TheoryTable
-from jointbench.station.joints.theory import against_theory, theory_json
 from jointbench.station.joints.theory_records import (
     IdentifiedState,
     JointQuantity,

@@ -14,7 +14,7 @@ import scipy.ndimage
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Profile
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.surface_verdict import SurfaceVerdict
+from jointbench.signal.fractal.verdict_records import SurfaceVerdict
 from jointbench.signal.surface.structure_function import structure_function
 from jointbench.simulators.rough_surfaces.profilometer import traced
 from jointbench.simulators.rough_surfaces.rough_surface import rough_profile

@@ -7,10 +7,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.provenance import Step, step
-from jointbench.signal.fractal.judgement import Judgement
+from jointbench.signal.fractal.fit_judgement import Judgement
 from jointbench.signal.fractal.model_choice import Choice
 from jointbench.signal.fractal.self_affine import InstrumentModel
-from jointbench.signal.fractal.surface_verdict import (
+from jointbench.signal.fractal.verdict_records import (
     NORMAL_97_5,
     FittedCurve,
     FractalFit,

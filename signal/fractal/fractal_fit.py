@@ -7,14 +7,14 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.signal.fractal.fit_judgement import Judgement, judge
 from jointbench.signal.fractal.fit_problem import FractalProblem, pose
 from jointbench.signal.fractal.fit_result import accepted_fit, rejected_fit
-from jointbench.signal.fractal.judgement import Judgement, judge
 from jointbench.signal.fractal.local_slope import local_slope
 from jointbench.signal.fractal.model_choice import Choice, choose, spans_decade
 from jointbench.signal.fractal.scaling_bands import FEWEST_LAGS, find_band
 from jointbench.signal.fractal.spectral_bend import Kink, find_kink
-from jointbench.signal.fractal.surface_verdict import (
+from jointbench.signal.fractal.verdict_records import (
     FractalFit,
     LocalSlope,
     SurfaceVerdict,

@@ -4,7 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.fractal.surface_verdict import LocalSlope
+from jointbench.signal.fractal.verdict_records import LocalSlope
 from jointbench.signal.surface.structure_function import StructureFunction
 
 NEIGHBOURS = 2

@@ -5,8 +5,8 @@ import numpy as np
 from scipy.stats import chi2
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.signal.fractal.fit_judgement import judge
 from jointbench.signal.fractal.fit_problem import FractalProblem
-from jointbench.signal.fractal.judgement import judge
 from jointbench.signal.fractal.lag_weights import weigh
 from jointbench.signal.fractal.model_choice import Choice, choose_straight, spans_decade
 from jointbench.signal.fractal.self_affine import SeenSurface

@@ -10,7 +10,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.frf_lines import FrfLines
-from jointbench.signal.modal.pole_refinement import refine_poles
+from jointbench.signal.modal.refined_pole_covariance import refine_poles
 
 # Lines at an edge whose residual tells of something beyond: this share of the band.
 _EDGE = 0.1

@@ -28,7 +28,7 @@ from jointbench.signal.modal.line_noise import (
 )
 from jointbench.signal.modal.lscf import Progress
 from jointbench.signal.modal.lsfd import LinearFit, fit_residues
-from jointbench.signal.modal.pole_refinement import (
+from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
     unresolved,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.signal.modal.pole_refinement import Linearised, RefinedPoles
+from jointbench.signal.modal.refined_pole_covariance import Linearised, RefinedPoles
 
 
 @dataclass(frozen=True, slots=True, eq=False)

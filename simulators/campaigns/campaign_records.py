@@ -9,6 +9,13 @@ import numpy as np
 from jointbench.acquisition.basics.array_checks import require_shape
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.simulators.detectability.expected_margin import (
+    Margin,
+    MarginScale,
+    expected_margin,
+    first_order_margin,
+    margin_scale,
+)
 from jointbench.simulators.hidden.campaign_design import CampaignDesign, draw_design
 from jointbench.simulators.hidden.campaign_response import simulate_records
 from jointbench.simulators.hidden.campaign_sampling import FORCE_NOISE, SAMPLES
@@ -20,13 +27,6 @@ from jointbench.simulators.hidden.effect_draws import (
     specimen_scales,
 )
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
-from jointbench.simulators.margins.expected_margin import (
-    Margin,
-    MarginScale,
-    expected_margin,
-    first_order_margin,
-    margin_scale,
-)
 
 MARGIN_RANGE = (1.0, 1e4)
 _CLOSE = 0.15  # relative, at which the size of an effect is close enough

@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 
 from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.station.archive.process_file import Outcome, State, Task, process_task
-from jointbench.station.models.recipe import Recipe
+from jointbench.station.schemas.recipe import Recipe
 
 INSTALL = "pip install 'jointbench[cluster]'"
 _CONNECT = 20.0

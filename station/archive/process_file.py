@@ -29,11 +29,11 @@ from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_digest, file_size
 from jointbench.acquisition.records.session import Session, software_version
 from jointbench.acquisition.session_file.store import damage_named, read_session
-from jointbench.station.models.recipe import Recipe, recipe_digest
 from jointbench.station.pipeline.code_version import stage_version
 from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.stage_store import StageStore
 from jointbench.station.results.processed_file import Origin, write_processed
+from jointbench.station.schemas.recipe import Recipe, recipe_digest
 
 _MOST_BYTES = 64 * 2**30
 """A larger file is no session; reading it for its digest would take an hour [bytes]."""

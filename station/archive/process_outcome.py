@@ -5,8 +5,8 @@ import math
 from pathlib import Path
 
 from jointbench.station.archive.process_file import Outcome, State
-from jointbench.station.models.recipe import Recipe, read_recipe
 from jointbench.station.results.quantities import ResultQuantity
+from jointbench.station.schemas.recipe import Recipe, read_recipe
 from jointbench.station.screen.value_text import with_sd
 
 STAGES_FOLDER = ".jointbench-stages"

@@ -27,7 +27,7 @@ from jointbench.station.archive.reprocess_summary import (
     show_summary,
     summary_json,
 )
-from jointbench.station.archive.settled import settled
+from jointbench.station.archive.unchanged_files import settled
 from jointbench.station.archive.worker_pool import PoolSettings, run_pool
 from jointbench.station.files.archive_patterns import (
     archive_folder,
@@ -39,9 +39,9 @@ from jointbench.station.files.output_paths import (
     make_folder,
     require_folder,
 )
-from jointbench.station.models.recipe import Recipe, recipe_digest
 from jointbench.station.pipeline.stage_store import prune_stages
 from jointbench.station.results.processed_file import processed_path
+from jointbench.station.schemas.recipe import Recipe, recipe_digest
 from jointbench.station.screen.interrupt import interruptible
 from jointbench.station.screen.terminal import write_json
 

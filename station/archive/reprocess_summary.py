@@ -11,7 +11,7 @@ from jointbench.acquisition.file_access.quoting import named, visible
 from jointbench.station.archive.process_file import Outcome, State
 from jointbench.station.archive.process_outcome import outcome_json
 from jointbench.station.archive.reprocess_progress import time_words
-from jointbench.station.models.recipe import Recipe
+from jointbench.station.schemas.recipe import Recipe
 from jointbench.station.screen.terminal import console, table
 
 MOST_SHOWN = 10

@@ -21,7 +21,7 @@ from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
 
 from jointbench.station.archive.process_file import Outcome, State, Task, process_task
-from jointbench.station.models.recipe import Recipe
+from jointbench.station.schemas.recipe import Recipe
 
 logger = logging.getLogger(__name__)
 ONE_THREAD = dict.fromkeys(

@@ -13,8 +13,8 @@ from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.gap.gap_inputs import Examined, GapRequest, examine
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.gap.gap_scores import score_section, score_table, scores_json
-from jointbench.station.models.effects_file import read_effects, with_own
 from jointbench.station.report.gap_report import gap_report
+from jointbench.station.schemas.effects_file import read_effects, with_own
 from jointbench.station.screen.escaping_console import Screen, seen
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.terminal import console, table, write_json

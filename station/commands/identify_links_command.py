@@ -14,10 +14,10 @@ from jointbench.station.files.input_files import read_recordings
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
-from jointbench.station.models.bench_model import BenchModel
 from jointbench.station.pipeline.chain import ChainSettings, run_chain
 from jointbench.station.pipeline.link_stage import fits, identify_joint
 from jointbench.station.pipeline.modal_options import parse_band
+from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.joint_text import WHAT_IS_SHOWN, parameter_text
 from jointbench.station.screen.terminal import console, table, working, write_json
 

@@ -26,6 +26,12 @@ from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.analysis.structures.reduction.reduction_cache import cached, content_key
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.joints.contact_comparison import (
+    against_theory,
+    identified_states,
+    known_preloads,
+    theory_json,
+)
 from jointbench.station.joints.structure_contact import joint_of, theory_surface
 from jointbench.station.joints.structure_model import (
     StructureModel,
@@ -37,12 +43,6 @@ from jointbench.station.joints.structure_states import (
     MeasuredState,
     all_evidence,
     measured_states,
-)
-from jointbench.station.joints.theory import (
-    against_theory,
-    identified_states,
-    known_preloads,
-    theory_json,
 )
 from jointbench.station.joints.theory_records import TheoryRow
 from jointbench.station.report.theory_section import show_theory, theory_section

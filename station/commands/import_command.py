@@ -10,7 +10,7 @@ from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.recordings import Channel, Recording
 from jointbench.acquisition.records.session import JointSetup, Session, new_session
 from jointbench.acquisition.records.surfaces import Surface
-from jointbench.acquisition.session_file.replaceable import require_replaceable
+from jointbench.acquisition.session_file.overwrite_guard import require_replaceable
 from jointbench.acquisition.session_file.store import write_session
 from jointbench.signal.modal.data_limits import time_scale_words
 from jointbench.station.files.input_files import parse_preload, read_foreign

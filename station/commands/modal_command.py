@@ -16,7 +16,11 @@ from jointbench.station.pipeline.chain import (
 )
 from jointbench.station.pipeline.modal_notes import modal_notes
 from jointbench.station.pipeline.modal_summary import modal_json
-from jointbench.station.pipeline.preloads import by_preload, join_pages, of_preload
+from jointbench.station.pipeline.recordings_by_preload import (
+    by_preload,
+    join_pages,
+    of_preload,
+)
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.report.modal_table import show_modal
 from jointbench.station.results.results_file import results_path, write_results

@@ -8,7 +8,7 @@ from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.surface_verdict import FractalFit
+from jointbench.signal.fractal.verdict_records import FractalFit
 from jointbench.station.files.input_files import read_surfaces
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.pipeline.pooled_surface import pooled_beside, pooled_structure

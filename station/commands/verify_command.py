@@ -7,8 +7,8 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.file_lock import is_held
 from jointbench.acquisition.session_file.finish import Finished, finish_live
+from jointbench.acquisition.session_file.overwrite_guard import require_replaceable
 from jointbench.acquisition.session_file.recovery import recovered_path
-from jointbench.acquisition.session_file.replaceable import require_replaceable
 from jointbench.acquisition.session_file.store import (
     read_session,
     write_session,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.recordings import Verdict
-from jointbench.acquisition.session_file.replaceable import require_replaceable
+from jointbench.acquisition.session_file.overwrite_guard import require_replaceable
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.analysis.lumped.identified import identification_json
 from jointbench.simulators.rough_surfaces.surface_files import DATE
@@ -30,7 +30,6 @@ from jointbench.station.files.output_paths import (
     write_text,
 )
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.models.bench_model import BenchModel
 from jointbench.station.pipeline.contact_prediction import contact_json
 from jointbench.station.pipeline.modal_notes import modal_notes
 from jointbench.station.pipeline.modal_summary import modal_json
@@ -40,6 +39,7 @@ from jointbench.station.report.modal_table import show_modal
 from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session
 from jointbench.station.report.session_report import compose, joint_link
 from jointbench.station.results.results_file import results_path, write_results
+from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.terminal import console, table, working, write_json

@@ -14,7 +14,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.quoting import named
-from jointbench.acquisition.session_file.replaceable import (
+from jointbench.acquisition.session_file.overwrite_guard import (
     fresh_path,
     require_replaceable,
 )

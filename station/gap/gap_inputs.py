@@ -26,12 +26,12 @@ from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.record_campaign import read_record
-from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.gap_model import gap_sheet
 from jointbench.station.pipeline.chain import hits_stage
 from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.pipeline.judge_again import StoredHits, with_hits
 from jointbench.station.pipeline.stage_store import StageRun
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.gap_model import gap_sheet
 from jointbench.station.sources.open_source import is_url
 from jointbench.station.sources.visit_file import write_visit
 

@@ -15,10 +15,10 @@ from jointbench.analysis.gap.diagnosis.single_record import (
 )
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.model.nominal import Sheet
-from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.gap_model import gap_sheet
-from jointbench.station.models.record_model import RecordTable, StretchTable, stands_in
-from jointbench.station.models.record_units import StandIns, in_stand_ins
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.gap_model import gap_sheet
+from jointbench.station.schemas.record_model import RecordTable, StretchTable, stands_in
+from jointbench.station.schemas.record_units import StandIns, in_stand_ins
 
 LINEAR_REPEATABILITY = 3e-3
 """Relative to the peak response [-], where the model states none: good electronics."""

@@ -10,8 +10,8 @@ from jointbench.acquisition.basics.errors import BadData, JointbenchError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import Mode
-from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.contact.torque_to_preload import Preload
 from jointbench.station.pipeline.contact_prediction import surface_of
 from jointbench.station.pipeline.contact_request import parse_hardness, parse_models
 

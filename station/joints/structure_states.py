@@ -32,7 +32,7 @@ from jointbench.station.pipeline.chain import (
     judged_modes,
 )
 from jointbench.station.pipeline.modal_options import parse_band
-from jointbench.station.pipeline.preloads import by_preload
+from jointbench.station.pipeline.recordings_by_preload import by_preload
 from jointbench.station.screen.terminal import working
 
 MEASURED_LABEL = "measured"

@@ -16,7 +16,7 @@ from jointbench.acquisition.serial_lines.mark10 import Reading, read_gauge
 from jointbench.acquisition.session_file.live_write import LiveSession
 from jointbench.station.measure.observer import Command, Watcher
 from jointbench.station.measure.session_record import Record
-from jointbench.station.models.plan_model import TorqueTable
+from jointbench.station.schemas.plan_model import TorqueTable
 
 BEGUN = 0.3
 """Share of the target from which a bolt counts as being tightened [-]."""

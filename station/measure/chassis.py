@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.acquisition.ni.answers import ConnectionLost
 from jointbench.acquisition.ni.driver import Chassis
+from jointbench.acquisition.ni.driver_answers import ConnectionLost
 from jointbench.station.measure.observer import Operator, OwnHand
 from jointbench.station.measure.plan import Condition
 

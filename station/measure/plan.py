@@ -8,7 +8,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import BadData, UnitError, UsageError
 from jointbench.acquisition.ni.sensors import Sensor, require_table
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.models.plan_model import (
+from jointbench.station.schemas.plan_model import (
     AcquisitionTable,
     HitsTable,
     MeasureTable,

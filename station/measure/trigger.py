@@ -15,7 +15,7 @@ from jointbench.station.measure.trial_settings import (
     propose_settings,
     propose_trigger,
 )
-from jointbench.station.models.plan_model import HitsTable
+from jointbench.station.schemas.plan_model import HitsTable
 
 LISTEN = 0.3  # [s] quiet time in which the noise of the hammer is measured
 _ROOM = 32  # samples that a device's own idea of the edge may differ from ours

@@ -33,7 +33,7 @@ from jointbench.station.pipeline.judge_again import (
     judge_again,
     with_hits,
 )
-from jointbench.station.pipeline.preloads import at_words
+from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
 
 # A gap spoils the modes that fill it; what a second round leaves is below the noise.

@@ -40,14 +40,17 @@ STAGE_MODULES = {
     ),
     "structure": ("signal.surface.structure_function",),
     "surface": ("signal.fractal.fractal_fit",),
-    "contact": ("station.pipeline.contact_prediction", "station.pipeline.joint_comparison"),
+    "contact": (
+        "station.pipeline.contact_prediction",
+        "station.pipeline.joint_comparison",
+    ),
     "joint": ("station.pipeline.link_stage",),
     "gap": (
         "analysis.gap.catalogue.catalogue",
         "analysis.gap.diagnosis.diagnose",
         "analysis.gap.model.diagnosis_record",
         "analysis.gap.intake.session_campaign",
-        "station.models.gap_model",
+        "station.schemas.gap_model",
     ),
     "result": ("station.pipeline.process_session", "station.results.processed_file"),
 }

@@ -11,7 +11,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.basics.units import parse_value
-from jointbench.analysis.contact.case import ContactCase
+from jointbench.analysis.contact.contact_case import ContactCase
 from jointbench.analysis.contact.curve import require_surface
 from jointbench.analysis.contact.draws import StiffnessInterval
 from jointbench.analysis.contact.fractal_surface import FractalSurface
@@ -22,8 +22,8 @@ from jointbench.analysis.contact.predict import (
     ContactVerdict,
     predict_contact,
 )
-from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.surface import ContactSurface, contact_surface
+from jointbench.analysis.contact.torque_to_preload import Preload
 from jointbench.analysis.contact.uncertainty import (
     JointUncertainty,
     predict_uncertainty,

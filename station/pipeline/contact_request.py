@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.basics.units import STANDARD_GRAVITY, parse_value
-from jointbench.analysis.contact.case import ContactConditions
+from jointbench.analysis.contact.contact_case import ContactConditions
 from jointbench.analysis.contact.damping import (
     DampingChoice,
     EnergyForm,
@@ -16,9 +16,9 @@ from jointbench.analysis.contact.damping import (
 )
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
+from jointbench.analysis.contact.model_terms import ContactTerm, with_term
 from jointbench.analysis.contact.models import ContactModel, Mode
-from jointbench.analysis.contact.preload import Preload, preload_from_torque
-from jointbench.analysis.contact.terms import ContactTerm, with_term
+from jointbench.analysis.contact.torque_to_preload import Preload, preload_from_torque
 from jointbench.station.pipeline.contact_options import ContactOptions
 
 _DEFAULT_MODEL = "ke_3d_modified"

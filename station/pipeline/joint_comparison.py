@@ -7,19 +7,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.case import ContactCase, ContactConditions
+from jointbench.analysis.contact.contact_case import ContactCase, ContactConditions
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
-from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.contact.torque_to_preload import Preload
 from jointbench.signal.surface.structure_function import StructureFunction
-from jointbench.station.models.bench_model import ContactTable
 from jointbench.station.pipeline.contact_prediction import (
     FACES,
     ContactPoint,
     equivalent_surface,
     predict_point,
 )
+from jointbench.station.schemas.bench_model import ContactTable
 
 CURVE_POINTS = 13
 CURVE_DECADES = 1.0

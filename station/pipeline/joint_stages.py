@@ -23,23 +23,23 @@ from jointbench.analysis.gap.model.nominal import Sheet
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.lumped.identified import Identification
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.surface_verdict import FractalFit
+from jointbench.signal.fractal.verdict_records import FractalFit
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
 from jointbench.signal.surface.structure_function import (
     StructureFunction,
     structure_function,
 )
-from jointbench.station.models.bench_model import BenchModel, ContactTable
-from jointbench.station.models.gap_model import gap_sheet
 from jointbench.station.pipeline.joint_comparison import (
     ContactPrediction,
     predict_joint,
 )
 from jointbench.station.pipeline.link_stage import identify_joint
-from jointbench.station.pipeline.preloads import at_words
+from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.pipeline.surface_stages import SurfaceChain
+from jointbench.station.schemas.bench_model import BenchModel, ContactTable
+from jointbench.station.schemas.gap_model import gap_sheet
 
 Page = dict[str, Any]
 Found = TypeVar("Found")

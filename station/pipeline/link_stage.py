@@ -15,7 +15,7 @@ from jointbench.analysis.lumped.identify_links import identify_links
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.signal.modal.modal_model import ModalModel
-from jointbench.station.models.bench_model import BenchModel, lumped_model
+from jointbench.station.schemas.bench_model import BenchModel, lumped_model
 
 SENSITIVITY_SD = 0.02
 """Relative sd of a shape component [-]: accelerometers of one batch differ by 2 %."""

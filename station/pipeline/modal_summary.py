@@ -4,7 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.records.recordings import Hit, Recording
-from jointbench.signal.modal.mode_confidence import rate_modes
+from jointbench.signal.modal.mode_ranking import rate_modes
 from jointbench.station.pipeline.chain import (
     ModalChain,
 )

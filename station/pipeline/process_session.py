@@ -16,8 +16,6 @@ from jointbench.acquisition.records.recordings import Recording, Verdict
 from jointbench.acquisition.records.session import Session
 from jointbench.analysis.lumped.identified import identification_json
 from jointbench.signal.surface.structure_constant import DEFAULT_GAMMA
-from jointbench.station.models.bench_model import ContactTable
-from jointbench.station.models.recipe import Recipe
 from jointbench.station.pipeline.chain import ModalChain, hits_stage, modal_chain
 from jointbench.station.pipeline.contact_prediction import contact_json
 from jointbench.station.pipeline.joint_stages import (
@@ -29,14 +27,16 @@ from jointbench.station.pipeline.joint_stages import (
 )
 from jointbench.station.pipeline.judge_again import Hits, VerdictChange, verdict_changes
 from jointbench.station.pipeline.modal_notes import limit_words
-from jointbench.station.pipeline.preloads import at_words, by_preload
 from jointbench.station.pipeline.recipe_settings import (
     chain_settings,
     hit_criteria,
     stored_hits,
 )
+from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun, StageStore
 from jointbench.station.pipeline.surface_stages import SurfaceChain, chain_cautions
+from jointbench.station.schemas.bench_model import ContactTable
+from jointbench.station.schemas.recipe import Recipe
 
 Page = dict[str, Any]
 

@@ -8,10 +8,10 @@ from jointbench.signal.hits.windows import WindowRequest
 from jointbench.signal.kalman.process_models import KalmanModel, KalmanSettings
 from jointbench.signal.modal.manual_selection import Choices
 from jointbench.signal.modal.modes import ModalSettings
-from jointbench.station.models.recipe import Recipe
-from jointbench.station.models.recipe_modal_parts import HitsPart, KalmanPart
 from jointbench.station.pipeline.chain import ChainSettings
 from jointbench.station.pipeline.judge_again import StoredHits
+from jointbench.station.schemas.recipe import Recipe
+from jointbench.station.schemas.recipe_modal_parts import HitsPart, KalmanPart
 
 _LIMITS = (
     "overload_fraction",

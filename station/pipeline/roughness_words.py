@@ -8,7 +8,7 @@ measured, so a D that is sure to a hundredth may leave G open over decades.
 from collections.abc import Sequence
 
 from jointbench.analysis.contact.surface import ContactSurface
-from jointbench.signal.fractal.surface_verdict import Scaling
+from jointbench.signal.fractal.verdict_records import Scaling
 from jointbench.station.screen.value_text import engineering
 
 HEADING = "G (95 %), or S at its pivot"

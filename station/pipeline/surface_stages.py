@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from jointbench.acquisition.formats.heights.height_facts import cautions
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.surface_verdict import FractalFit
+from jointbench.signal.fractal.verdict_records import FractalFit
 from jointbench.signal.surface.structure_function import StructureFunction
 from jointbench.signal.surface.surface_treatment import treated_structure
 from jointbench.station.pipeline.roughness_words import (

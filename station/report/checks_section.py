@@ -10,7 +10,7 @@ from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_spectra import hit_spectra
 from jointbench.signal.hits.leakage import estimate_leakage
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
-from jointbench.signal.modal.mode_confidence import rate_modes
+from jointbench.signal.modal.mode_ranking import rate_modes
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.screen.figures import axis, figure
 from jointbench.station.screen.page_parts import Plot, Section, Text

@@ -5,7 +5,6 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.signal.frf.frf import Frf, FrfKind
-from jointbench.station.models.geometry_file import Geometry
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.modal_summary import (
     STAGE_COLUMNS,
@@ -14,6 +13,7 @@ from jointbench.station.pipeline.modal_summary import (
 )
 from jointbench.station.report.checks_section import checks_section, systematic_words
 from jointbench.station.report.shapes_section import shapes_section
+from jointbench.station.schemas.geometry_file import Geometry
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page_parts import DataTable, Plot, Section, Text
 from jointbench.station.screen.plot_numbers import thin

@@ -7,7 +7,7 @@ from rich.text import Text
 
 from jointbench.acquisition.basics.arrays import BoolArray
 from jointbench.acquisition.records.recordings import Recording
-from jointbench.signal.modal.mode_confidence import (
+from jointbench.signal.modal.mode_ranking import (
     FEW_ORDERS,
     Grade,
     ModeConfidence,

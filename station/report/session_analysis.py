@@ -8,7 +8,6 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.analysis.lumped.identified import Identification
-from jointbench.station.models.bench_model import BenchModel
 from jointbench.station.pipeline.chain import (
     ChainSettings,
     ModalChain,
@@ -22,10 +21,11 @@ from jointbench.station.pipeline.joint_stages import (
     joint_stage,
     surface_stages,
 )
-from jointbench.station.pipeline.preloads import at_words, by_preload
+from jointbench.station.pipeline.recordings_by_preload import at_words, by_preload
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.pipeline.surface_stages import SurfaceChain
 from jointbench.station.results.results_beside import StoredResults
+from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.terminal import working
 
 

@@ -9,10 +9,8 @@ from jointbench.acquisition.session_file.store import read_session
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.geometry_file import Geometry
 from jointbench.station.pipeline.chain import ModalChain
-from jointbench.station.pipeline.preloads import at_words
+from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.report.hits_section import hits_section
 from jointbench.station.report.joint_section import joint_section
@@ -20,6 +18,8 @@ from jointbench.station.report.modal_section import modal_sections
 from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session
 from jointbench.station.report.surface_section import surface_section
 from jointbench.station.results.results_beside import stored_results
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.geometry_file import Geometry
 from jointbench.station.screen.joint_text import interval_text
 from jointbench.station.screen.page import placed_sections, write_report
 from jointbench.station.screen.page_parts import DataTable, Report, Section, Text, Tile

@@ -7,8 +7,8 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.modal.modal_mass import NormalisedShapes, mass_normalise
 from jointbench.signal.modal.shape_checks import check_shapes
-from jointbench.station.models.geometry_file import DrawnShapes, Geometry, draw_shapes
 from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.schemas.geometry_file import DrawnShapes, Geometry, draw_shapes
 from jointbench.station.screen.figures import FONT, Figure, figure
 from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section, Text
 from jointbench.station.screen.plot_numbers import numbers

@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 
-from jointbench.station.joints.theory import unit_of
+from jointbench.station.joints.contact_comparison import unit_of
 from jointbench.station.joints.theory_records import (
     JointQuantity,
     StateEstimate,

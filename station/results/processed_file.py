@@ -36,12 +36,12 @@ from jointbench.acquisition.records.recordings import Recording, Verdict
 from jointbench.acquisition.records.session import software_version
 from jointbench.acquisition.session_file.record_groups import free_name
 from jointbench.station.files.session_facts import session_facts
-from jointbench.station.models.recipe import Recipe, recipe_content
 from jointbench.station.pipeline.judge_again import NOT_THERE, VerdictChange
 from jointbench.station.pipeline.process_session import PreloadModes, ProcessedSession
 from jointbench.station.pipeline.surface_stages import SurfaceChain
 from jointbench.station.results.quantities import ResultQuantity, quantities_of
 from jointbench.station.results.results_file import write_modal
+from jointbench.station.schemas.recipe import Recipe, recipe_content
 
 PROCESSED_SCHEMA = "jointbench-results/2"
 LINE = 4096

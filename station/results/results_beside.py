@@ -10,7 +10,7 @@ from jointbench.acquisition.file_access.quoting import named, visible
 from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.station.files.archive_patterns import RESULTS_SUFFIX
-from jointbench.station.pipeline.preloads import by_preload, of_preload
+from jointbench.station.pipeline.recordings_by_preload import by_preload, of_preload
 from jointbench.station.results.results_file import results_path
 from jointbench.station.results.results_modes import StoredModes, StoredRun, read_run
 

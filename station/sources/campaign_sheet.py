@@ -50,7 +50,7 @@ def sheet_text(design: CampaignDesign) -> str:
         design: of a campaign; its true values stay out.
 
     Returns:
-        TOML, as `jointbench.station.models.bench_model` reads it.
+        TOML, as `jointbench.station.schemas.bench_model` reads it.
     """
     sds = {
         f"{name}_sd": NOMINAL_SIGMA[name] * value

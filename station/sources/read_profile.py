@@ -15,7 +15,7 @@ from jointbench.acquisition.serial_lines import diavite, mitutoyo
 from jointbench.acquisition.serial_lines.line import SerialLine
 from jointbench.acquisition.serial_lines.line_faults import ProfileBroken
 from jointbench.acquisition.session_file.add_surface import add_surface, require_addable
-from jointbench.acquisition.session_file.replaceable import fresh_path
+from jointbench.acquisition.session_file.overwrite_guard import fresh_path
 from jointbench.station.files.output_paths import (
     check_outputs,
     require_mark,

@@ -15,12 +15,12 @@ from sheet_entries import (
     symbols,
 )
 
-from jointbench.analysis.contact import printed_2023 as eq
+from jointbench.analysis.contact import printed_formulas_2023 as eq
 from jointbench.analysis.contact.asperity import interference
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import joint_sums
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
-from jointbench.analysis.contact.sums import joint_sums
 
 FIRST, SECOND = (1.425, 1.03), (1.236, 1.40)
 EARLY, LATE = (1, 6), (6, 110)

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.analysis.contact import printed_2023 as eq
+from jointbench.analysis.contact import printed_formulas_2023 as eq
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import joint_sums
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
-from jointbench.analysis.contact.sums import joint_sums
 
 TABLE = Path(__file__).parents[3] / "shared" / "design" / "physics_checks.json"
 ENTRIES = (

@@ -22,9 +22,9 @@ from jointbench.analysis.contact.asperity import (
     log_critical_area,
 )
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import joint_sums, power_integral
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
-from jointbench.analysis.contact.sums import joint_sums, power_integral
 
 
 def area_between(i, population, *, above_critical=False):

@@ -18,11 +18,11 @@ from jointbench.analysis.contact.damping import damping_ratio
 from jointbench.analysis.contact.material import ContactMaterial, effective_modulus
 from jointbench.analysis.contact.model_catalogue import PRINTED_STAGE_2, contact_model
 from jointbench.analysis.contact.models import interaction_share
-from jointbench.analysis.contact.preload import preload_from_torque
 from jointbench.analysis.contact.tangential import (
     contact_shear,
     tangential_stiffness,
 )
+from jointbench.analysis.contact.torque_to_preload import preload_from_torque
 from jointbench.analysis.lumped.lumped_model import Body, Link, LumpedModel
 from jointbench.analysis.lumped.lumped_modes import solve_modes
 from jointbench.signal.fractal.fractal_fit import fractal_from_line

@@ -11,6 +11,7 @@ from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.asperity_laws import REGIMES, PowerLaw, Regime
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import joint_sums
 from jointbench.analysis.contact.material import (
     ContactMaterial,
     YieldCriterion,
@@ -19,8 +20,7 @@ from jointbench.analysis.contact.material import (
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.models import Interaction
 from jointbench.analysis.contact.predict import predict_contact
-from jointbench.analysis.contact.preload import preload_from_torque
-from jointbench.analysis.contact.sums import joint_sums
+from jointbench.analysis.contact.torque_to_preload import preload_from_torque
 
 # The stiffness (sqrt 3 / 2) E sqrt(a) of eq. (5) as a share of Hertz's 2 E sqrt(a/pi).
 PRINTED_ELASTIC = PowerLaw(math.sqrt(3 * math.pi) / 4, 1.5)

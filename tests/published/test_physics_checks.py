@@ -19,7 +19,7 @@ from sheet_formulas import FORMULAS
 from sheet_numbers import NUMBERS
 from sheet_reference import STATES
 
-from jointbench.analysis.contact import printed_2023 as eq
+from jointbench.analysis.contact import printed_formulas_2023 as eq
 
 CHECKS = COEFFICIENTS | FORMULAS | STATES | NUMBERS
 PRINTED = {

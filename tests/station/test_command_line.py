@@ -79,17 +79,24 @@ def test_a_damaged_table_is_refused(name: str, edit: "object", tmp_path: Path) -
     assert not (tmp_path / "s.h5").exists(), name
 
 
+@pytest.fixture(scope="module")
+def whole_session(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """Import a hit once; return the bytes of its session file."""
+    folder = tmp_path_factory.mktemp("whole")
+    path = hit_table(folder / "hit.csv")
+    done = jointbench("import", path, "--out", folder / "s.h5", "--columns", HITS)
+    assert done.returncode == 0, done.stderr
+    return (folder / "s.h5").read_bytes()
+
+
 @pytest.mark.parametrize("command", ["modal", "report", "inspect", "surface"])
 @pytest.mark.parametrize("kept", [0, 100, 5000])
 def test_an_empty_or_truncated_session_is_refused(
-    command: str, kept: int, tmp_path: Path
+    command: str, kept: int, tmp_path: Path, whole_session: bytes
 ) -> None:
     """Whatever is asked of it, a cut session file is one line and code three."""
-    whole, cut = tmp_path / "whole.h5", tmp_path / "cut.h5"
-    path = hit_table(tmp_path / "hit.csv")
-    done = jointbench("import", path, "--out", whole, "--columns", HITS)
-    assert done.returncode == 0, done.stderr
-    cut.write_bytes(whole.read_bytes()[:kept])
+    cut = tmp_path / "cut.h5"
+    cut.write_bytes(whole_session[:kept])
     assert "cut.h5" in refused(command, cut)
 
 

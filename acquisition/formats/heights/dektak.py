@@ -17,7 +17,7 @@ from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.heights.height_facts import caution, range_caution
-from jointbench.acquisition.formats.heights.printed_grids import (
+from jointbench.acquisition.formats.heights.number_grids import (
     length_of,
     masked,
     parse_cells,

@@ -9,7 +9,7 @@ from jointbench.acquisition.basics.errors import FormatError, UnitError
 from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.heights.height_facts import caution
-from jointbench.acquisition.formats.heights.printed_grids import (
+from jointbench.acquisition.formats.heights.number_grids import (
     length_of,
     masked,
     rows_of,

@@ -14,7 +14,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import named
-from jointbench.acquisition.formats.heights.printed_grids import HIGHEST
+from jointbench.acquisition.formats.heights.number_grids import HIGHEST
 from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 

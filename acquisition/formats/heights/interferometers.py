@@ -10,7 +10,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import named, shown
-from jointbench.acquisition.formats.heights.printed_grids import (
+from jointbench.acquisition.formats.heights.number_grids import (
     count_of,
     masked,
     number_of,

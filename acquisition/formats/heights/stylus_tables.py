@@ -24,7 +24,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError, UnitError
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import Column
-from jointbench.acquisition.formats.heights.printed_grids import (
+from jointbench.acquisition.formats.heights.number_grids import (
     count_of,
     masked,
     number_of,

@@ -20,7 +20,7 @@ from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.heights.height_facts import LONGEST
-from jointbench.acquisition.formats.heights.printed_grids import masked
+from jointbench.acquisition.formats.heights.number_grids import masked
 from jointbench.acquisition.formats.tables import MAX_CELLS
 from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface

@@ -4,7 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.analysis.gap.judgement.judging import far_off
+from jointbench.analysis.gap.judgement.winner_judging import far_off
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem

@@ -11,7 +11,7 @@ from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.evidence import make_exhibit
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
-from jointbench.analysis.gap.diagnosis.verdict import verdict_on
+from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
 from jointbench.analysis.gap.judgement.expected_misfit import noise_sd

@@ -25,8 +25,8 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
+from jointbench.analysis.gap.residuals.joint_settling import joint_at
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
-from jointbench.analysis.gap.residuals.settling import joint_at
 from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages
 
 _FORCE_FLOOR = 0.05

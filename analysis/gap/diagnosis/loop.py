@@ -7,13 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
-from jointbench.analysis.gap.judgement.judging import Hopes, far_off, judge
 from jointbench.analysis.gap.judgement.naming import Gate, gate
 from jointbench.analysis.gap.judgement.rivals import (
     CROWDED_WITHIN,
     rivals,
     without_twins,
 )
+from jointbench.analysis.gap.judgement.winner_judging import Hopes, far_off, judge
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, may_join
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit

@@ -18,17 +18,17 @@ from jointbench.analysis.gap.residuals.hit_scatter import (
     repeat_groups,
     without_trend,
 )
+from jointbench.analysis.gap.residuals.joint_settling import (
+    hit_stiffness,
+    joint_at,
+    mean_stiffness,
+)
 from jointbench.analysis.gap.residuals.lumped_residual import SomeBench, settle
 from jointbench.analysis.gap.residuals.noise_models import (
     FORCE_SHAPES,
     Noise,
     channel_sigma,
     whitening_basis,
-)
-from jointbench.analysis.gap.residuals.settling import (
-    hit_stiffness,
-    joint_at,
-    mean_stiffness,
 )
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
 from jointbench.analysis.gap.response.excitation import prepare_excitation

@@ -16,14 +16,14 @@ from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled
-from jointbench.analysis.gap.residuals.noise_models import Noise
-from jointbench.analysis.gap.residuals.settling import (
+from jointbench.analysis.gap.residuals.joint_settling import (
     changes_joint,
     hit_stiffness,
     joint_at,
     mean_stiffness,
     stiffness_rise,
 )
+from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import HitConditions, LumpedEffect
 from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation

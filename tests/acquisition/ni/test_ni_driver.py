@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import InstrumentError, UsageError
-from jointbench.acquisition.ni.answers import ConnectionLost, Overrun
 from jointbench.acquisition.ni.driver import Chassis
+from jointbench.acquisition.ni.driver_answers import ConnectionLost, Overrun
 from jointbench.acquisition.ni.sensors import (
     Axis,
     Sensor,

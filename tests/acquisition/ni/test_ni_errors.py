@@ -13,13 +13,13 @@ from nidaqmx.error_codes import DAQmxErrors
 
 from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.acquisition.ni import error_codes
-from jointbench.acquisition.ni.answers import (
+from jointbench.acquisition.ni.driver import Chassis
+from jointbench.acquisition.ni.driver_answers import (
     ConnectionLost,
     NotYet,
     Overrun,
     Stopped,
 )
-from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.error_codes import Remedy, remedy
 from jointbench.acquisition.ni.sensors import Axis, Sensor, excitation_current
 from jointbench.acquisition.ni.stream import (

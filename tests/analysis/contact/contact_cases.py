@@ -3,13 +3,13 @@
 
 from typing import Any
 
-from jointbench.analysis.contact.case import ContactCase, ContactConditions
+from jointbench.analysis.contact.contact_case import ContactCase, ContactConditions
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.models import ContactModel, Mode
-from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.spread import ContactSpread
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.contact.torque_to_preload import Preload
 
 KNOWN_EXACTLY = ContactSpread()
 

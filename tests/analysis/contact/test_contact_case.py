@@ -9,8 +9,8 @@ from contact_cases import joint_case
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.contact.damping import DampingChoice
 from jointbench.analysis.contact.material import ContactMaterial
-from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.spread import ContactSpread
+from jointbench.analysis.contact.torque_to_preload import Preload
 
 IRON = ContactMaterial(69.3e9, 2.265e9, 0.25)
 SPREAD = ContactSpread(0.01, 0.2, -0.5, preload=40.0, hardness=5e7, friction=0.02)

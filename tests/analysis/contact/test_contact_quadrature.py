@@ -9,9 +9,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import joint_sums
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
-from jointbench.analysis.contact.sums import joint_sums
 
 DRAWS = 2000
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)

@@ -15,10 +15,10 @@ from jointbench.analysis.contact.asperity import (
     log_critical_area,
 )
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import joint_sums, power_integral
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
 from jointbench.analysis.contact.solve import solve_largest_area
-from jointbench.analysis.contact.sums import joint_sums, power_integral
 
 STEEL = ContactMaterial(115e9, 2.3e9, 0.29, friction_factor=0.93)
 

@@ -26,15 +26,15 @@ from jointbench.analysis.contact.damping import (
 from jointbench.analysis.contact.energy import joint_energy, recovered_share
 from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import approach_stiffness, preload_of
+from jointbench.analysis.contact.joint_sums import joint_sums
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import CONTACT_MODELS, contact_model
+from jointbench.analysis.contact.model_terms import ContactTerm, model_terms, with_term
 from jointbench.analysis.contact.models import Interaction, Mode
 from jointbench.analysis.contact.predict import ContactVerdict, predict_contact
-from jointbench.analysis.contact.printed import printed_warnings
+from jointbench.analysis.contact.printed_formulas import printed_warnings
 from jointbench.analysis.contact.solve import solve_largest_area
-from jointbench.analysis.contact.sums import joint_sums
 from jointbench.analysis.contact.tangential import sticking_share
-from jointbench.analysis.contact.terms import ContactTerm, model_terms, with_term
 
 IRON = ContactMaterial(69.3e9, 2.265e9, 0.25)
 

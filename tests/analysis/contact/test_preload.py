@@ -3,7 +3,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.preload import preload_from_torque
+from jointbench.analysis.contact.torque_to_preload import preload_from_torque
 
 
 def test_preload_is_torque_over_nut_factor_and_diameter():

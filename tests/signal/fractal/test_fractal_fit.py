@@ -11,7 +11,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 from jointbench.signal.fractal.fractal_fit import fit_fractal, fractal_from_line
-from jointbench.signal.fractal.surface_verdict import FractalFit, SurfaceVerdict
+from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.signal.surface.pooled_profiles import pool_profiles
 from jointbench.signal.surface.structure_constant import structure_constant
 from jointbench.signal.surface.structure_function import combine, structure_function

@@ -12,7 +12,7 @@ from scipy.signal import lfilter
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Areal, Profile, all_valid
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.surface_verdict import FractalFit, SurfaceVerdict
+from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.signal.surface.structure_function import structure_function
 from jointbench.simulators.rough_surfaces.brownian import brownian_lines
 

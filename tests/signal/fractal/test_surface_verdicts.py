@@ -8,7 +8,7 @@ import pytest
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.surfaces import Profile, all_valid
 from jointbench.signal.fractal.fractal_fit import fit_fractal
-from jointbench.signal.fractal.surface_verdict import FractalFit, SurfaceVerdict
+from jointbench.signal.fractal.verdict_records import FractalFit, SurfaceVerdict
 from jointbench.signal.surface.structure_function import combine, structure_function
 from jointbench.simulators.rough_surfaces.rough_surface import (
     rough_profile,

@@ -10,7 +10,7 @@ import pytest
 
 from jointbench.signal.frf.frf import Frf, estimate_frf
 from jointbench.signal.modal.modal_model import ModalModel
-from jointbench.signal.modal.mode_confidence import Grade, rate_modes
+from jointbench.signal.modal.mode_ranking import Grade, rate_modes
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.modal.frf_lines import lines_of
 from jointbench.signal.modal.line_noise import roughness
-from jointbench.signal.modal.pole_refinement import refine_poles
+from jointbench.signal.modal.refined_pole_covariance import refine_poles
 
 LINES = np.arange(20.0, 1000.0, 0.5)
 ALL = np.ones(LINES.size, bool)

@@ -18,6 +18,10 @@ from jointbench.simulators.campaigns.write_campaign import (
     truth_path,
     write_campaign,
 )
+from jointbench.simulators.detectability.expected_margin import (
+    expected_margin,
+    margin_scale,
+)
 from jointbench.simulators.hidden.campaign_design import (
     GRIDS,
     NOMINAL_SIGMA,
@@ -33,7 +37,6 @@ from jointbench.simulators.hidden.effect_draws import (
     specimen_scales,
 )
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
-from jointbench.simulators.margins.expected_margin import expected_margin, margin_scale
 
 NULL = make_campaign(7, grid="small", noise=0.05)
 

@@ -30,7 +30,7 @@ from jointbench.station.archive.worker_pool import PoolSettings
 from jointbench.station.files.archive_patterns import archive_folder, session_files
 from jointbench.station.files.output_paths import make_folder, whole_file
 from jointbench.station.files.spreadsheet_text import escaped
-from jointbench.station.models.recipe import Recipe, read_recipe
+from jointbench.station.schemas.recipe import Recipe, read_recipe
 
 PLAIN = Recipe(name="plain")
 

@@ -24,10 +24,10 @@ from jointbench.station.archive.trends import (
 )
 from jointbench.station.commands.archive_command import ways_of
 from jointbench.station.files.archive_patterns import result_files
-from jointbench.station.models.recipe import Recipe
-from jointbench.station.models.recipe_modal_parts import WindowsPart
 from jointbench.station.results.quantities import ResultQuantity
 from jointbench.station.results.results_read import is_results, without_copies
+from jointbench.station.schemas.recipe import Recipe
+from jointbench.station.schemas.recipe_modal_parts import WindowsPart
 
 PLAIN = Recipe(name="plain")
 

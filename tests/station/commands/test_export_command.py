@@ -14,9 +14,9 @@ from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.archive.process_file import Task, process_task
 from jointbench.station.commands.export_command import run_export
 from jointbench.station.files.input_files import read_foreign
-from jointbench.station.models.recipe import Recipe
 from jointbench.station.results.result_tables import result_modes, shapes_of
 from jointbench.station.results.results_read import read_result
+from jointbench.station.schemas.recipe import Recipe
 
 pyuff = pytest.importorskip("pyuff")
 

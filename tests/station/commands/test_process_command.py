@@ -18,14 +18,14 @@ from jointbench.station.archive import process_file
 from jointbench.station.archive.compare_results import compare_results
 from jointbench.station.archive.process_file import State, Task, process_task
 from jointbench.station.commands.process_command import run_process
-from jointbench.station.models.recipe import Recipe, read_recipe
-from jointbench.station.models.recipe_modal_parts import HitsPart, WindowsPart
 from jointbench.station.pipeline.chain import run_chain
 from jointbench.station.pipeline.record_codec import decode_record, encode_record
 from jointbench.station.pipeline.stage_store import StageStore, prune_stages, stage_key
 from jointbench.station.results.processed_file import processed_path
 from jointbench.station.results.result_tables import result_texts
 from jointbench.station.results.results_read import StoredResult, read_result
+from jointbench.station.schemas.recipe import Recipe, read_recipe
+from jointbench.station.schemas.recipe_modal_parts import HitsPart, WindowsPart
 from jointbench.station.sources.open_source import open_visit
 from jointbench.station.sources.record_source import record_visit
 

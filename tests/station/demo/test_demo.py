@@ -17,8 +17,8 @@ from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.demo.demo import require_demo, run_demo
 from jointbench.station.demo.demo_bench import HITS
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.models.bench_model import BenchModel
 from jointbench.station.pipeline.modal_options import modal_settings
+from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.screen.page import render
 from jointbench.station.screen.page_parts import DataTable, Report, Section, Text
 

@@ -22,7 +22,7 @@ from jointbench.acquisition.file_access.text_files import MAX_LINES, text_lines
 from jointbench.acquisition.formats.tables import load_table
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
-from jointbench.station.models.geometry_file import Geometry
+from jointbench.station.schemas.geometry_file import Geometry
 
 FOLDER = Path(__file__).parents[3] / "benchmarks" / "files"
 SHARE = 0.003

@@ -19,8 +19,8 @@ from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.commands.record_command import run_record
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.main import app, exit_code
-from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.gap_model import gap_sheet
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.gap_model import gap_sheet
 from jointbench.station.sources.open_source import open_visit
 from jointbench.station.sources.visit_file import write_visit
 

@@ -22,8 +22,8 @@ from jointbench.analysis.gap.model.evidence_records import Exhibit
 from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.record_campaign import RecordToExamine, read_record
-from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.record_units import StandIns
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.record_units import StandIns
 
 RATE = 1000.0
 DELAY = ("delay", "channel:a1")

@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 
 from jointbench.analysis.contact.predict import predict_contact
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.station.joints.contact_comparison import against_theory, theory_json
 from jointbench.station.joints.structure_contact import TheoryTable
-from jointbench.station.joints.theory import against_theory, theory_json
 from jointbench.station.joints.theory_records import (
     IdentifiedState,
     JointQuantity,

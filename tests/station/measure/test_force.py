@@ -12,7 +12,7 @@ import pytest
 from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.acquisition.file_access.file_lock import hold_lock, is_held
 from jointbench.acquisition.records.session import new_session
-from jointbench.acquisition.session_file.replaceable import fresh_path
+from jointbench.acquisition.session_file.overwrite_guard import fresh_path
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.station.commands.import_command import run_import
 from jointbench.station.commands.record_command import run_record

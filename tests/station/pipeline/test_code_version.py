@@ -12,7 +12,6 @@ import pytest
 
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.archive.process_file import result_key
-from jointbench.station.models.recipe import Recipe
 from jointbench.station.pipeline import code_version
 from jointbench.station.pipeline.code_version import (
     CALLERS,
@@ -24,6 +23,7 @@ from jointbench.station.pipeline.code_version import (
 )
 from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.stage_store import StageStore, stage_key
+from jointbench.station.schemas.recipe import Recipe
 
 ROOT = Path(code_version.__file__).resolve().parents[2]
 
@@ -156,7 +156,7 @@ PROCESS = """
 import sys
 from pathlib import Path
 from jointbench.station.archive.process_file import Task, process_task
-from jointbench.station.models.recipe import Recipe
+from jointbench.station.schemas.recipe import Recipe
 outcome = process_task(Task(Path(sys.argv[1]), Path(sys.argv[2])), Recipe(name="p"))
 print(outcome.key)
 """

@@ -11,12 +11,12 @@ from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 from jointbench.simulators.rough_surfaces.surface_files import write_surfcom
 from jointbench.station.commands.surface_command import run_surface
 from jointbench.station.main import app, exit_code
-from jointbench.station.models.recipe import Recipe
 from jointbench.station.pipeline.contact_prediction import surface_of
 from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.roughness_words import contact_surface_words
 from jointbench.station.pipeline.stage_store import StageStore
 from jointbench.station.report.surface_section import surface_section
+from jointbench.station.schemas.recipe import Recipe
 from jointbench.station.screen.page_parts import DataTable
 
 MATERIAL = ["--modulus=29.3 GPa", "--hardness=1.5 GPa", "--load=4 kN", "--model=ke_2d"]

@@ -11,9 +11,6 @@ from jointbench.acquisition.session_file.store import read_session, write_sessio
 from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.models.bench_model import BenchModel
-from jointbench.station.models.recipe import ContactPart, IdentificationPart, Recipe
-from jointbench.station.models.recipe_modal_parts import HitsPart, KalmanPart
 from jointbench.station.pipeline.chain import ChainSettings, run_chain
 from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.recipe_settings import chain_settings
@@ -25,6 +22,9 @@ from jointbench.station.pipeline.stage_store import (
 )
 from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session
 from jointbench.station.report.session_report import run_report
+from jointbench.station.schemas.bench_model import BenchModel
+from jointbench.station.schemas.recipe import ContactPart, IdentificationPart, Recipe
+from jointbench.station.schemas.recipe_modal_parts import HitsPart, KalmanPart
 
 MODAL_STAGES = ["hits", "kalman of stream", "frf", "modes", "fill"]
 JOINT_STAGES = ["structure of face", "surface face", "contact", "joint"]

@@ -12,12 +12,12 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.station.archive.process_file import Task, process_task
 from jointbench.station.commands.modal_command import run_modal
-from jointbench.station.models.recipe import Recipe
 from jointbench.station.pipeline.chain import run_chain
 from jointbench.station.pipeline.modal_options import modal_settings
 from jointbench.station.report.session_report import run_report
 from jointbench.station.results.results_file import results_path
 from jointbench.station.results.results_modes import read_run
+from jointbench.station.schemas.recipe import Recipe
 
 KEPT = Path(__file__).parents[2] / "fixtures"
 

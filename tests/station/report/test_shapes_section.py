@@ -8,10 +8,10 @@ import pytest
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
-from jointbench.station.models.geometry_file import Geometry, draw_shapes
 from jointbench.station.pipeline.chain import ModalChain, run_chain
 from jointbench.station.report.checks_section import checks_section
 from jointbench.station.report.shapes_section import shapes_section
+from jointbench.station.schemas.geometry_file import Geometry, draw_shapes
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import Plot, Report, Text
 

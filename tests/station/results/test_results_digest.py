@@ -28,9 +28,9 @@ from jointbench.station.commands.export_command import run_export
 from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.commands.process_command import run_process
 from jointbench.station.commands.verify_archive import check_file, verify_all
-from jointbench.station.models.recipe import Recipe
 from jointbench.station.report.session_report import run_report
 from jointbench.station.results.results_file import results_path
+from jointbench.station.schemas.recipe import Recipe
 
 KEPT = Path(__file__).parents[2] / "fixtures"
 PLAIN = Recipe(name="plain")

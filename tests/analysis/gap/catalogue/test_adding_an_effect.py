@@ -21,7 +21,7 @@ from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.simulators.campaigns.campaign_records import make_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.station.commands.gap_command import run_gap
-from jointbench.station.models.effects_file import read_effects, with_own
+from jointbench.station.schemas.effects_file import read_effects, with_own
 
 PAGE = Path(__file__).parents[4] / "docs" / "adding-an-effect.md"
 

@@ -7,7 +7,7 @@ import pytest
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
-from jointbench.analysis.gap.judgement.judging import far_off
+from jointbench.analysis.gap.judgement.winner_judging import far_off
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench

@@ -10,7 +10,7 @@ import scipy.optimize
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate, judged
-from jointbench.analysis.gap.judgement import judging
+from jointbench.analysis.gap.judgement import winner_judging as judging
 from jointbench.analysis.gap.judgement.held_out import hold_out
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.model.effect import (

@@ -10,9 +10,9 @@ scatter only, and a sharp record shows the third.
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.simulators.detectability.base_refit import BaseView, stiffness_slope
 from jointbench.simulators.hidden.campaign_design import CampaignDesign
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
-from jointbench.simulators.margins.base_refit import BaseView, stiffness_slope
 
 _RIVALS = {"preload_stiffness": "loosening", "loosening": "preload_stiffness"}
 _SMALL = 1e-3

@@ -8,14 +8,14 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact import printed_2023 as eq
+from jointbench.analysis.contact import printed_formulas_2023 as eq
 from jointbench.analysis.contact.asperity_laws import REGIMES, Regime
 from jointbench.analysis.contact.curve import contact_curve
 from jointbench.analysis.contact.fractal_surface import FractalSurface
+from jointbench.analysis.contact.joint_sums import joint_sums
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.models import ContactModel, Mode
-from jointbench.analysis.contact.sums import joint_sums
 
 _STAGE_1, _STAGE_2 = Regime.ELASTIC_PLASTIC_1, Regime.ELASTIC_PLASTIC_2
 

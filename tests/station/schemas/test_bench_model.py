@@ -12,9 +12,9 @@ from jointbench.analysis.lumped.identify_links import identify_links
 from jointbench.analysis.lumped.lumped_matrices import incidence
 from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.station.files.toml_file import read_toml
-from jointbench.station.models.bench_model import BenchModel, lumped_model
-from jointbench.station.models.gap_model import gap_sheet
 from jointbench.station.pipeline.link_stage import mode_model
+from jointbench.station.schemas.bench_model import BenchModel, lumped_model
+from jointbench.station.schemas.gap_model import gap_sheet
 
 GOOD = """\
 [bodies.base]

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.contact.case import ContactCase, ContactConditions
+from jointbench.analysis.contact.contact_case import ContactCase, ContactConditions
 from jointbench.analysis.contact.damping import DampingChoice
 from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.surface import ContactSurface

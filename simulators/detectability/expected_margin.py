@@ -12,24 +12,24 @@ import numpy as np
 import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.simulators.hidden.campaign_design import CampaignDesign
-from jointbench.simulators.hidden.campaign_response import sketch_responses
-from jointbench.simulators.hidden.effect_draws import FAMILIES, Scales, specimen_scales
-from jointbench.simulators.hidden.hidden_effects import HiddenEffect
-from jointbench.simulators.margins.base_refit import (
+from jointbench.simulators.detectability.base_refit import (
     BaseFit,
     BaseView,
     base_view,
     project,
     refit_base,
 )
-from jointbench.simulators.margins.rival_effects import rival_effects
-from jointbench.simulators.margins.rival_refit import (
+from jointbench.simulators.detectability.rival_effects import rival_effects
+from jointbench.simulators.detectability.rival_refit import (
     best_shape,
     refit_rival,
     sized_twin,
 )
-from jointbench.simulators.margins.settled_margin import settled_shares
+from jointbench.simulators.detectability.settling_margin import settled_shares
+from jointbench.simulators.hidden.campaign_design import CampaignDesign
+from jointbench.simulators.hidden.campaign_response import sketch_responses
+from jointbench.simulators.hidden.effect_draws import FAMILIES, Scales, specimen_scales
+from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 _REFITTED = 4  # rivals, the most alike by the grid
 _ALIKE = 0.7  # correlation below which a rival is not worth a refit

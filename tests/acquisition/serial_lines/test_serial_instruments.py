@@ -107,7 +107,9 @@ def test_mitutoyo_conditions_are_read_by_their_places() -> None:
     """Standard 1, profile P, cut-off 2, five sampling lengths, 4.00 mm, filter G."""
     line = Dialogue((b"RDCON\r", b"OK1P20504.00.G\r"))
     found = mitutoyo.read_conditions(line)
-    assert found == mitutoyo.Conditions("1", "P", "2", 5, pytest.approx(4e-3), "G")
+    assert found == mitutoyo.EvaluationConditions(
+        "1", "P", "2", 5, pytest.approx(4e-3), "G"
+    )
     line.require_over()
 
 

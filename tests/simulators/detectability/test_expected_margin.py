@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from jointbench.simulators.detectability.base_refit import project
+from jointbench.simulators.detectability.expected_margin import (
+    expected_margin,
+    margin_scale,
+)
 from jointbench.simulators.hidden.campaign_design import draw_design
 from jointbench.simulators.hidden.campaign_response import sketch_responses
 from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 from jointbench.simulators.hidden.sample_weights import sample_weights, weigh
-from jointbench.simulators.margins.base_refit import project
-from jointbench.simulators.margins.expected_margin import expected_margin, margin_scale
 
 SCATTER = 0.0019
 

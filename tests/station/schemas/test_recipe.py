@@ -6,8 +6,8 @@ import pytest
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.hits.windows import WindowRequest
-from jointbench.station.models.recipe import Recipe, read_recipe, recipe_digest
 from jointbench.station.pipeline.recipe_settings import chain_settings
+from jointbench.station.schemas.recipe import Recipe, read_recipe, recipe_digest
 
 
 def written(folder: Path, text: str, name: str = "R.toml") -> Path:

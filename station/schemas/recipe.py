@@ -25,8 +25,8 @@ from jointbench.station.files.toml_file import (
     StrictTable,
     read_toml,
 )
-from jointbench.station.models.bench_model import BenchModel, Force, Pressure
-from jointbench.station.models.recipe_modal_parts import (
+from jointbench.station.schemas.bench_model import BenchModel, Force, Pressure
+from jointbench.station.schemas.recipe_modal_parts import (
     FrfPart,
     HitsPart,
     KalmanPart,

@@ -10,10 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.simulators.hidden.campaign_response import sketch_responses
-from jointbench.simulators.hidden.effect_draws import CATALOGUE, FAMILIES, resize_effect
-from jointbench.simulators.hidden.hidden_effects import HiddenEffect
-from jointbench.simulators.margins.base_refit import (
+from jointbench.simulators.detectability.base_refit import (
     BaseFit,
     BaseView,
     follow,
@@ -21,7 +18,10 @@ from jointbench.simulators.margins.base_refit import (
     refit_moves,
     try_moves,
 )
-from jointbench.simulators.margins.rival_effects import free_count, may_turn
+from jointbench.simulators.detectability.rival_effects import free_count, may_turn
+from jointbench.simulators.hidden.campaign_response import sketch_responses
+from jointbench.simulators.hidden.effect_draws import CATALOGUE, FAMILIES, resize_effect
+from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 _HALVINGS = 6  # of the size of a rival that starts out too large
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.simulators.detectability.rival_effects import move_rival
 from jointbench.simulators.hidden.campaign_design import (
     BASE_NAMES,
     NOMINAL_SIGMA,
@@ -29,7 +30,6 @@ from jointbench.simulators.hidden.sample_weights import (
     weigh,
     windowed,
 )
-from jointbench.simulators.margins.rival_effects import move_rival
 
 _BASE = len(BASE_NAMES)
 _LOG_STEP = 1e-4  # of the base parameters

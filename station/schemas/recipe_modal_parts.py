@@ -14,7 +14,7 @@ from jointbench.station.files.toml_file import (
     StrictTable,
     with_unit,
 )
-from jointbench.station.models.bench_model import Force
+from jointbench.station.schemas.bench_model import Force
 
 _Seconds = Annotated[float, with_unit("time"), Field(gt=0)]
 _Hertz = Annotated[float, with_unit("frequency"), Field(gt=0)]

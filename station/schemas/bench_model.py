@@ -19,7 +19,7 @@ from jointbench.analysis.lumped.lumped_model import (
     ResponseChannel,
 )
 from jointbench.station.files.toml_file import StrictTable, with_unit
-from jointbench.station.models.record_model import RecordTable, with_mechanical_units
+from jointbench.station.schemas.record_model import RecordTable, with_mechanical_units
 
 _OUTPUTS = {
     "displacement": Output.DISPLACEMENT,

@@ -9,9 +9,9 @@ from jointbench.analysis.contact.damping import DampingChoice
 from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel
-from jointbench.analysis.contact.preload import Preload
 from jointbench.analysis.contact.spread import ContactSpread
 from jointbench.analysis.contact.surface import ContactSurface
+from jointbench.analysis.contact.torque_to_preload import Preload
 
 
 @dataclass(frozen=True, slots=True)

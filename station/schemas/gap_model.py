@@ -3,7 +3,7 @@
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.model.nominal import Sheet
-from jointbench.station.models.bench_model import BenchModel, lumped_model
+from jointbench.station.schemas.bench_model import BenchModel, lumped_model
 
 
 def gap_sheet(bench: BenchModel) -> Sheet:

@@ -4,8 +4,8 @@
 from collections.abc import Callable
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.ni.answers import Overrun, Stopped
 from jointbench.acquisition.ni.driver import AnalogTask
+from jointbench.acquisition.ni.driver_answers import Overrun, Stopped
 
 _ATTEMPTS = 12  # by the last one the room has doubled past any buffer
 

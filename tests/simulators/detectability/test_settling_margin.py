@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from jointbench.simulators.detectability.base_refit import base_view
+from jointbench.simulators.detectability.settling_margin import settled_shares
 from jointbench.simulators.hidden.campaign_design import CampaignDesign, draw_design
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
-from jointbench.simulators.margins.base_refit import base_view
-from jointbench.simulators.margins.settled_margin import settled_shares
 
 SCATTER = 1.5e-3
 

@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.signal.fractal.least_squares import widest_psf
 from jointbench.signal.fractal.model_choice import Choice, spans_decade
 from jointbench.signal.fractal.self_affine import InstrumentModel
-from jointbench.signal.fractal.surface_verdict import SurfaceVerdict
+from jointbench.signal.fractal.verdict_records import SurfaceVerdict
 
 FLAT_RATIO = 1.5
 """Largest over smallest S below which S is called flat: noise and no surface [-]."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Estimate, Gap
 from jointbench.analysis.gap.model.evidence_records import Exhibit
-from jointbench.station.models.record_model import unit_text
+from jointbench.station.schemas.record_model import unit_text
 
 _SIGNS = re.compile(r"[()/]|[^\s()/*\u00b7]+")
 _FACTOR = re.compile(r"([^\W\d_]+|1)(?:\^?(-?\d+(?:\.\d+)?))?")
