@@ -21,41 +21,28 @@ from jointbench.acquisition.file_access.text_files import (
     read_bytes,
     text_lines,
 )
-from jointbench.acquisition.formats.table_cells import (
-    DECIMAL_COMMA,
-    MISSING_WORDS,
-    NUMBER,
-    parse_cell,
-    split_row,
+from jointbench.acquisition.formats.table_rows import parse_rows, without_empty_tail
+from jointbench.acquisition.formats.table_start import (
+    DELIMITER_NAMES,
+    MAX_COLUMNS,
+    MAX_HEADER_LINES,
+    THOUSANDS,
+    TableStart,
+    find_start,
+    is_row,
 )
 
 _MAX_ROWS = 20_000_000
-_MAX_COLUMNS = 512
 MAX_CELLS = 100_000_000
-_MAX_HEADER_LINES = 1000
 # Beyond what any instrument reads, and its powers still fit a double [SI unit].
 _LARGEST_VALUE = 1e30
 _NPY_MAGIC = b"\x93NUMPY"
 # What NumPy lets through where the header of an array is no Python literal.
 _HEADER_ERRORS = (EOFError, SyntaxError, tokenize.TokenError, RecursionError)
-_DELIMITERS = ("\t", ";", ",", "|", None)
-_NAMES = {"\t": "tab", None: "blanks"}
-_COMMENT = ("#", "%", "//")
-_FIRST_OF_NUMBER = frozenset("0123456789+-.")
-_BLOCK, _FEW = 65_536, 1024
-"""Rows that are parsed at once, and again in fewer where one has no number."""
 _TEXT_NEEDED, _CELL_NEEDED = 3, 20
 """Of each character of a text, and of each number in it [bytes]."""
 _NEEDED = 24
 """Of each number of an array: as it is read, laid in rows, and in its unit [bytes]."""
-_MAX_SLOW_CELLS = 3_000_000
-"""Cells in rows that must be read one by one, at about a microsecond each."""
-_MISSING_WORD = re.compile(
-    r"(?<!\S)(?:" + "|".join(sorted(MISSING_WORDS - {""}, reverse=True)) + r")(?!\S)",
-    re.I,
-)
-_THOUSANDS = re.compile(r"(?<![\d,])[1-9]\d{0,2}(?:,\d{3})+(?![\d,])")
-_GROUPED = re.compile(r"\d(?:\.\d{3})+,\d|\d(?:,\d{3})+\.\d")
 # ``"0,5","1,5"``: the quotes say that these commas part no columns.
 _QUOTED = re.compile(r'"\s*([+-]?\d*),(\d*(?:[eE][+-]?\d+)?)\s*"')
 
@@ -121,15 +108,6 @@ class Table:
         return np.fromiter(digits, np.float64, len(self.rows))
 
 
-@dataclass(frozen=True, slots=True)
-class _Start:
-    """Where the numbers begin and how they are told apart."""
-
-    line: int
-    delimiter: str | None
-    columns: int
-
-
 def read_table(path: Path | str, *, columns: int | None = None) -> FloatArray:
     """Read the numbers of a table.
 
@@ -177,11 +155,11 @@ def read_head(path: Path, count: int) -> bytes:
 
 def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
     """Find the numbers in the lines of a text and read them; see `read_table`."""
-    if any('"' in line for line in lines[: _MAX_HEADER_LINES + 1]):
+    if any('"' in line for line in lines[: MAX_HEADER_LINES + 1]):
         lines = [_QUOTED.sub(r"\1.\2", line) for line in lines]
-    start = _find_start(lines, path)
+    start = find_start(lines, path)
     below = range(start.line, len(lines))
-    numbers = np.fromiter((i for i in below if _is_row(lines[i])), np.int64)
+    numbers = np.fromiter((i for i in below if is_row(lines[i])), np.int64)
     if len(numbers) > _MAX_ROWS or len(numbers) * start.columns > MAX_CELLS:
         raise HostileFile(
             f"{named(path)} has {len(numbers)} rows of {start.columns} columns; "
@@ -192,11 +170,11 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
         path, _TEXT_NEEDED * text + _CELL_NEEDED * numbers.size * start.columns
     )
     rows = _with_points([lines[i] for i in numbers], numbers, start, path)
-    values = _parse(rows, numbers, start, path)
-    delimiter = _NAMES.get(start.delimiter, start.delimiter)
+    values = parse_rows(rows, numbers, start, path)
+    delimiter = DELIMITER_NAMES.get(start.delimiter, start.delimiter)
     return Table(
         path=path,
-        values=_without_empty_tail(values),
+        values=without_empty_tail(values),
         lines=numbers + 1,
         header=tuple(lines[: start.line]),
         layout=f"text, {encoding}, columns separated by {delimiter}",
@@ -206,7 +184,7 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
 
 
 def _with_points(
-    rows: list[str], numbers: IntArray, start: _Start, path: Path
+    rows: list[str], numbers: IntArray, start: TableStart, path: Path
 ) -> list[str]:
     """Return rows whose decimal commas, where they have such, are points.
 
@@ -226,7 +204,7 @@ def _with_points(
             f"has points, another row, {shown(comma.strip())}, has commas; write all "
             "numbers with one decimal sign and without signs between thousands"
         )
-    if all("," not in _THOUSANDS.sub("", row) for row in rows):
+    if all("," not in THOUSANDS.sub("", row) for row in rows):
         first = next(i for i, row in enumerate(rows) if "," in row)
         raise FormatError(
             f"{named(path)}: line {numbers[first] + 1}: {shown(rows[first].strip())}: "
@@ -241,151 +219,6 @@ def _last_digit(cell: str) -> float:
     point = mantissa.find(".")
     decimals = len(mantissa) - point - 1 if point >= 0 else 0
     return float(10.0 ** (int(exponent or 0) - decimals))
-
-
-def _find_start(lines: Sequence[str], path: Path) -> _Start:
-    """Find the first two lines of numbers in a row that agree in layout."""
-    seen: _Start | None = None
-    for i, line in enumerate(lines[: _MAX_HEADER_LINES + 1]):
-        if not _is_row(line):
-            continue
-        start = _numeric_layout(i, line)
-        if start and seen and _same_layout(start, seen):
-            _refuse_rows_above(lines, seen, path)
-            return seen
-        seen = start
-    if seen is not None:  # a table of one row
-        return seen
-    for i, line in enumerate(lines[: _MAX_HEADER_LINES + 1]):
-        if _GROUPED.search(line):
-            raise FormatError(
-                f"{named(path)}: line {i + 1}: {shown(line.strip())} has signs between "
-                "thousands; write numbers without them"
-            )
-    raise FormatError(
-        f"{named(path)} holds no table of numbers: no line of its first "
-        f"{_MAX_HEADER_LINES} is numbers only; its first reads "
-        f"{shown(lines[0].strip())}"
-    )
-
-
-def _refuse_rows_above(lines: Sequence[str], start: _Start, path: Path) -> None:
-    """Raise where a row of the table stands above what would pass for its header."""
-    for i in range(start.line):
-        above = _numeric_layout(i, lines[i]) if _is_row(lines[i]) else None
-        if above and _same_layout(above, start):
-            raise FormatError(
-                f"{named(path)}: line {i + 1} is a row of {start.columns} columns, but "
-                f"below it {shown(lines[i + 1].strip())} is none; mend or remove line "
-                f"{i + 2}"
-            )
-
-
-def _is_row(line: str) -> bool:
-    """Tell whether a line is neither empty nor a comment."""
-    if line[:1] in _FIRST_OF_NUMBER and line:
-        return True
-    return bool(line.strip(" \t\x1a\f")) and not line.lstrip().startswith(_COMMENT)
-
-
-def _numeric_layout(index: int, line: str) -> _Start | None:
-    """Return how a line of numbers is split, or None if it is no such line."""
-    for delimiter in _DELIMITERS:
-        if delimiter is not None and delimiter not in line:
-            continue
-        cells = split_row(line, delimiter)
-        numeric = sum(_is_number(cell, delimiter) for cell in cells)
-        missing = sum(cell.lower() in MISSING_WORDS for cell in cells)
-        if numeric and numeric + missing >= len(cells) and len(cells) <= _MAX_COLUMNS:
-            return _Start(index, delimiter, len(cells))
-    return None
-
-
-def _is_number(cell: str, delimiter: str | None) -> bool:
-    if NUMBER.fullmatch(cell):
-        return True
-    return delimiter != "," and DECIMAL_COMMA.fullmatch(cell) is not None
-
-
-def _same_layout(one: _Start, other: _Start) -> bool:
-    return one.delimiter == other.delimiter and one.columns == other.columns
-
-
-def _parse(rows: list[str], numbers: IntArray, start: _Start, path: Path) -> FloatArray:
-    """Read the rows, shape (n_columns, n_rows); empty cells become NaN."""
-    values = np.empty((start.columns, len(rows)))
-    slow = 0
-    for first in range(0, len(rows), _BLOCK):
-        block = rows[first : first + _BLOCK]
-        found = _parse_fast(block, start)
-        if found is not None:
-            values[:, first : first + len(block)] = found
-            continue
-        for few in range(first, first + len(block), _FEW):
-            some = slice(few, min(few + _FEW, first + len(block)))
-            found = _parse_fast(_with_nan(rows[some], start), start)
-            if found is None:
-                slow += (some.stop - some.start) * start.columns
-                _require_few(slow, path)
-                found = _parse_carefully(rows[some], numbers[some], start, path)
-            values[:, some] = found
-    return values
-
-
-def _require_few(cells: int, path: Path) -> None:
-    if cells > _MAX_SLOW_CELLS:
-        raise HostileFile(
-            f"{named(path)} holds more than {_MAX_SLOW_CELLS} cells in rows that are "
-            "no plain numbers; export it with numbers only"
-        )
-
-
-def _with_nan(rows: list[str], start: _Start) -> list[str]:
-    """Return rows with ``nan`` in each cell that is empty or says "no value"."""
-    if start.delimiter is None:
-        return [_MISSING_WORD.sub("nan", row) for row in rows]
-    parted = re.escape(start.delimiter)
-    words = "|".join(map(re.escape, sorted(MISSING_WORDS, key=len, reverse=True)))
-    cell = re.compile(
-        rf'(^|{parted})[ ]*+"?[ ]*+(?:{words})[ ]*+"?[ ]*+(?={parted}|$)', re.I
-    )
-    return [cell.sub(r"\1nan", row.rstrip()) for row in rows]
-
-
-def _parse_fast(rows: list[str], start: _Start) -> FloatArray | None:
-    """Let NumPy read what has a number in every cell; None where one has not."""
-    try:
-        table = np.loadtxt(
-            rows, delimiter=start.delimiter, comments=None, quotechar='"', ndmin=2
-        )
-    except ValueError:
-        return None
-    return table.T if table.shape == (len(rows), start.columns) else None
-
-
-def _parse_carefully(
-    rows: list[str], numbers: IntArray, start: _Start, path: Path
-) -> FloatArray:
-    """Read row by row: empty cells become NaN, anything else names its line."""
-    values = np.empty((len(rows), start.columns))
-    for j, row in enumerate(rows):
-        cells = split_row(row, start.delimiter)
-        if len(cells) != start.columns:
-            raise FormatError(
-                f"{named(path)}: line {numbers[j] + 1} has {len(cells)} columns, the "
-                f"table began with {start.columns}: {shown(row.strip())}; the file is "
-                "cut short or mixed, export it again"
-            )
-        values[j] = [parse_cell(cell, int(numbers[j]) + 1, path) for cell in cells]
-    return values.T
-
-
-def _without_empty_tail(values: FloatArray) -> FloatArray:
-    """Drop columns that only a separator at the end of every line made."""
-    keep = values.shape[0]
-    while keep > 1 and np.all(np.isnan(values[keep - 1])):
-        keep -= 1
-    return values[:keep]
 
 
 def _columns(array: NDArray[Any]) -> int:
@@ -410,10 +243,10 @@ def _load_array(path: Path, columns: int | None) -> Table:
         raise FormatError(
             f"{named(path)} holds values of type {array.dtype}, real numbers are needed"
         )
-    if array.ndim not in {1, 2} or not array.size or _columns(array) > _MAX_COLUMNS:
+    if array.ndim not in {1, 2} or not array.size or _columns(array) > MAX_COLUMNS:
         raise FormatError(
             f"{named(path)} has shape {array.shape}; a table has shape "
-            f"(n_columns, n_rows) or (n_rows, n_columns) with at most {_MAX_COLUMNS} "
+            f"(n_columns, n_rows) or (n_rows, n_columns) with at most {MAX_COLUMNS} "
             "columns"
         )
     if array.size > MAX_CELLS:
