@@ -112,7 +112,7 @@ def test_two_hidden_effects_are_both_named(tmp_path: Path) -> None:
 def test_two_great_effects_are_both_named(tmp_path: Path) -> None:
     """A cubic spring and a delay of hundreds of times the noise each."""
     names = ("cubic_stiffness", "delay")
-    campaign = quick_campaign(922, effects=names, size=1.0, grid="small", noise=0.05)
+    campaign = quick_campaign(923, effects=names, size=1.0, grid="small", noise=0.05)
     found = told(campaign, tmp_path)
     assert {e.name for e in found.effects} == set(names)
     assert found.verdict is Finding.NAMED
