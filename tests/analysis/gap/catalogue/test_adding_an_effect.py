@@ -18,7 +18,7 @@ from jointbench.analysis.gap.response.curve_integration import (
 )
 from jointbench.analysis.gap.response.curve_law import curve_law
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
-from jointbench.simulators.campaigns.campaign_records import make_campaign
+from jointbench.simulators.campaigns.campaign_records import quick_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.schemas.effects_file import read_effects, with_own
@@ -46,8 +46,8 @@ def test_an_effect_from_the_page_is_named_where_it_is_hidden(tmp_path: Path) -> 
 
     The slowest of the built-in effects are left out; its nearest rivals stay.
     """
-    campaign = make_campaign(
-        8, effects=("quintic_stiffness",), margin=3000.0, grid="small", noise=0.05
+    campaign = quick_campaign(
+        8, effects=("quintic_stiffness",), size=0.003, grid="small", noise=0.05
     )
     path = tmp_path / "campaign.h5"
     write_campaign(campaign, path)

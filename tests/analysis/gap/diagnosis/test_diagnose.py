@@ -18,7 +18,11 @@ from jointbench.analysis.gap.diagnosis.diagnose import conclude, diagnose
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits, flat_tops
 from jointbench.analysis.gap.model.campaign import Campaign
-from jointbench.analysis.gap.model.diagnosis_record import Finding, diagnosis_json
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Finding,
+    diagnosis_json,
+)
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -27,24 +31,35 @@ from jointbench.analysis.gap.search.descent import minimise
 LATE = ("delay", "channel:a1", [4e-5])
 
 
-def test_a_campaign_with_nothing_missing_is_told_so() -> None:
+@pytest.fixture(scope="module")
+def complete() -> Diagnosis:
+    """Return what is told of a campaign with nothing missing."""
+    return diagnose(made.made_campaign([]))
+
+
+@pytest.fixture(scope="module")
+def late() -> Diagnosis:
+    """Return what is told of a campaign with a hidden delay."""
+    return diagnose(made.made_campaign([LATE]), entries=LINEAR)
+
+
+def test_a_campaign_with_nothing_missing_is_told_so(complete: Diagnosis) -> None:
     """Verdict none, no effect, no gap beyond noise."""
-    found = diagnose(made.made_campaign([]))
-    assert found.verdict is Finding.NONE
-    assert found.effects == ()
-    assert found.gap_before.chi2_per_dof == pytest.approx(1.0, abs=0.06)
+    assert complete.verdict is Finding.NONE
+    assert complete.effects == ()
+    assert complete.gap_before.chi2_per_dof == pytest.approx(1.0, abs=0.06)
 
 
-def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap() -> None:
+def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap(
+    late: Diagnosis,
+) -> None:
     """40 microseconds on the top channel come back within 4 sd; the gap closes."""
-    campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
-    found = diagnose(campaign, entries=LINEAR)
-    assert found.verdict is Finding.NAMED
-    (effect,) = found.effects
+    assert late.verdict is Finding.NAMED
+    (effect,) = late.effects
     assert (effect.name, effect.site) == ("delay", "channel:a1")
     (tau,) = effect.parameters
     assert abs(tau.value - 4e-5) < 4 * tau.sd
-    assert found.shrink > 0.9
+    assert late.shrink > 0.9
 
 
 def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
@@ -59,26 +74,23 @@ def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
     assert "not foretold by the others" in found.reason
 
 
-def test_what_all_conditions_show_is_foretold() -> None:
+def test_what_all_conditions_show_is_foretold(late: Diagnosis) -> None:
     """The reason is silent of what it would say of a lone condition."""
-    found = diagnose(
-        made.made_campaign([("delay", "channel:a1", [4e-5])]), entries=LINEAR
-    )
-    assert found.gap_after.value < 0.1 * found.gap_before.value
-    assert "foretold" not in found.reason
+    assert late.gap_after.value < 0.1 * late.gap_before.value
+    assert "foretold" not in late.reason
 
 
 def test_a_delay_outside_the_catalogue_is_not_called_by_another_name() -> None:
     """With delay taken out, nothing else explains it."""
-    campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
+    campaign = made.made_campaign([LATE])
     found = diagnose(campaign, without=frozenset({"delay"}), entries=LINEAR)
     assert found.verdict is Finding.UNKNOWN
     assert found.reason
 
 
-def test_the_json_holds_the_keys_of_the_contract() -> None:
+def test_the_json_holds_the_keys_of_the_contract(complete: Diagnosis) -> None:
     """Plain JSON, with the keys that scripts rely on."""
-    text = json.dumps(diagnosis_json(diagnose(made.made_campaign([]))))
+    text = json.dumps(diagnosis_json(complete))
     keys = set(json.loads(text))
     assert keys >= {
         "verdict",
