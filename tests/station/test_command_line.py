@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from jointbench.station.main import app, exit_code
+
 HITS = "time:s,force:N,acceleration:m/s^2"
 
 
@@ -92,12 +94,24 @@ def whole_session(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 @pytest.mark.parametrize("command", ["modal", "report", "inspect", "surface"])
 @pytest.mark.parametrize("kept", [0, 100, 5000])
 def test_an_empty_or_truncated_session_is_refused(
-    command: str, kept: int, tmp_path: Path, whole_session: bytes
+    command: str,
+    kept: int,
+    tmp_path: Path,
+    whole_session: bytes,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
-    """Whatever is asked of it, a cut session file is one line and code three."""
+    """Whatever is asked of it, a cut session file is one line and code three.
+
+    Standard error is taken as the process writes it, libraries in C included.
+    """
     cut = tmp_path / "cut.h5"
     cut.write_bytes(whole_session[:kept])
-    assert "cut.h5" in refused(command, cut)
+    monkeypatch.setattr(sys, "argv", ["jointbench", command, str(cut)])
+    assert exit_code(app, debug=False) == 3
+    (line,) = capfd.readouterr().err.strip().splitlines()
+    assert line.startswith("jointbench: error: ")
+    assert "cut.h5" in line
 
 
 def test_an_unknown_option_is_a_usage_error() -> None:
