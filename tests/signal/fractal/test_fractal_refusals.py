@@ -154,14 +154,17 @@ def test_a_real_map_gets_a_verdict(name: str):
 
 
 def test_the_real_keyence_map_has_no_scaling_range():
-    """Its slope rises from noise to nearly a form and falls to a plateau."""
+    """Its slope rises from noise to nearly a form and falls to a plateau.
+
+    A quarter of the rows shows all of it.
+    """
     paths = sorted((DATA / "keyence").glob("*.vk6"))
     if not paths:
         pytest.skip(f"{DATA / 'keyence'} is not beside the checkout")
     reader = pytest.importorskip("SurfaceTopography")
     topography = reader.open_topography(str(paths[0])).topography(0)
     assert topography.unit == "pm"
-    heights = np.ascontiguousarray(topography.heights().T) * 1e-12
+    heights = np.ascontiguousarray(topography.heights().T)[:192] * 1e-12
     spacing = topography.physical_sizes[0] * 1e-12 / topography.nb_grid_pts[0]
     surface = Areal("vk6", heights, (spacing, spacing), all_valid(heights))
     found = fit_fractal(structure_function(surface))
