@@ -86,7 +86,7 @@ BANNED = (
         "hand, hands (of a person); hand over",
         r"\bhand(s|ed|ing)?\b",
         "operator; pass",
-        fine=r"by hand|hands-free|(right|left|other|one|second)[- ]hand|hand-(held|kept)",
+        fine=r"by hand|hands-free|(right|left|other|one)[- ]hand|hand-(held|kept)",
     ),
     Banned(
         "race, heat, finalist, runner",
