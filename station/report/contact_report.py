@@ -229,8 +229,8 @@ def _reasons(points: Sequence[ContactPoint]) -> list[str]:
         if found is not None and (name := found.stiffness.dominant) is not None:
             share = found.stiffness.shares[name]
             lines.append(
-                f"{point.state.model}: {name} dominates the uncertainty, {share:.0%} of "
-                "the variance of the stiffness"
+                f"{point.state.model}: {name} dominates the uncertainty with "
+                f"{share:.0%} of the variance of the stiffness"
             )
     return list(dict.fromkeys(lines))
 
