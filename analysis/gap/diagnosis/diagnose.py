@@ -43,9 +43,7 @@ UNFORETOLD_WORDS = (
     "; held out, a condition is not predicted by the others: it shows the effect "
     "alone, so add conditions next to it"
 )
-LOOK_CLOSER = (
-    "check the views of the gap; widen the range of levels, points and preloads"
-)
+LOOK_CLOSER = "check the views of the gap; widen levels, points and preloads"
 
 
 @one_thread()
