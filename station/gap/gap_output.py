@@ -31,7 +31,7 @@ _LABEL = 9
 """Width of the labels at the beginning of lines."""
 _LONGEST_NAME = 34
 _VIEW_HEADS = ("view", "largest shares")
-_TRIED_HEADS = ("explanation", "Δ score", "chi2/dof", "prior dev. [sd]", "reason")
+_TRIED_HEADS = ("explanation", "delta score", "chi2/dof", "prior dev. [sd]", "reason")
 
 
 def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:

@@ -250,10 +250,16 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
         )
         for one in found.candidates[:MOST_CANDIDATES]
     )
-    columns = ("explanation", "Δ score", "chi2/dof", "prior deviation [sd]", "reason")
+    columns = (
+        "explanation",
+        "delta score",
+        "chi2/dof",
+        "prior deviation [sd]",
+        "reason",
+    )
     caption = (
         "Best first. The score is chi2 plus the penalty of the priors plus 10 for "
-        "each parameter; a rival is excluded at a Δ score of 15 (60 where one site "
+        "each parameter; a rival is excluded at a delta score of 15 (60 where one site "
         "has two effects)."
     )
     items: list[Item] = [DataTable(caption, columns, rows)]

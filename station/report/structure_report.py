@@ -137,10 +137,10 @@ def _profiles(result: StructureIdentification) -> list[Item]:
         rise = profile.chi2 - profile.chi2.min()
         limit = np.full(profile.value.size, 3.84)
         curves = [
-            line(profile.value, rise, "Δ chi2"),
+            line(profile.value, rise, "delta chi2"),
             line(profile.value, limit, "95 %", color=PALETTE[1], dash="dash"),
         ]
-        plot = figure(curves, axis(name, log=True), axis("Δ chi2 [-]"))
+        plot = figure(curves, axis(name, log=True), axis("delta chi2 [-]"))
         found.append(Plot(f"profile-{number}", f"Profile of {name}", plot, 280))
     return found
 

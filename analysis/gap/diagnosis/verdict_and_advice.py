@@ -125,7 +125,7 @@ def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
         return "no further experiment required: no other explanation comes close"
     delta_score = min(others) - score(bench, outcome.best)
     return (
-        f"no further experiment required: the nearest rival has a Δ score of "
+        f"no further experiment required: the nearest rival has a delta score of "
         f"{delta_score:.0f} (limit {rival_within(outcome.best):.0f})"
     )
 
