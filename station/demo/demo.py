@@ -19,8 +19,8 @@ from jointbench.station.demo.demo_gap import (
     DemoGap,
     gap_json,
     gap_sections,
-    show_gap,
     session_for_gap,
+    show_gap,
 )
 from jointbench.station.demo.demo_truth import compare_with_truth
 from jointbench.station.files.output_paths import (
