@@ -81,8 +81,8 @@ def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> No
         screen.print(f"  and {len(changes) - MOST_CHANGES} more, see --json")
     for remark in result.remarks:
         screen.print(remark, soft_wrap=True)
-    if outcome.rotten:
-        screen.print(f"\nmade anew: {outcome.rotten}", soft_wrap=True)
+    if outcome.corrupted:
+        screen.print(f"\nmade again: {outcome.corrupted}", soft_wrap=True)
     screen.print(f"\nstages: {stage_words(outcome)}", soft_wrap=True)
     screen.print(f"result: {visible(str(result.path))}", soft_wrap=True)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """``jointbench verify`` over many files: sessions, results, tables and ledgers.
 
-A results file is 'whole' if its content is what its own digest says, 'unsigned' if it
-was written before there were digests, 'rotten' if it is not. Digests find accidents.
-Whoever changes a number on purpose can write the digest anew, too.
+A results file is 'whole' if its content matches its digest, 'corrupted' (`rotten` in
+JSON) if it does not, and 'unsigned' if it was written before there were digests.
+Digests detect accidents; whoever changes a number on purpose can renew the digest too.
 """
 
 from collections import Counter
@@ -28,9 +28,11 @@ from jointbench.station.results.results_read import is_results, read_result
 from jointbench.station.screen.terminal import console, table, working, write_json
 
 LEDGER, TABLE = ".ledger.jsonl", ".nc"
+_WORDS: dict[str, str] = {Seal.CORRUPTED: "corrupted"}
+"""States whose key in JSON is another word."""
 DAMAGED = "damaged"
 MOST_SHOWN = 20
-ROTTEN = (
+CORRUPTED = (
     "its content is not what its digest says; make it anew by `jointbench process`, "
     "`reprocess` or `modal`, or use another copy"
 )
@@ -43,7 +45,7 @@ class Checked:
     Attributes:
         path: of the file.
         kind: session, results, table or ledger.
-        state: whole, unsigned, rotten or damaged.
+        state: whole, unsigned, corrupted or damaged.
         problems: what is wrong, a line each; empty where nothing is.
     """
 
@@ -132,8 +134,8 @@ def _session(path: Path) -> Checked:
 
 def _results(path: Path) -> Checked:
     seal = _seal(path)
-    if seal is Seal.ROTTEN:
-        return Checked(path, "results", seal, (ROTTEN,))
+    if seal is Seal.CORRUPTED:
+        return Checked(path, "results", seal, (CORRUPTED,))
     read_result(path)
     result_tables(path)
     return Checked(path, "results", seal)
@@ -144,8 +146,8 @@ def _table(path: Path) -> Checked:
         if read_attribute(file, "schema") != TABLE_SCHEMA:
             raise UsageError(f"{shown(path.name)} is no table of an archive of ours")
     seal = _seal(path)
-    problems = (ROTTEN.replace("process`, `reprocess` or `modal", "archive"),)
-    return Checked(path, "table", seal, problems if seal is Seal.ROTTEN else ())
+    problems = (CORRUPTED.replace("process`, `reprocess` or `modal", "archive"),)
+    return Checked(path, "table", seal, problems if seal is Seal.CORRUPTED else ())
 
 
 def _seal(path: Path) -> Seal:
@@ -165,13 +167,15 @@ def _show(found: Sequence[Checked], json_target: str | None) -> None:
     kinds = list(dict.fromkeys(one.kind for one in found))
     counts = Counter((one.kind, str(one.state)) for one in found)
     rows = [(kind, *(str(counts[kind, state]) for state in states)) for kind in kinds]
-    screen.print(table("Verified", ("files", *states), rows))
+    heads = [_WORDS.get(state, state) for state in states]
+    screen.print(table("Verified", ("files", *heads), rows))
     faults = [one for one in found if one.problems]
     for one in faults[:MOST_SHOWN]:
         for word in one.problems:
             name = visible(str(one.path))
             line = word if name in word else f"{name}: {word}"
-            screen.print(f"{one.state}: {line}", soft_wrap=True)
+            state = _WORDS.get(one.state, one.state)
+            screen.print(f"{state}: {line}", soft_wrap=True)
     if len(faults) > MOST_SHOWN:
         screen.print(f"and {len(faults) - MOST_SHOWN} more, see --json")
     if any(one.state == Seal.UNSIGNED for one in found):

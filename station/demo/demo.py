@@ -88,7 +88,7 @@ poisson = 0.25
 def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     """Measure, identify and report a joint on the simulated bench.
 
-    A second visit, to a bench with a hidden effect, asks what the model misses.
+    A second session, on a bench with a hidden effect, shows what the model lacks.
 
     Args:
         out: folder for session, results, model, report and summary.
@@ -103,7 +103,7 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     check_outputs([], [json_target])
     out.mkdir(parents=True, exist_ok=True)
     screen = console(json_target)
-    with working("measuring two faces and a dozen hits on the simulated bench"):
+    with working("measuring two surfaces and twelve hits on the simulated bench"):
         visit = visit_bench(out, seed=seed)
     session_file = out / "session.h5"
     write_session(visit.session, session_file, overwrite=True)
@@ -111,7 +111,7 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     # From here on everything comes from the files, as it would for any user's own.
     bench = read_toml(model_file, BenchModel)
     analysis = analyse_session(read_session(session_file), bench)
-    with working("a second visit: looking for what the model misses"):
+    with working("second session: diagnosing the gap between model and measurement"):
         gap = session_for_gap(out, seed=seed)
     comparisons = (*compare_with_truth(visit.truth, analysis), *gap.comparisons)
     _show(analysis, bench, json_target)

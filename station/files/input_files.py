@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whatever files a command is given: sessions, hit tables and surfaces, told apart."""
+"""Input files of a command: sessions, hit tables and surfaces, by content."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -49,7 +49,7 @@ def is_session_name(path: Path) -> bool:
 def read_samples(
     path: Path, *, columns: str | None, point: str, full_scale: float | None = None
 ) -> tuple[Recording, ...]:
-    """Read a file of a format that holds samples by its nature, told by its ending.
+    """Read a file of a format for samples, recognised by its suffix.
 
     Args:
         path: of the file.
@@ -94,7 +94,7 @@ def read_foreign(
         holds several.
 
     Raises:
-        BadData: the file is neither, or its units are missing; the message says what
+        BadData: the file is neither, or its units are missing; the message names what
             to type.
     """
     samples = read_samples(path, columns=columns, point=point, full_scale=full_scale)

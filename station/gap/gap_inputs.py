@@ -86,7 +86,7 @@ def examine(
         sources: a campaign file; sessions; a MAT file; a model file that names one of
             these; or the URL of a bench.
         wanted: model and options.
-        progress: told what is being done, one line at a time.
+        progress: receives one line per step.
 
     Raises:
         UsageError: a model is missing, or is given where the source brings its own.
@@ -95,7 +95,7 @@ def examine(
     if len(sources) == 1 and is_url(sources[0]):
         return _examine_url(sources[0], wanted, progress)
     if any(is_url(source) for source in sources):
-        raise UsageError("a URL is a visit of its own; give it alone")
+        raise UsageError("a URL is a measurement of its own; give no files with it")
     paths = [Path(source) for source in sources]
     if paths[0].suffix.lower() == ".toml":
         return _examine_named(paths, wanted, progress)
@@ -118,10 +118,10 @@ def _schema(path: Path) -> str:
 
 
 def _examine_url(url: str, wanted: GapRequest, progress: Progress) -> Examined:
-    """Record a visit into a session file, and examine that as any other session."""
+    """Record a session file from a source, and examine it like any other session."""
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "session.h5"
-        progress("recording the visit")
+        progress("recording the session")
         written = write_visit(url, session)
         model = wanted.model or written.model
         done = _examine_sessions([session], replace(wanted, model=model), progress)

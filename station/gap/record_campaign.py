@@ -26,13 +26,13 @@ LINEAR_REPEATABILITY = 3e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordToExamine:
-    """A record with its sheet and its parts.
+    """A record with its model and its parts.
 
     Attributes:
         record: input and output, in SI or in the units that stand in for it.
         training: what the fits see.
         scored: what they do not.
-        sheet: the model with its priors.
+        nominal: the model with its priors.
         unit: of the output, as the model file writes it.
         factor: from that unit to the unit of `record`.
         remarks: what was assumed.
@@ -80,7 +80,7 @@ def read_record(path: Path, bench: BenchModel) -> RecordToExamine:
     table = bench.record
     if table is None:
         raise BadData(
-            f"the model does not say what is in {path.name}; add a [record] table with "
+            f"the model does not describe {path.name}; add a [record] table with "
             "input, output, their units, sample_rate and training"
         )
     sheet = gap_sheet(bench)

@@ -101,7 +101,7 @@ def run_measure(
     check_outputs([plan_file, out], [json_target])
     screen = lasting_console(json_target)
     with session_place(out, overwrite=overwrite) as place:
-        with _told_where(place, screen), open_chassis(url) as opened:
+        with _naming_file(place, screen), open_chassis(url) as opened:
             with watching(screen) as watcher:
                 measured = measure(plan, opened, place.own, watcher)
         measured = replace(measured, path=place.settle(whole=measured.whole))
@@ -113,8 +113,8 @@ def run_measure(
 
 
 @contextmanager
-def _told_where(place: Place, screen: Console) -> Iterator[None]:
-    """Where something goes wrong, say which file holds what was recorded."""
+def _naming_file(place: Place, screen: Console) -> Iterator[None]:
+    """On an error, name the file that holds what was recorded."""
     try:
         yield
     except BaseException:

@@ -33,7 +33,7 @@ class Surroundings(Protocol):
 
     @property
     def watcher(self) -> Watcher:
-        """Who is told."""
+        """Receives the messages."""
         ...
 
     @property
@@ -94,7 +94,7 @@ class BoltWatch:
 
         Args:
             target: of every bolt [N m].
-            bench: its watcher is told what to do, and may say: accept takes the
+            bench: its watcher shows the request, and may answer: accept takes the
                 reading as it is, undo goes back to the bolt before, quit ends the
                 session; its file takes every reading that counts.
             record: says when the session was interrupted.
@@ -103,7 +103,7 @@ class BoltWatch:
             Torque of each bolt [N m], None where the operator quits.
 
         Raises:
-            InstrumentError: nobody tightens a bolt, or the tester does not answer, for
+            InstrumentError: no bolt is tightened, or the tester does not answer, for
                 longer than `wait`.
         """
         tester = Tester(self)
@@ -186,10 +186,10 @@ class Tester:
     _line: SerialLine | None = None
 
     def read(self, watcher: Watcher, most: float) -> Reading | None:
-        """Return what it shows, None where it cannot be read, which is said once.
+        """Return the reading, None where it cannot be read, which is reported once.
 
         Args:
-            watcher: is told.
+            watcher: receives the messages.
             most: beyond which no reading is believed [N m].
         """
         try:

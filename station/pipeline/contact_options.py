@@ -25,18 +25,18 @@ _RealArea = Annotated[
 _BoltDiameter = Annotated[str | None, typer.Option(help="Nominal, '16 mm'.")]
 _Bolts = Annotated[int, typer.Option(help="Bolts that carry the joint.")]
 _NutFactor = Annotated[float, typer.Option(help="K in F = T/(K d) [-].")]
-_NutFactorSd = Annotated[float, typer.Option(help="How sure K is [-].")]
+_NutFactorSd = Annotated[float, typer.Option(help="Standard deviation of K [-].")]
 _Dimension = Annotated[
     float | None, typer.Option(help="Profile fractal dimension, 1 < D < 2.")
 ]
-_DimensionSd = Annotated[float, typer.Option(help="How sure D is [-].")]
+_DimensionSd = Annotated[float, typer.Option(help="Standard deviation of D [-].")]
 _Roughness = Annotated[
     str | None, typer.Option(help="Fractal roughness G with unit, '1e-9 m'.")
 ]
-_RoughnessSd = Annotated[str, typer.Option(help="How sure G is, '30 %'.")]
+_RoughnessSd = Annotated[str, typer.Option(help="Standard deviation of G, '30 %'.")]
 _Surfaces = Annotated[
     list[Path] | None,
-    typer.Option(help="Surface file of one face; give it twice for a joint."),
+    typer.Option(help="Surface file; repeat it for the second surface of a joint."),
 ]
 _Columns = Annotated[
     str | None, typer.Option(help="Columns of a plain table, 'x:um,z:um'.")
@@ -45,9 +45,9 @@ _Poisson = Annotated[float, typer.Option(help="Poisson's ratio [-].")]
 _YieldStrength = Annotated[
     str | None, typer.Option(help="Of the softer body; hardness/2.8 if not given.")
 ]
-_HardnessSd = Annotated[str, typer.Option(help="How sure it is, '10 %'.")]
+_HardnessSd = Annotated[str, typer.Option(help="Its standard deviation, '10 %'.")]
 _FrictionFactor = Annotated[float, typer.Option(help="k_mu of friction_3d [-].")]
-_FrictionFactorSd = Annotated[float, typer.Option(help="How sure [-].")]
+_FrictionFactorSd = Annotated[float, typer.Option(help="Its standard deviation [-].")]
 _Friction = Annotated[float, typer.Option(help="Coefficient of friction [-].")]
 _TangentialLoad = Annotated[
     str, typer.Option(help="On the joint, '1 kN'; contacts slip in part.")
@@ -78,7 +78,7 @@ _Sweep = Annotated[
     typer.Option(help="'load:1 kN:50 kN:20'; or dimension, or roughness."),
 ]
 _Plot = Annotated[
-    Path | None, typer.Option(help="HTML page to write, with the sweep's plots.")
+    Path | None, typer.Option(help="HTML report to write, with plots of the sweep.")
 ]
 _Json = Annotated[
     str | None,

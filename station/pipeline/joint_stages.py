@@ -97,7 +97,7 @@ def _surface(surface: Surface, run: StageRun, gamma: float) -> SurfaceChain:
 def contact_stage(
     surfaces: Sequence[SurfaceChain], table: ContactTable, run: StageRun
 ) -> ContactPrediction:
-    """Predict the joint between faces, see `predict_joint`."""
+    """Predict the joint between surfaces, see `predict_joint`."""
     structures = tuple(one.structure for one in surfaces)
     given = table.model_dump(mode="json", exclude={"link"})
     return run.stages.run(
@@ -163,10 +163,10 @@ def gap_of(
     Args:
         name: of the campaign.
         judged: recordings with hits and preloads, in the order recorded.
-        sheet: the model that should explain them.
+        nominal: the model that should explain them.
         without: names of effects to leave out.
         entries: the catalogue.
-        progress: told what is being done, one line at a time; None for no report.
+        progress: receives one line per step; None for no report.
 
     Returns:
         Verdict and evidence, and why accepted hits were left out, a line each.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From a bench model file to the sheet of the gap engine: values with priors."""
+"""From a bench model file to nominal parameters with priors of the gap engine."""
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.model.nominal import Sheet

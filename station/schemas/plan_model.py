@@ -215,7 +215,7 @@ class MeasureTable(StrictTable):
     def _bolts_known(self) -> "MeasureTable":
         if self.torque is not None and (self.joint is None or not self.hits.torques):
             raise ValueError(
-                "[torque] reads bolts that nobody names; give torques in [hits], and "
+                "[torque] reads bolts that no entry names; give torques in [hits], and "
                 "bolts and diameter in [joint]"
             )
         return self

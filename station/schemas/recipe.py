@@ -57,7 +57,7 @@ class SurfacePart(StrictTable):
 
 
 class ContactPart(StrictTable):
-    """What the contact law needs to predict the joint from the session's faces."""
+    """Input of the contact law for the prediction of the joint from its surfaces."""
 
     modulus: Pressure
     hardness: Pressure
@@ -132,7 +132,7 @@ def read_recipe(path: Path) -> Recipe:
 
 
 def _check_names(recipe: Recipe, path: Path) -> None:
-    """Refuse names of contact models and effects that nobody has, before any work."""
+    """Refuse unknown names of contact models and effects, before any work."""
     key = ""
     try:
         if recipe.contact is not None:

@@ -19,13 +19,13 @@ SCHEMES = ("sim",)
 
 @dataclass(frozen=True, slots=True)
 class Visit:
-    """A visit to a bench: one run after another, each under a setting of its own.
+    """Consecutive runs on a bench, each with its own setting.
 
     Attributes:
         source: the URL that opens it again.
-        simulated: True where no hardware is behind it.
+        simulated: True for a simulation, False for hardware.
         runs: in the order in which they are recorded.
-        sheet: bench model with priors as TOML, where the source brings one.
+        model: bench model with priors as TOML, where the source provides one.
         truth: what a simulated bench hides, for whoever compares; never an input.
     """
 
@@ -38,11 +38,11 @@ class Visit:
 
 @dataclass(frozen=True, slots=True)
 class WholeStream:
-    """A plain source as the only run of a visit.
+    """A plain source as a single run.
 
     Attributes:
         source: what it streams.
-        preload: on the joint meanwhile [N], None where nobody says.
+        preload: on the joint [N], None where it is not given.
         start_time: of its first sample [s].
     """
 
@@ -76,7 +76,7 @@ class WholeStream:
 
 
 def is_url(text: str) -> bool:
-    """Tell a source's URL from the path of a file."""
+    """Return whether a name is the URL of a source, not the path of a file."""
     return text.partition(":")[0] in SCHEMES and ":" in text
 
 
@@ -101,7 +101,7 @@ def open_source(url: str) -> Source:
 
 
 def open_visit(url: str) -> Visit:
-    """Open what `url` names as a visit: runs, and the sheet if there is one.
+    """Open the source of `url` as runs, with the bench model if it has one.
 
     Args:
         url: as for `open_source`, or ``sim:two-body-campaign?seed=1&hide=jenkins``

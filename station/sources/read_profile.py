@@ -36,7 +36,7 @@ class ProfileRequest:
 
     Attributes:
         instrument: ``"diavite"`` or ``"mitutoyo"``.
-        line: name of its serial line, or of a twin.
+        line: name of its serial line, or of a simulated instrument.
         name: of the profile.
         traverse: length that a DH-8 traced, with its unit, as text.
         baud: bits per second, None for what is usual.
@@ -130,7 +130,7 @@ def _checked(profile: Profile, line: str) -> Profile:
 def _traverse(wanted: ProfileRequest) -> float:
     if wanted.traverse is None:
         raise UsageError(
-            "a DH-8 does not say how long its traverse was; add --traverse '4.8 mm'"
+            "a DH-8 does not report its traverse length; add --traverse '4.8 mm'"
         )
     length = parse_value(wanted.traverse, "length")
     if not length > 0:
@@ -147,7 +147,7 @@ def _check_places(
     json_target: str | None,
 ) -> None:
     if out is None and session is None:
-        raise UsageError("nowhere to put the profile; add --out face.csv or --session")
+        raise UsageError("no output for the profile; add --out trace.csv or --session")
     if wanted.instrument == "diavite":
         _traverse(wanted)
     if out is not None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A visit recorded as `measure` records: every block is on the disk before the next.
+"""Recording of runs as `measure` records: each block is on disk before the next.
 
-Hits are judged when the file is finished, or recovered: its head says so.
+Hits are judged when the file is finished or recovered; its header records this.
 """
 
 import uuid
@@ -37,17 +37,17 @@ class Progress:
     """How far a recording has come.
 
     Attributes:
-        interrupted: whether it was told to stop.
+        interrupted: whether a stop was requested.
     """
 
     interrupted: bool = False
 
 
 def record_live(visit: Visit, path: Path) -> bool:
-    """Record all runs of a visit into a file, and finish it, come what may.
+    """Record all runs into a file, and finish it in any case.
 
     Args:
-        visit: an opened visit.
+        runs: an opened source.
         path: of a file that is not there yet.
 
     Returns:
@@ -89,7 +89,7 @@ def with_hits(session: Session, criteria: HitCriteria | None = None) -> Session:
         criteria: how hits are found and judged; None for the defaults.
 
     Returns:
-        The session; a recording in which nobody hit has none.
+        The session; a recording without hits is left out.
     """
     judged = [_judged(recording, criteria) for recording in session.recordings]
     limits = (criteria or HitCriteria()).limits

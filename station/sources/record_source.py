@@ -54,14 +54,14 @@ def record(
 
 
 def record_visit(visit: Visit, *, criteria: HitCriteria | None = None) -> Session:
-    """Record all runs of a visit into a session, each with its preload.
+    """Record all runs into a session, each with its preload.
 
     Args:
-        visit: an opened visit.
+        runs: an opened source.
         criteria: how hits are found and judged; None for the defaults.
 
     Returns:
-        One recording a run, its hits judged; a run in which nobody hit has none. It
+        One recording per run, its hits judged; a run without hits has none. It
         is in memory alone: a bench is recorded by `record_live`.
 
     Raises:

@@ -19,7 +19,7 @@ MODEL, TRUTH = ".toml", ".truth.json"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WrittenVisit:
-    """What a visit left behind.
+    """Files written by a recording.
 
     Attributes:
         session: as written.
@@ -43,9 +43,9 @@ def write_visit(url: str, path: Path, *, overwrite: bool = False) -> WrittenVisi
 
     Args:
         url: of the bench.
-        path: of the session file; a sheet goes beside it as ``.toml``, the truth of a
-            simulated bench as ``.truth.json``.
-        overwrite: replace an earlier session and its sheets, once all is recorded.
+        path: of the session file; the model is written next to it as ``.toml``, the
+            truth of a simulated bench as ``.truth.json``.
+        overwrite: replace an earlier session and its model, once all is recorded.
 
     Raises:
         UsageError: the URL makes no sense, a file is there and `overwrite` is off, or
@@ -81,7 +81,7 @@ def _sheets(visit: Visit, path: Path) -> dict[Path, str]:
 
 
 def _require_free(path: Path, *, overwrite: bool) -> None:
-    """Refuse a sheet that is there, unless it is an earlier one and may be replaced."""
+    """Refuse an existing model, unless it is an earlier one and may be replaced."""
     if not path.exists():
         return
     if not overwrite:
@@ -90,6 +90,6 @@ def _require_free(path: Path, *, overwrite: bool) -> None:
         check_outputs([], [path])
     elif not path.is_file() or not path.read_bytes().startswith(HEAD.encode()):
         raise UsageError(
-            f"'{path}' is there already and no sheet of a bench; choose another name "
+            f"'{path}' exists already and is no bench model; choose another name "
             "for the session, or move it away"
         )
