@@ -11,16 +11,17 @@ def line_name(name: str) -> Iterator[str]:
 
     Args:
         name: ``COM3``, ``/dev/ttyUSB0``, ``socket://host:port``, or ``sim:diavite``,
-            ``sim:mitutoyo``, ``sim:mark10?torques=20,50&bolts=4`` for a simulator that
-            stays plugged in while this context lasts.
+            ``sim:mitutoyo``, ``sim:mark10?torques=20,50&bolts=4`` or ``sim:NAME`` of
+            an instrument that a package adds: a simulator, which stays plugged in
+            while this context lasts.
 
     Raises:
-        UsageError: the URL of a simulated instrument is invalid.
+        UsageError: the URL of a twin makes no sense.
     """
     if not name.startswith("sim:"):
         yield name
         return
     from jointbench.simulators.twins.twin_url import twin_from_url
 
-    with twin_from_url(name) as simulator:
-        yield simulator.name
+    with twin_from_url(name) as twin:
+        yield twin.name
