@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench record``: a visit to a bench into a session file, with its sheet."""
+"""``jointbench record``: runs on a bench into a session file, with its model."""
 
 from pathlib import Path
 
@@ -12,12 +12,15 @@ from jointbench.station.screen.terminal import (
     working,
     write_json,
 )
-from jointbench.station.sources.visit_file import WrittenVisit, write_visit
+from jointbench.station.sources.recorded_session import (
+    RecordedSession,
+    record_session_file,
+)
 
 
 def run_record(
     url: str, out: Path, *, overwrite: bool, json_target: str | None
-) -> WrittenVisit:
+) -> RecordedSession:
     """Record a bench and say what was recorded.
 
     Args:
@@ -29,12 +32,12 @@ def run_record(
     check_session_name(out)
     check_outputs([out], [json_target])
     with working(f"recording {url}"):
-        written = write_visit(url, out, overwrite=overwrite)
+        written = record_session_file(url, out, overwrite=overwrite)
     _show(written, json_target)
     return written
 
 
-def _show(written: WrittenVisit, json_target: str | None) -> None:
+def _show(written: RecordedSession, json_target: str | None) -> None:
     session = written.session
     hits = [hit for recording in session.recordings for hit in recording.hits]
     good = sum(hit.verdict is Verdict.OK for hit in hits)
@@ -46,7 +49,7 @@ def _show(written: WrittenVisit, json_target: str | None) -> None:
         ("preloads", ", ".join(f"{p:g} N" for p in preloads) or "-"),
     ]
     screen = lasting_console(json_target)
-    screen.print(table(f"{written.path}", ("visit", "holds"), rows))
+    screen.print(table(f"{written.path}", ("file", "content"), rows))
     for words, path in (("model", written.model), ("truth", written.truth)):
         if path is not None:
             screen.print(f"{words}: {path}")

@@ -13,7 +13,7 @@ from jointbench.analysis.lumped.identified import identification_json
 from jointbench.simulators.rough_surfaces.surface_files import DATE
 from jointbench.station.commands.identify_links_command import show_joint
 from jointbench.station.commands.surface_command import show_surfaces
-from jointbench.station.demo.demo_bench import DemoVisit, visit_bench
+from jointbench.station.demo.demo_bench import DemoSession, record_demo_session
 from jointbench.station.demo.demo_gap import FILES as GAP_FILES
 from jointbench.station.demo.demo_gap import (
     DemoGap,
@@ -104,7 +104,7 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     out.mkdir(parents=True, exist_ok=True)
     screen = console(json_target)
     with working("measuring two surfaces and twelve hits on the simulated bench"):
-        visit = visit_bench(out, seed=seed)
+        visit = record_demo_session(out, seed=seed)
     session_file = out / "session.h5"
     write_session(visit.session, session_file, overwrite=True)
     model_file = _write_model(out / "bench.toml", visit)
@@ -141,7 +141,7 @@ def require_demo(out: Path) -> None:
             raise UsageError(f"'{path}' was made by no demo; name another folder")
 
 
-def _write_model(path: Path, visit: DemoVisit) -> Path:
+def _write_model(path: Path, visit: DemoSession) -> Path:
     text = MODEL_FILE.format(
         base=visit.masses["base"],
         top=visit.masses["top"],

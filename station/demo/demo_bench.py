@@ -52,7 +52,7 @@ class DemoTruth:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DemoVisit:
+class DemoSession:
     """Result of the session; only the truth comes from the simulation itself.
 
     Attributes:
@@ -68,7 +68,7 @@ class DemoVisit:
     truth: DemoTruth
 
 
-def visit_bench(folder: Path, *, seed: int) -> DemoVisit:
+def record_demo_session(folder: Path, *, seed: int) -> DemoSession:
     """Record hits and two surfaces on the simulated bench.
 
     Args:
@@ -90,7 +90,7 @@ def visit_bench(folder: Path, *, seed: int) -> DemoVisit:
         notes="Two bodies on a bolted joint, struck on the top.",
     )
     masses = _weigh(truth, seed)
-    return DemoVisit(
+    return DemoSession(
         session,
         masses,
         {name: _SCALE_ERROR * mass for name, mass in masses.items()},

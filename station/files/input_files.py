@@ -37,40 +37,6 @@ def is_session_name(path: Path) -> bool:
     return path.suffix.lower() in SESSION_SUFFIXES
 
 
-<<<<<<< HEAD
-def read_samples(
-    path: Path, *, columns: str | None, point: str, full_scale: float | None = None
-) -> tuple[Recording, ...]:
-    """Read a file of a format for samples, recognised by its suffix.
-
-    Args:
-        path: of the file.
-        columns: what its channels hold, where the file does not say.
-        point: where the hammer struck.
-        full_scale: what the largest number of a WAV file stands for.
-
-    Returns:
-        The recordings of the file; none where the ending is none of these.
-
-    Raises:
-        BadData: the file is not what it should be, or its units are missing.
-    """
-    suffix = path.suffix.lower()
-    if suffix in UNIVERSAL_SUFFIXES:
-        return (read_universal(path, columns=columns, point=point),)
-    if suffix == ".tdms":
-        return (read_tdms(path, columns=columns, point=point),)
-    if suffix == ".mat":
-        return (read_mat_recording(path, columns=columns, point=point),)
-    if suffix == ".wav":
-        return (read_wave(path, columns=columns, point=point, full_scale=full_scale),)
-    if suffix in RATTLESNAKE_SUFFIXES:
-        return read_rattlesnake(path, columns=columns, point=point)
-    return ()
-
-
-=======
->>>>>>> regs
 def read_foreign(
     path: Path, *, columns: str | None, point: str, full_scale: float | None = None
 ) -> tuple[Recording | Surface, ...]:

@@ -31,9 +31,9 @@ from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.pipeline.judge_again import StoredHits, with_hits
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.schemas.gap_model import gap_sheet
+from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.sources.open_source import is_url
-from jointbench.station.sources.visit_file import write_visit
+from jointbench.station.sources.recorded_session import record_session_file
 
 ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
 """Levels span 30x on purpose: none is weak but what lies far below the softest of them,
@@ -122,7 +122,7 @@ def _examine_url(url: str, wanted: GapRequest, progress: Progress) -> Examined:
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "session.h5"
         progress("recording the session")
-        written = write_visit(url, session)
+        written = record_session_file(url, session)
         model = wanted.model or written.model
         done = _examine_sessions([session], replace(wanted, model=model), progress)
     return replace(done, title=url)
@@ -179,7 +179,7 @@ def _examine_record(
         record.record,
         record.training,
         record.scored,
-        record.sheet,
+        record.nominal,
         without=wanted.without,
         entries=wanted.entries,
         progress=progress,
@@ -196,7 +196,7 @@ def _examine_record(
 def _examine_sessions(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
-    sheet = gap_sheet(_model(paths[0], wanted))
+    nominal = nominal_parameters(_model(paths[0], wanted))
     sessions = [read_session(path) for path in paths]
     sessions.sort(key=lambda session: session.created)
     remarks: list[str] = []
@@ -211,7 +211,7 @@ def _examine_sessions(
     found, left_out = gap_of(
         title,
         recordings,
-        sheet,
+        nominal,
         without=wanted.without,
         entries=wanted.entries,
         progress=progress,

@@ -136,7 +136,7 @@ def joint_of(table: TheoryTable, joints: Sequence[str]) -> str:
 
 
 def theory_surface(
-    table: TheoryTable, folder: Path, faces: list[Path], sessions: list[Path]
+    table: TheoryTable, folder: Path, files: list[Path], sessions: list[Path]
 ) -> ContactSurface:
     """Return the equivalent surface of the joint.
 
@@ -149,7 +149,7 @@ def theory_surface(
     Raises:
         BadData: no surface is given anywhere, or it has no scaling range.
     """
-    if not faces and (table.dimension is not None or table.roughness is not None):
+    if not files and (table.dimension is not None or table.roughness is not None):
         return surface_of(
             table.dimension,
             table.roughness,
@@ -158,7 +158,7 @@ def theory_surface(
             dimension_sd=table.dimension_sd,
             roughness_sd=table.roughness_sd,
         )
-    files = faces or [folder / one for one in table.surfaces] or sessions
+    files = files or [folder / one for one in table.surfaces] or sessions
     if not files:
         raise BadData(
             "[contact] has no surface; give --surface FILE once (both alike) "

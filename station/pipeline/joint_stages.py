@@ -39,7 +39,7 @@ from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.pipeline.surface_stages import SurfaceChain
 from jointbench.station.schemas.bench_model import BenchModel, ContactTable
-from jointbench.station.schemas.gap_model import gap_sheet
+from jointbench.station.schemas.gap_model import nominal_parameters
 
 Page = dict[str, Any]
 Found = TypeVar("Found")
@@ -138,7 +138,9 @@ def gap_stage(
     left = frozenset(without)
 
     def make() -> Page:
-        found, left_out = gap_of("session", judged, gap_sheet(bench), without=left)
+        found, left_out = gap_of(
+            "session", judged, nominal_parameters(bench), without=left
+        )
         return diagnosis_json(found) | {"left_out": list(left_out)}
 
     given = [bench.model_dump(mode="json"), sorted(left)]
@@ -152,7 +154,7 @@ def gap_stage(
 def gap_of(
     name: str,
     judged: Sequence[Recording],
-    sheet: Sheet,
+    nominal: Sheet,
     *,
     without: frozenset[str],
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
@@ -171,6 +173,6 @@ def gap_of(
     Returns:
         Verdict and evidence, and why accepted hits were left out, a line each.
     """
-    campaign, left_out = session_campaign(name, judged, sheet)
+    campaign, left_out = session_campaign(name, judged, nominal)
     found = diagnose(campaign, without=without, entries=entries, progress=progress)
     return found, left_out

@@ -6,7 +6,7 @@ from jointbench.analysis.gap.model.nominal import Sheet
 from jointbench.station.schemas.bench_model import BenchModel, lumped_model
 
 
-def gap_sheet(bench: BenchModel) -> Sheet:
+def nominal_parameters(bench: BenchModel) -> Sheet:
     """Return the model of a bench whose every value has a prior, and its hit points.
 
     Raises:

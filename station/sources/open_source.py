@@ -18,7 +18,7 @@ SCHEMES = ("sim",)
 
 
 @dataclass(frozen=True, slots=True)
-class Visit:
+class RunSequence:
     """Consecutive runs on a bench, each with its own setting.
 
     Attributes:
@@ -32,7 +32,7 @@ class Visit:
     source: str
     simulated: bool
     runs: tuple[Run, ...]
-    sheet: str | None = None
+    model: str | None = None
     truth: Mapping[str, object] | None = None
 
 
@@ -100,7 +100,7 @@ def open_source(url: str) -> Source:
     return ChassisSource(bench, samples=bench.samples)
 
 
-def open_visit(url: str) -> Visit:
+def open_runs(url: str) -> RunSequence:
     """Open the source of `url` as runs, with the bench model if it has one.
 
     Args:
@@ -115,23 +115,23 @@ def open_visit(url: str) -> Visit:
     from jointbench.simulators.two_body.bench import TwoBodyBench
     from jointbench.simulators.two_body.bench_url import specimen_from_url
     from jointbench.simulators.two_body.campaign_bench import campaign_runs
-    from jointbench.station.sources.campaign_sheet import sheet_text
+    from jointbench.station.sources.campaign_model import model_text
     from jointbench.station.sources.chassis_source import ChassisRun, ChassisSource
 
     bench = specimen_from_url(url)
     if isinstance(bench, TwoBodyBench):
         source = ChassisSource(bench, samples=bench.samples)
         stream = WholeStream(source, bench.truth.preload)
-        return Visit(bench.name, bench.simulated, (stream,))
+        return RunSequence(bench.name, bench.simulated, (stream,))
     campaign = bench.simulate()
-    return Visit(
+    return RunSequence(
         bench.name,
         bench.simulated,
         tuple(
             ChassisRun(run, samples=run.samples.shape[1])
             for run in campaign_runs(campaign)
         ),
-        sheet_text(campaign.design),
+        model_text(campaign.design),
         campaign_truth(campaign),
     )
 

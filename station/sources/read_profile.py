@@ -36,14 +36,9 @@ class ProfileRequest:
     """What is asked of which instrument.
 
     Attributes:
-<<<<<<< HEAD
-        instrument: ``"diavite"`` or ``"mitutoyo"``.
-        line: name of its serial line, or of a simulated instrument.
-=======
         instrument: name of a roughness tester, ``"diavite"``, ``"mitutoyo"`` or one
             that a package adds.
         line: name of its serial line, or of a twin.
->>>>>>> regs
         name: of the profile.
         traverse: length that was traced, with its unit, as text; a DH-8 needs it.
         baud: bits per second, None for what is usual.
@@ -135,18 +130,12 @@ def _traverse(wanted: ProfileRequest) -> float | None:
     """Return the length that was traced [m], None where the instrument says it."""
     tester = instruments.roughness_tester(wanted.instrument).value
     if wanted.traverse is None:
-<<<<<<< HEAD
-        raise UsageError(
-            "a DH-8 does not report its traverse length; add --traverse '4.8 mm'"
-        )
-=======
         if tester.needs_traverse:
             raise UsageError(
-                f"a {tester.title} does not say how long its traverse was; add "
+                f"a {tester.title} does not report its traverse length; add "
                 "--traverse '4.8 mm'"
             )
         return None
->>>>>>> regs
     length = parse_value(wanted.traverse, "length")
     if not length > 0:
         raise UsageError(f"traverse is {wanted.traverse!r}; give a length above zero")
@@ -162,14 +151,8 @@ def _check_places(
     json_target: str | None,
 ) -> None:
     if out is None and session is None:
-<<<<<<< HEAD
-        raise UsageError("no output for the profile; add --out trace.csv or --session")
-    if wanted.instrument == "diavite":
-        _traverse(wanted)
-=======
         raise UsageError("nowhere to put the profile; add --out face.csv or --session")
     _traverse(wanted)
->>>>>>> regs
     if out is not None:
         if out.suffix.lower() != ".csv":
             raise UsageError(f"'{out}' is no table; name it *.csv")

@@ -24,7 +24,7 @@ from jointbench.acquisition.session_file.store import read_session, write_sessio
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import HitCriteria, find_hits
 from jointbench.station.screen.interrupt import patient_interrupt
-from jointbench.station.sources.open_source import Visit
+from jointbench.station.sources.open_source import RunSequence
 
 BLOCK = 0.1
 """Usual length of a block [s]."""
@@ -43,11 +43,11 @@ class Progress:
     interrupted: bool = False
 
 
-def record_live(visit: Visit, path: Path) -> bool:
+def record_live(sequence: RunSequence, path: Path) -> bool:
     """Record all runs into a file, and finish it in any case.
 
     Args:
-        runs: an opened source.
+        sequence: an opened source.
         path: of a file that is not there yet.
 
     Returns:
@@ -61,18 +61,18 @@ def record_live(visit: Visit, path: Path) -> bool:
     progress = Progress()
     with patient_interrupt(progress):
         try:
-            _record_runs(visit, path, progress)
+            _record_runs(sequence, path, progress)
         except BaseException:
             # What went wrong first is what the operator has to know.
             with suppress(JointbenchError):
                 if path.exists() and not is_held(path):
-                    finish_visit(path)
+                    finish_recording(path)
             raise
-        finish_visit(path)
+        finish_recording(path)
     return not progress.interrupted
 
 
-def finish_visit(path: Path) -> None:
+def finish_recording(path: Path) -> None:
     """Judge the hits of a recording and turn its file into a finished session.
 
     Raises:
@@ -103,13 +103,13 @@ def _judged(recording: Recording, criteria: HitCriteria | None) -> Recording:
         return recording
 
 
-def _record_runs(visit: Visit, path: Path, progress: Progress) -> None:
-    first = visit.runs[0]
+def _record_runs(sequence: RunSequence, path: Path, progress: Progress) -> None:
+    first = sequence.runs[0]
     block = max(1, round(BLOCK * first.sample_rate))
     channels = len(first.channels)
-    with LiveSession(path, _meta(visit), channels=channels, block=block) as live:
+    with LiveSession(path, _meta(sequence), channels=channels, block=block) as live:
         try:
-            for segment, run in enumerate(visit.runs):
+            for segment, run in enumerate(sequence.runs):
                 _require_same(first, run)
                 _record_run(run, segment, live, progress)
                 if progress.interrupted:
@@ -160,14 +160,14 @@ def _require_same(first: Run, run: Run) -> None:
         )
 
 
-def _meta(visit: Visit) -> dict[str, object]:
-    first = visit.runs[0]
+def _meta(sequence: RunSequence) -> dict[str, object]:
+    first = sequence.runs[0]
     return {
         "uuid": str(uuid.uuid4()),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "software": software_version(),
-        "source": visit.source,
-        "simulated": visit.simulated,
+        "source": sequence.source,
+        "simulated": sequence.simulated,
         "sample_rate": first.sample_rate,
         "channels": channel_rows(first.channels),
         **HITS_LATER,

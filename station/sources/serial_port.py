@@ -16,12 +16,12 @@ def line_name(name: str) -> Iterator[str]:
             while this context lasts.
 
     Raises:
-        UsageError: the URL of a twin makes no sense.
+        UsageError: the URL of a simulated instrument is invalid.
     """
     if not name.startswith("sim:"):
         yield name
         return
     from jointbench.simulators.twins.twin_url import twin_from_url
 
-    with twin_from_url(name) as twin:
-        yield twin.name
+    with twin_from_url(name) as simulator:
+        yield simulator.name

@@ -10,15 +10,15 @@ from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.files.output_paths import check_outputs, write_text
 from jointbench.station.files.session_place import session_place
-from jointbench.station.sources.campaign_sheet import HEAD
-from jointbench.station.sources.open_source import Visit, open_visit
+from jointbench.station.sources.campaign_model import HEAD
+from jointbench.station.sources.open_source import RunSequence, open_runs
 from jointbench.station.sources.record_live import record_live
 
 MODEL, TRUTH = ".toml", ".truth.json"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WrittenVisit:
+class RecordedSession:
     """Files written by a recording.
 
     Attributes:
@@ -38,7 +38,9 @@ class WrittenVisit:
     stays: str = ""
 
 
-def write_visit(url: str, path: Path, *, overwrite: bool = False) -> WrittenVisit:
+def record_session_file(
+    url: str, path: Path, *, overwrite: bool = False
+) -> RecordedSession:
     """Record the bench that `url` names into a session file.
 
     Args:
@@ -51,32 +53,32 @@ def write_visit(url: str, path: Path, *, overwrite: bool = False) -> WrittenVisi
         UsageError: the URL makes no sense, a file is there and `overwrite` is off, or
             what is there is no earlier session.
     """
-    visit = open_visit(url)
+    sequence = open_runs(url)
     with session_place(path, overwrite=overwrite) as place:
-        for own in _sheets(visit, path):
+        for own in _side_files(sequence, path):
             _require_free(own, overwrite=overwrite)
-        whole = record_live(visit, place.own)
+        whole = record_live(sequence, place.own)
         path = place.settle(whole=whole)
-    for own, text in _sheets(visit, path).items():
+    for own, text in _side_files(sequence, path).items():
         write_text(own, text)
     model, truth = path.with_suffix(MODEL), path.with_suffix(TRUTH)
-    return WrittenVisit(
+    return RecordedSession(
         session=read_session(path),
         path=path,
-        model=None if visit.sheet is None else model,
-        truth=None if visit.truth is None else truth,
+        model=None if sequence.model is None else model,
+        truth=None if sequence.truth is None else truth,
         whole=whole,
         stays="" if path == place.asked else place.stays,
     )
 
 
-def _sheets(visit: Visit, path: Path) -> dict[Path, str]:
+def _side_files(sequence: RunSequence, path: Path) -> dict[Path, str]:
     """Return what goes beside a session, as texts by their paths."""
     found = {}
-    if visit.sheet is not None:
-        found[path.with_suffix(MODEL)] = visit.sheet
-    if visit.truth is not None:
-        found[path.with_suffix(TRUTH)] = json.dumps(visit.truth, indent=1) + "\n"
+    if sequence.model is not None:
+        found[path.with_suffix(MODEL)] = sequence.model
+    if sequence.truth is not None:
+        found[path.with_suffix(TRUTH)] = json.dumps(sequence.truth, indent=1) + "\n"
     return found
 
 

@@ -43,7 +43,7 @@ preload_reference = "{preload:.6g} N"
 )
 
 
-def sheet_text(design: CampaignDesign) -> str:
+def model_text(design: CampaignDesign) -> str:
     """Write what an operator would know of the specimen of a design.
 
     Args:
