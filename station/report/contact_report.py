@@ -80,6 +80,8 @@ def run_contact(
     points = predict_request(request, surface)
     rows = () if sweep is None else run_sweep(request, surface, sweep)
     _show(points, surface, request, given.json)
+    for note in _package_notes(points):
+        console(given.json).print(f"note: {note}")
     if sweep is not None:
         _show_sweep(sweep, rows, given.json)
     if given.plot is not None:

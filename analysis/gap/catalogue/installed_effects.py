@@ -10,9 +10,8 @@ from collections.abc import Iterable
 from jointbench.acquisition.basics.registry import Registry
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.effect_checks import PROBE_NAMES, fault_of
+from jointbench.analysis.gap.model.effect import EFFECTS_GROUP
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
-
-EFFECTS_GROUP = "jointbench.effects"
 
 
 def _fault(entry: LumpedEffect) -> str:

@@ -12,6 +12,8 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.model.effect_parameter import Parameter, Reported
 
+EFFECTS_GROUP = "jointbench.effects"
+"""Entry points by which other packages add effects."""
 PROBE_FAMILY = "probe"
 """Family of what is tested of a fit but never named."""
 
