@@ -6,14 +6,13 @@ from typing import Annotated
 
 import typer
 
-from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.commands.shared_options.output_options import Debug, Force, Json
-
-INSTRUMENTS = ("diavite", "mitutoyo")
 
 
 def profile_command(
-    instrument: Annotated[str, typer.Argument(help="diavite or mitutoyo.")],
+    instrument: Annotated[
+        str, typer.Argument(help="diavite, mitutoyo, or one that a package adds.")
+    ],
     line: Annotated[
         str, typer.Argument(help="COM3, /dev/ttyUSB0, socket://host:port, sim:diavite.")
     ],
@@ -47,10 +46,6 @@ def profile_command(
     """
     from jointbench.station.sources.read_profile import ProfileRequest, run_profile
 
-    if instrument not in INSTRUMENTS:
-        raise UsageError(
-            f"{instrument!r} is no roughness tester; there are {', '.join(INSTRUMENTS)}"
-        )
     wanted = ProfileRequest(
         instrument, line, name, traverse, baud, filtered, not unsigned
     )

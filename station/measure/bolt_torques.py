@@ -11,8 +11,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from jointbench.acquisition.basics.errors import FormatError, InstrumentError
+from jointbench.acquisition.basics.registry import Entry
+from jointbench.acquisition.serial_lines.instruments import read_torque, torque_tester
 from jointbench.acquisition.serial_lines.line import SerialLine
-from jointbench.acquisition.serial_lines.mark10 import Reading, read_gauge
+from jointbench.acquisition.serial_lines.serial_instrument import (
+    Reading,
+    SerialInstrument,
+)
 from jointbench.acquisition.session_file.live_write import LiveSession
 from jointbench.station.measure.observer import Command, Watcher
 from jointbench.station.measure.session_record import Record
@@ -106,7 +111,7 @@ class BoltWatch:
             InstrumentError: nobody tightens a bolt, or the tester does not answer, for
                 longer than `wait`.
         """
-        tester = Tester(self)
+        tester = Tester(self, torque_tester(self.table.instrument))
         try:
             return self._all(target, tester, bench, record)
         finally:
@@ -178,10 +183,12 @@ class Tester:
 
     Attributes:
         watch: that knows line and rate.
+        instrument: driver of the tester.
         trouble: why it could not be read the last time, empty if it could.
     """
 
     watch: BoltWatch
+    instrument: Entry[SerialInstrument]
     trouble: str = ""
     _line: SerialLine | None = None
 
@@ -194,10 +201,9 @@ class Tester:
         """
         try:
             if self._line is None:
-                self._line = SerialLine(
-                    self.watch.line, baud=self.watch.table.baud, timeout=_SILENCE
-                )
-            reading = _torque(self._line, most)
+                baud = self.watch.table.baud or self.instrument.value.baud
+                self._line = SerialLine(self.watch.line, baud=baud, timeout=_SILENCE)
+            reading = _believable(read_torque(self.instrument, self._line), most)
         except (InstrumentError, FormatError) as error:
             if str(error) != self.trouble:
                 watcher.say(f"torque tester: {error}; waiting for it")
@@ -216,8 +222,12 @@ class Tester:
             self._line = None
 
 
-def _torque(line: SerialLine, most: float) -> Reading:
-    reading = read_gauge(line)
+def _believable(reading: Reading, most: float) -> Reading:
+    """Return a reading that is a torque of at most `most` [N m].
+
+    Raises:
+        FormatError: it is a force, or beyond any torque of the plan.
+    """
     if reading.kind != "torque":
         raise FormatError(
             f"the gauge answers {reading.raw!r}, a {reading.kind}; a torque is "

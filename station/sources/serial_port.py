@@ -11,8 +11,9 @@ def line_name(name: str) -> Iterator[str]:
 
     Args:
         name: ``COM3``, ``/dev/ttyUSB0``, ``socket://host:port``, or ``sim:diavite``,
-            ``sim:mitutoyo``, ``sim:mark10?torques=20,50&bolts=4`` for a twin, which
-            stays plugged in while this context lasts.
+            ``sim:mitutoyo``, ``sim:mark10?torques=20,50&bolts=4`` or ``sim:NAME`` of
+            an instrument that a package adds: a simulator, which stays plugged in
+            while this context lasts.
 
     Raises:
         UsageError: the URL of a twin makes no sense.
