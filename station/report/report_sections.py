@@ -11,8 +11,8 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from jointbench.acquisition.basics.errors import JointbenchError, UsageError
 from jointbench.acquisition.basics.registry import Entry
+from jointbench.acquisition.file_access.quoting import visible
 from jointbench.station.report.session_analysis import SessionAnalysis
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.geometry_file import Geometry
@@ -21,6 +21,8 @@ from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section,
 logger = logging.getLogger(__name__)
 
 REPORT_SECTIONS_GROUP = "jointbench.report_sections"
+_LONGEST = 200
+"""Most characters of a foreign error that a notice quotes."""
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
@@ -73,14 +75,16 @@ def made_sections(
     if entry.built_in:
         return tuple(entry.value.make(view))
     try:
-        with entry.running(UsageError):
-            return _checked(entry.value.name, entry.value.make(view))
-    except (JointbenchError, OSError) as error:
-        words = " ".join(str(error).split())
+        return _checked(entry.value.name, entry.value.make(view))
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - it is foreign code
         name = entry.value.name
-        failed = f"report section {name!r} of package {entry.package} is missing"
-        logger.warning("jointbench: warning: %s: %s", failed, words)
-        notice = Text(f"R{failed[1:]}: {words}.", "notice")
+        words = " ".join(f"{type(error).__name__}: {error}".split())[:_LONGEST]
+        failed = (
+            f"section {name!r} of package {entry.package} is missing "
+            f"({visible(words)}); report it to its author, or uninstall it"
+        )
+        logger.warning("jointbench: warning: report %s", failed)
+        notice = Text(f"Report {failed}.", "notice")
         return (Section(f"added-{name}", name.replace("_", " "), (notice,)),)
 
 
