@@ -293,8 +293,12 @@ def _loaded(point: _Point) -> object:
         ) from error
 
 
+@cache
 def _source_digest(module: str) -> str:
-    """Return the SHA-256 of the file of an imported module; empty without a file."""
+    """Return the SHA-256 of the file of an imported module; empty without a file.
+
+    It is taken once: a file that changes later is not the code that runs.
+    """
     file = getattr(sys.modules.get(module), "__file__", None)
     if not file or not Path(file).is_file():
         return ""

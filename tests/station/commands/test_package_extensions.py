@@ -7,14 +7,26 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from plugin_distributions import install, install_example
 
+from jointbench.acquisition.records.session import Session
+from jointbench.acquisition.session_file.store import write_session
 from jointbench.simulators.campaigns.campaign_records import quick_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
+from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
+from jointbench.station.archive.process_file import State, Task, process_task
 from jointbench.station.main import app, exit_code
+from jointbench.station.results.result_tables import result_texts
+from jointbench.station.schemas.recipe import (
+    GapPart,
+    Recipe,
+    read_recipe,
+    recipe_digest,
+)
 
 COUNT = itertools.count()
 """A module is imported once in a process, so that each has a name of its own."""
@@ -119,7 +131,7 @@ def test_gap_names_a_hidden_effect_that_a_package_adds(
     content = content_of(found)
     (effect,) = content["effects"]  # type: ignore[misc, attr-defined]
     assert effect["name"] == "quintic_stiffness"
-    (k5,) = effect["parameters"]
+    k5 = effect["parameters"]["k5"]
     truth = campaign.effects[0].parameters["k5"]
     assert abs(k5["value"] - truth) < 5 * k5["sd"] + 0.02 * abs(truth)
     assert content["packages"] == {"quintic_stiffness": PACKAGE}
@@ -292,6 +304,81 @@ def test_texts_of_a_section_are_escaped_whatever_they_pass_for(
         assert page.count(f'<section id="{anchor}">') == 1
     for identifier in ("added-own-2", "added-own-2-2"):
         assert page.count(f'class="plot" id="{identifier}"') == 1
+
+
+def law_of(
+    monkeypatch: pytest.MonkeyPatch, folder: Path, factor: float, version: str
+) -> None:
+    """Install a version of a package with a contact law; it replaces an earlier one."""
+    folder.mkdir(parents=True)
+    text = LAW_TEXT.format(name="own", factor=factor)
+    add(monkeypatch, folder / "law", "contact_laws", ("own", "LAW"), text, version)
+
+
+@pytest.fixture
+def face_file(tmp_path: Path) -> Path:
+    """A session of one face."""
+    face = rough_profile(2000, dimension=1.5, roughness=1e-10, spacing=5e-7, seed=3)
+    session = Session(
+        uuid="0000-1",
+        created="2025-03-01T12:00:00+00:00",
+        software="jointbench 0.1.0",
+        simulated=True,
+        surfaces=(replace(face, name="face"),),
+    )
+    write_session(session, tmp_path / "face.h5")
+    return tmp_path / "face.h5"
+
+
+def test_reprocessing_computes_anew_what_depends_on_a_law_that_changed(
+    face_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither a rise of the version nor an edit of the module gives an old number."""
+    written = tmp_path / "recipe.toml"
+    written.write_text(
+        '[contact]\nmodulus = "29 GPa"\nhardness = "1 GPa"\npreload = "20 kN"\n'
+        'model = "own"\n',
+        encoding="utf-8",
+    )
+    task = Task(face_file, tmp_path / "face.results.h5", tmp_path / "stages")
+    found: dict[str, tuple[float, str, str]] = {}
+    for name, factor, version in (
+        ("first", 1.0, "1.0"),
+        ("same", 1.0, "1.0"),
+        ("raised", 1.0, "1.1"),
+        ("edited", 2.0, "1.1"),
+    ):
+        law_of(monkeypatch, tmp_path / name, factor, version)
+        outcome = process_task(task, read_recipe(written))
+        assert outcome.state is (State.SKIPPED if name == "same" else State.DONE)
+        if name in ("raised", "edited"):
+            assert outcome.computed == ("contact",)
+            assert outcome.reused == ("structure of face", "surface face")
+        (model,) = json.loads(result_texts(task.result)["contact"])["models"]
+        assert model["package"] == f"added-law {version}"
+        found[name] = (model["normal_stiffness"], outcome.key, version)
+    assert found["first"][:2] == found["same"][:2]
+    assert found["raised"][0] == found["first"][0]
+    assert abs(found["edited"][0] / found["first"][0] - 1.0) > 0.1
+    assert len({key for _, key, _ in found.values()}) == 3
+
+
+def test_the_key_of_a_gap_holds_the_effects_of_packages_that_are_tried(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One more effect may change a verdict; one that is left out cannot."""
+    bench = GapPart(model="bench.toml")
+    recipes = [
+        Recipe(gap=bench),
+        Recipe(gap=bench.model_copy(update={"without": ("own",)})),
+        Recipe(),
+    ]
+    before = [recipe_digest(recipe) for recipe in recipes]
+    text = EFFECT_TEXT.format(name="own", sites=("link",))
+    add(monkeypatch, tmp_path / "more", "effects", ("own", "EFFECT"), text)
+    after = [recipe_digest(recipe) for recipe in recipes]
+    changed = [a != b for a, b in zip(before, after, strict=True)]
+    assert changed == [True, False, False]
 
 
 FAULTY: Mapping[str, tuple[str, tuple[str, str], str, str]] = {
