@@ -2,12 +2,9 @@
 """Help of options that take names of a registry: it lists the names as installed."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from typer.core import TyperCommand
-
-if TYPE_CHECKING:
-    import click
 
 Names = Callable[[], Sequence[str]]
 """Returns names of a registry; called when the help is shown, not at the start."""
@@ -24,9 +21,8 @@ def command_with_names(options: Mapping[str, tuple[str, Names]]) -> type[TyperCo
     class CommandWithNames(TyperCommand):
         """Completes the help of some options just before it is shown."""
 
-        def format_help(
-            self, ctx: "click.Context", formatter: "click.HelpFormatter"
-        ) -> None:
+        # Typer ships its own copy of click or uses that of others, by its version.
+        def format_help(self, ctx: Any, formatter: Any) -> None:
             for parameter in self.params:
                 _complete(parameter, options)
             super().format_help(ctx, formatter)
