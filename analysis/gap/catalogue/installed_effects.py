@@ -5,13 +5,23 @@ A package adds an effect by one entry point of the group ``jointbench.effects`` 
 names a `LumpedEffect`; the name of the entry point is that of the effect.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from functools import wraps
+from typing import Any
 
-from jointbench.acquisition.basics.registry import Registry
+import numpy as np
+
+from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.basics.registry import Entry, Registry
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.effect_checks import PROBE_NAMES, fault_of
 from jointbench.analysis.gap.model.effect import EFFECTS_GROUP
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+
+_CALLED = ("stiffness", "poles", "law", "transfer", "mixing", "shape", "rise")
+"""Functions of an effect that the engine calls."""
+_Hook = Callable[..., Any] | None
 
 
 def _fault(entry: LumpedEffect) -> str:
@@ -31,7 +41,35 @@ def installed_catalogue() -> tuple[LumpedEffect, ...]:
     Raises:
         UsageError: two packages add an effect of the same name.
     """
-    return tuple(entry.value for entry in EFFECTS.entries())
+    return tuple(
+        entry.value if entry.built_in else _guarded(entry)
+        for entry in EFFECTS.entries()
+    )
+
+
+def _guarded(entry: Entry[LumpedEffect]) -> LumpedEffect:
+    """Return an effect of another package whose hooks name it where they fail."""
+    found = entry.value
+    hooks = {name: _guard(entry, getattr(found, name)) for name in _CALLED}
+    effect = replace(found.effect, report=_guard(entry, found.effect.report))
+    return replace(found, effect=effect, **hooks)
+
+
+def _guard(entry: Entry[LumpedEffect], hook: _Hook) -> _Hook:
+    if hook is None:
+        return None
+
+    @wraps(hook)
+    def call(*given: Any) -> Any:
+        try:
+            return hook(*given)
+        except np.linalg.LinAlgError:  # the search tries a shorter step
+            raise
+        except Exception:
+            with entry.running(UsageError):
+                raise
+
+    return call
 
 
 def effect_packages(entries: Iterable[LumpedEffect]) -> dict[str, str]:

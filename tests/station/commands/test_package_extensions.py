@@ -154,6 +154,33 @@ def test_without_takes_the_effect_of_a_package_out(
     assert "quintic_stiffness" in error.replace("quintic_stifness", "")
 
 
+def test_an_effect_that_fails_in_a_fit_is_one_line_that_names_its_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is silent at amplitude 0, so that only the search finds its fault."""
+    text = EFFECT_TEXT.format(name="own", sites=("link",))
+    text = text.replace("lambda v:", "lambda v: v[0] and [][1] or")
+    add(monkeypatch, tmp_path / "faulty", "effects", ("own", "EFFECT"), text)
+    path = tmp_path / "c.h5"
+    campaign = quick_campaign(8, effects=("delay",), grid="small", noise=0.05)
+    write_campaign(campaign, path)
+    assert run(monkeypatch, "gap", path, f"--without={SLOW}") == 2
+    error = " ".join(capsys.readouterr().err.split())
+    assert "'own' of package added-faulty 1.0 fails (IndexError" in error
+
+
+@pytest.mark.usefixtures("example")
+def test_an_effect_of_a_file_may_not_bear_the_name_of_an_installed_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Two effects of one name could not be told apart in a verdict."""
+    text = EFFECT_TEXT.format(name="quintic_stiffness", sites=("link",))
+    file = tmp_path / "own.py"
+    file.write_text(f"{text}EFFECTS = (EFFECT,)", encoding="utf-8")
+    assert run(monkeypatch, "gap", tmp_path / "c.h5", "--effects", file) == 2
+    assert "two effects are called 'quintic_stiffness'" in capsys.readouterr().err
+
+
 @pytest.mark.usefixtures("example")
 def test_contact_predicts_by_the_model_of_a_package(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
