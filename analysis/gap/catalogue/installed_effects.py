@@ -50,7 +50,9 @@ def installed_catalogue() -> tuple[LumpedEffect, ...]:
 def _guarded(entry: Entry[LumpedEffect]) -> LumpedEffect:
     """Return an effect of another package whose hooks name it where they fail."""
     found = entry.value
-    hooks = {name: _guard(entry, getattr(found, name)) for name in _CALLED}
+    hooks: dict[str, Any] = {
+        name: _guard(entry, getattr(found, name)) for name in _CALLED
+    }
     effect = replace(found.effect, report=_guard(entry, found.effect.report))
     return replace(found, effect=effect, **hooks)
 
