@@ -11,6 +11,7 @@ metadata has them too; entry points are read for other packages alone (record 00
 """
 
 import logging
+import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -147,7 +148,7 @@ class Registry(Generic[Item]):
             try:
                 found.append(self._entry(point))
             except PluginFault as error:
-                _warn(str(error))
+                warn_once(str(error))
         return own + tuple(found)
 
     def entry(self, name: str) -> Entry[Item]:
@@ -167,7 +168,7 @@ class Registry(Generic[Item]):
                 return self._entry(point)
         raise UnknownEntry(unknown_words(name, self.what, self.names()))
 
-    def _points(self) -> tuple["_Point", ...]:
+    def _points(self) -> tuple["_OutsidePoint", ...]:
         """Return the entry points of other packages, after a check of their names."""
         points = _outside(self.group, tuple(sys.path))
         packages = {item.name: OWN_PACKAGE for item in self.built_in()}
@@ -181,7 +182,7 @@ class Registry(Generic[Item]):
             packages[point.name] = point.package
         return points
 
-    def _entry(self, point: "_Point") -> Entry[Item]:
+    def _entry(self, point: "_OutsidePoint") -> Entry[Item]:
         value = _loaded(point)
         if not isinstance(value, self.kind):
             raise PluginFault(
@@ -232,7 +233,7 @@ def unknown_words(name: str, what: str, known: Iterable[str]) -> str:
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class _Point:
+class _OutsidePoint:
     """An entry point of another package; sorted by package and name."""
 
     package: str
@@ -245,7 +246,7 @@ _WAY_OUT = "correct or uninstall that package"
 
 
 @cache
-def _outside(group: str, path: tuple[str, ...]) -> tuple[_Point, ...]:
+def _outside(group: str, path: tuple[str, ...]) -> tuple[_OutsidePoint, ...]:
     """Return the entry points of a group that are installed along `sys.path`.
 
     Args:
@@ -253,21 +254,22 @@ def _outside(group: str, path: tuple[str, ...]) -> tuple[_Point, ...]:
         path: where packages are looked for, `sys.path`.
     """
     seen: set[str] = set()
-    points: list[_Point] = []
+    points: list[_OutsidePoint] = []
     for distribution in metadata.distributions(path=list(path)):
         try:
             found = distribution.entry_points.select(group=group)
         except Exception as error:  # noqa: BLE001 - whatever its file makes of it
-            _warn(
+            warn_once(
                 f"the entry points of {_package(distribution)} cannot be read "
                 f"({_words(error)}); {_WAY_OUT}"
             )
             continue
-        # The first on the path is the one that Python imports.
-        if found and (name := _package(distribution).split()[0]) not in seen:
+        package = _package(distribution)
+        name = re.sub(r"[-_.]+", "-", package.rpartition(" ")[0]).lower()
+        # Of two copies of a package Python imports the first on the path.
+        if found and name not in seen:
             seen.add(name)
-            package = _package(distribution)
-            points += [_Point(package, p.name, p.value, group) for p in found]
+            points += [_OutsidePoint(package, p.name, p.value, group) for p in found]
     return tuple(sorted(points))
 
 
@@ -278,7 +280,7 @@ def _package(distribution: metadata.Distribution) -> str:
 
 
 @cache
-def _loaded(point: _Point) -> object:
+def _loaded(point: _OutsidePoint) -> object:
     """Import what an entry point names.
 
     Raises:
@@ -306,7 +308,7 @@ def _source_digest(module: str) -> str:
 
 
 @cache
-def _warn(message: str) -> None:
+def warn_once(message: str) -> None:
     """Say once in a process what is left out."""
     logger.warning("jointbench: warning: %s; jointbench goes on without it", message)
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from jointbench.acquisition.basics.errors import FormatError, UsageError
-from jointbench.acquisition.basics.registry import Entry, Named
+from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.acquisition.basics.registry import Entry, Named, PluginFault, warn_once
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.records.provenance import Step, step
@@ -14,7 +14,7 @@ from jointbench.acquisition.records.provenance import Step, step
 _Format = TypeVar("_Format", bound=Named)
 
 
-def single_taker(
+def matching_format(
     entries: Sequence[Entry[_Format]], takes: Callable[[_Format], bool], path: Path
 ) -> Entry[_Format] | None:
     """Return the format of a file: one of a package, else the first built-in one.
@@ -29,14 +29,10 @@ def single_taker(
 
     Raises:
         UsageError: formats of two packages take it.
-        FormatError: code of a package fails.
     """
-    foreign = []
-    for entry in entries:
-        if not entry.built_in:
-            with entry.running(FormatError):
-                if takes(entry.value):
-                    foreign.append(entry)
+    foreign = [
+        entry for entry in entries if not entry.built_in and _recognised(entry, takes)
+    ]
     if len(foreign) > 1:
         claims = " and ".join(f"{e.value.name!r} of {e.package}" for e in foreign)
         raise UsageError(
@@ -45,6 +41,22 @@ def single_taker(
         )
     own = (entry for entry in entries if entry.built_in and takes(entry.value))
     return foreign[0] if foreign else next(own, None)
+
+
+def _recognised(entry: Entry[_Format], takes: Callable[[_Format], bool]) -> bool:
+    """Return whether a format of a package takes the file; a failure is a no.
+
+    A file that cannot be read as text, say, is none of a text format; the built-in
+    formats go on with it.
+    """
+    try:
+        with entry.running(PluginFault):
+            return takes(entry.value)
+    except BadData:
+        return False
+    except PluginFault as error:
+        warn_once(str(error))
+        return False
 
 
 def added_by(entry: Entry[_Format], path: Path) -> Step:

@@ -23,7 +23,7 @@ from jointbench.acquisition.formats.heights.height_format import (
     HeightFormat,
 )
 from jointbench.acquisition.formats.heights.height_tables import surface_columns
-from jointbench.acquisition.formats.package_formats import added_by, single_taker
+from jointbench.acquisition.formats.package_formats import added_by, matching_format
 from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 
@@ -62,7 +62,7 @@ def read_surface(
             a Surfcom TX1 or TX2, a Wyko, Zygo or Gwyddion text, a plain table of x and
             z, or of x, y and z (text or .npy), or, with the extra ``surfaces``, a
             maker's own format. A Mitutoyo SJ CSV or a Mahr TXT needs `columns` too.
-            Formats of other packages are asked first.
+            Formats of other packages take precedence.
         columns: what the columns of a table hold and in which unit, for example
             ``"x:mm,y:mm,z:um"``, or ``"z:um@0.5um"`` for heights alone; it overrules
             what the content looks like. Formats that state their units, and tables
@@ -83,19 +83,19 @@ def read_surface(
     label = path.stem if name is None else name
     origin = step("import", file=path.name, sha256=file_digest(path))
     file = HeightFile(path, label, origin, wanted)
-    taker = single_taker(
+    entry = matching_format(
         HEIGHT_FORMATS.entries(), lambda format_: format_.takes(file), path
     )
-    assert taker is not None, "a table takes what is left"
-    return checked(_read(taker, file), path, longest=taker.value.longest)
+    assert entry is not None, "a table takes what is left"
+    return checked(_read(entry, file), path, longest=entry.value.longest)
 
 
-def _read(taker: Entry[HeightFormat], file: HeightFile) -> Surface:
-    with taker.running(FormatError):
-        found = taker.value.read(file)
-        if taker.built_in:
+def _read(entry: Entry[HeightFormat], file: HeightFile) -> Surface:
+    with entry.running(FormatError):
+        found = entry.value.read(file)
+        if entry.built_in:
             return found
         if not isinstance(found, Profile | Areal):
             raise TypeError("read must return a Profile or an Areal")
-    origin = added_by(taker, file.path)
+    origin = added_by(entry, file.path)
     return replace(found, provenance=(origin, *found.provenance))

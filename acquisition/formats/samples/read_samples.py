@@ -8,7 +8,7 @@ from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.basics.registry import Entry, Registry
 from jointbench.acquisition.formats.package_formats import (
     added_by,
-    single_taker,
+    matching_format,
 )
 from jointbench.acquisition.formats.samples import (
     mat_recording,
@@ -42,7 +42,7 @@ SAMPLE_FORMATS = Registry(
 def read_samples(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
     """Read a file of a format that holds samples by its nature.
 
-    Formats of other packages are asked first: who installs one wants it.
+    Formats of other packages take precedence over the built-in ones.
 
     Args:
         path: of the file.
@@ -55,20 +55,20 @@ def read_samples(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
         BadData: the file is not what it should be, or its units are missing.
         UsageError: two packages take the file.
     """
-    taker = single_taker(
+    entry = matching_format(
         SAMPLE_FORMATS.entries(), lambda format_: format_.takes(path), path
     )
-    return () if taker is None else _read(taker, path, options)
+    return () if entry is None else _read(entry, path, options)
 
 
 def _read(
-    taker: Entry[SampleFormat], path: Path, options: SampleOptions
+    entry: Entry[SampleFormat], path: Path, options: SampleOptions
 ) -> tuple[Recording, ...]:
-    with taker.running(FormatError):
-        found = taker.value.read(path, options)
-        if taker.built_in:
+    with entry.running(FormatError):
+        found = entry.value.read(path, options)
+        if entry.built_in:
             return found
         if not found or not all(isinstance(one, Recording) for one in found):
             raise TypeError("read must return a tuple of at least one Recording")
-    origin = added_by(taker, path)
+    origin = added_by(entry, path)
     return tuple(replace(one, provenance=(origin, *one.provenance)) for one in found)

@@ -339,3 +339,36 @@ def test_built_in_formats_are_read_as_before_beside_a_package(
     (surface,) = read_session(out).surfaces
     assert "package" not in {step.name for step in surface.provenance}
     assert not caplog.records
+
+
+GREEDY = """
+from jointbench.acquisition.formats.heights.height_format import HeightFormat
+FORMAT = HeightFormat("greedy", lambda file: {recognise}, None, with_columns=True)
+"""
+
+
+@pytest.mark.parametrize(
+    ("recognise", "warnings"),
+    [("file.lines[0] == 'MARK'", 0), ("file.lines['first']", 1), ("1 / 0 > 1", 1)],
+)
+def test_a_format_that_fails_to_recognise_leaves_the_others_alone(
+    recognise: str,
+    warnings: int,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """A .npy array is no text: that is a no; an error of the code is one warning."""
+    module = f"greedy_{len(recognise)}"
+    points = {"jointbench.height_formats": {"greedy": f"{module}:FORMAT"}}
+    modules = {module: GREEDY.format(recognise=recognise)}
+    monkeypatch.syspath_prepend(install(tmp_path / "site", module, points, modules))
+    text, array = tmp_path / "a.csv", tmp_path / "b.npy"
+    text.write_text("0 1\n1 2\n2 4\n", encoding="utf-8")
+    np.save(array, np.array([[0.0, 1.0, 2.0], [1.0, 2.0, 4.0]]).T)
+    out = tmp_path / "s.h5"
+    words = ("--columns", "x:um,z:um", "--out", out)
+    with caplog.at_level(logging.WARNING):
+        assert run(monkeypatch, "import", array, text, *words) == 0
+    assert len(read_session(out).surfaces) == 2
+    assert len(caplog.records) == warnings
