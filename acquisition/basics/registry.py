@@ -309,8 +309,8 @@ def _source_digest(module: str) -> str:
 
 @cache
 def warn_once(message: str) -> None:
-    """Say once in a process what is left out."""
-    logger.warning("jointbench: warning: %s; jointbench goes on without it", message)
+    """Report once in a process what is left out."""
+    logger.warning("jointbench: warning: %s; jointbench continues without it", message)
 
 
 def _words(error: BaseException) -> str:

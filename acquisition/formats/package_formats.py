@@ -47,7 +47,7 @@ def _recognised(entry: Entry[_Format], takes: Callable[[_Format], bool]) -> bool
     """Return whether a format of a package takes the file; a failure is a no.
 
     A file that cannot be read as text, say, is none of a text format; the built-in
-    formats go on with it.
+    formats look at it next.
     """
     try:
         with entry.running(PluginFault):

@@ -191,7 +191,7 @@ def _end(line: Line) -> None:
 
 def _fetch(line: Line, options: ProfileOptions) -> Profile:
     if options.traverse is None:
-        raise UsageError("a DH-8 does not say how long its traverse was; give it")
+        raise UsageError("a DH-8 does not state the length of its traverse; give it")
     return read_profile(
         line,
         name=options.name,

@@ -64,7 +64,7 @@ def _named(
     by_name = {entry.value.name: entry for entry in known}
     if name not in by_name:
         if name in SERIAL_INSTRUMENTS.names():
-            SERIAL_INSTRUMENTS.entry(name)  # says what is wrong with its package
+            SERIAL_INSTRUMENTS.entry(name)  # reports the fault of its package
         raise UnknownEntry(unknown_words(name, what, by_name))
     return by_name[name]
 

@@ -57,9 +57,9 @@ class SerialInstrument:
         read_profile: returns the last profile of a roughness tester; None where it is
             none. A profile that breaks off is a `ProfileBroken`.
         needs_traverse: whether the user must say the length of a profile.
-        simulate: returns what the instrument answers behind ``sim:NAME?key=value``,
-            from the keys and values; raises `UsageError` for an unknown key. None
-            where there is no simulator, or `simulators` has it.
+        simulate: returns the answers of a simulated instrument, opened as
+            ``sim:NAME?key=value``, from the keys and values; raises `UsageError` for
+            an unknown key. None where there is no simulator, or `simulators` has it.
     """
 
     name: str

@@ -96,7 +96,7 @@ def test_names_are_known_without_an_import(
         ("named", shape_text("another", 1), "is named 'another', its entry point"),
     ],
 )
-def test_a_package_that_fails_is_one_warning_and_the_rest_goes_on(
+def test_a_package_that_fails_is_one_warning_and_the_rest_continues(
     package: str,
     text: str,
     reason: str,
@@ -112,7 +112,7 @@ def test_a_package_that_fails_is_one_warning_and_the_rest_goes_on(
     assert first == again
     (line,) = [record.getMessage() for record in caplog.records]
     assert f"package shapes-{package} 1.0" in line
-    assert "uninstall that package; jointbench goes on without it" in line
+    assert "uninstall that package; jointbench continues without it" in line
     assert line.isprintable()
     with pytest.raises(PluginFault, match=reason):
         SHAPES.entry("new")

@@ -231,7 +231,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("kind", sorted(BROKEN))
-def test_a_package_that_cannot_be_used_is_one_warning_and_the_command_goes_on(
+def test_a_package_that_cannot_be_used_is_one_warning_and_the_command_continues(
     kind: str, tmp_path: Path
 ) -> None:
     """Exit code 0, the file is read, and one line on standard error says it."""
@@ -254,7 +254,7 @@ def test_a_package_that_cannot_be_used_is_one_warning_and_the_command_goes_on(
     (line,) = done.stderr.splitlines()
     assert line.startswith("jointbench: warning: package bad-lab 1.0: ")
     assert reason in line
-    assert "jointbench goes on without it" in line
+    assert "jointbench continues without it" in line
 
 
 def test_a_name_of_two_packages_ends_the_command(example: Path, tmp_path: Path) -> None:
