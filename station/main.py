@@ -52,6 +52,11 @@ from jointbench.station.commands.shared_options.output_options import (
     Results,
     Universal,
 )
+from jointbench.station.commands.shared_options.registered_names import (
+    added_effects,
+    command_with_names,
+    contact_models,
+)
 from jointbench.station.screen.exit_codes import EXIT_QUALITY, exit_code, show_traceback
 
 __all__ = ["app", "exit_code", "run"]
@@ -219,13 +224,20 @@ app.command(name="measure")(measure_command)
 app.command(name="calibrate")(calibrate_command)
 app.command(name="profile")(profile_command)
 app.command(name="simulate")(simulate_command)
-app.command(name="contact")(contact_command)
+app.command(
+    name="contact", cls=command_with_names({"model": ("One of", contact_models)})
+)(contact_command)
 
 
 app.command(name="identify")(identify_command)
 
 
-@app.command(name="gap")
+@app.command(
+    name="gap",
+    cls=command_with_names(
+        {"without": ("Other packages add", added_effects)},
+    ),
+)
 def gap_command(
     sources: Annotated[list[str], typer.Argument(help=GAP_HELP, metavar="SOURCE")],
     model: Model = None,

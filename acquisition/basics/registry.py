@@ -18,7 +18,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from difflib import get_close_matches
 from functools import cache
+from hashlib import sha256
 from importlib import metadata
+from pathlib import Path
 from typing import Generic, Protocol, TypeVar
 
 from jointbench.acquisition.basics.errors import JointbenchError, UsageError
@@ -58,15 +60,25 @@ class Entry(Generic[Item]):
     Attributes:
         value: the record.
         package: distribution and version that adds it, `OWN_PACKAGE` if built in.
+        module: that the record was imported from; empty if built in.
     """
 
     value: Item
     package: str
+    module: str = ""
 
     @property
     def built_in(self) -> bool:
         """Whether it belongs to jointbench itself."""
         return self.package == OWN_PACKAGE
+
+    @property
+    def code(self) -> str:
+        """Package, version and SHA-256 of the module that holds the record.
+
+        The key of a result that depends on an entry of another package contains this.
+        """
+        return f"{self.package} {_source_digest(self.module)}".strip()
 
     @contextmanager
     def running(self, failure: type[JointbenchError]) -> Iterator[None]:
@@ -103,12 +115,15 @@ class Registry(Generic[Item]):
         what: an entry in a message, ``"sample format"``.
         kind: class of the records.
         built_in: returns the records of jointbench itself, in their order.
+        fault: returns what is wrong with a record of another package, or an empty
+            text.
     """
 
     group: str
     what: str
     kind: type[Item]
     built_in: Callable[[], Iterable[Item]]
+    fault: Callable[[Item], str] = lambda item: ""
 
     def names(self) -> tuple[str, ...]:
         """Return all names, built-in ones first; nothing foreign is imported.
@@ -181,7 +196,32 @@ class Registry(Generic[Item]):
                 f"{value.name!r}, its entry point {point.name!r}; both must be the "
                 f"same; {_WAY_OUT}"
             )
-        return Entry(value, point.package)
+        if fault := self._fault_of(value):
+            raise PluginFault(
+                f"package {point.package}, {self.what} {point.name!r}: {fault}; "
+                f"{_WAY_OUT}"
+            )
+        return Entry(value, point.package, point.value.partition(":")[0].strip())
+
+    def _fault_of(self, value: Item) -> str:
+        """Return what is wrong with a record; what its own code raises counts."""
+        try:
+            return self.fault(value)
+        except JointbenchError as error:
+            return str(error)
+        except Exception as error:  # noqa: BLE001 - whatever foreign code makes of it
+            return _words(error)
+
+
+def added_names(group: str) -> tuple[str, ...]:
+    """Return the names that other packages add to a group, by package and name.
+
+    Nothing is imported, not even the built-in table: this serves the help.
+
+    Args:
+        group: of the entry points.
+    """
+    return tuple(point.name for point in _outside(group, tuple(sys.path)))
 
 
 def unknown_words(name: str, what: str, known: Iterable[str]) -> str:
@@ -253,6 +293,18 @@ def _loaded(point: _OutsidePoint) -> object:
             f"package {point.package}: the entry point {point.name!r} of "
             f"{point.group} cannot be loaded ({_words(error)}); {_WAY_OUT}"
         ) from error
+
+
+@cache
+def _source_digest(module: str) -> str:
+    """Return the SHA-256 of the file of an imported module; empty without a file.
+
+    It is taken once: a file that changes later is not the code that runs.
+    """
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if not file or not Path(file).is_file():
+        return ""
+    return sha256(Path(file).read_bytes()).hexdigest()
 
 
 @cache

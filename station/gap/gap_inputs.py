@@ -3,7 +3,7 @@
 
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData, NoHitFound, UsageError
@@ -12,7 +12,7 @@ from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
-from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.diagnosis.single_record import (
     StretchScore,
@@ -55,7 +55,7 @@ class GapRequest:
     model: Path | None = None
     without: frozenset[str] = frozenset()
     preload: float | None = None
-    entries: tuple[LumpedEffect, ...] = CATALOGUE
+    entries: tuple[LumpedEffect, ...] = field(default_factory=installed_catalogue)
 
 
 @dataclass(frozen=True, slots=True)

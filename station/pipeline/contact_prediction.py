@@ -16,6 +16,7 @@ from jointbench.analysis.contact.curve import require_surface
 from jointbench.analysis.contact.draws import StiffnessInterval
 from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import preload_of
+from jointbench.analysis.contact.model_catalogue import contact_law_package
 from jointbench.analysis.contact.models import ContactModel, Mode
 from jointbench.analysis.contact.predict import (
     ContactState,
@@ -182,6 +183,7 @@ def _point_json(point: ContactPoint) -> dict[str, object]:
     damping = None if found is None else found.damping
     return {
         "name": state.model,
+        "package": contact_law_package(state.model),
         "mode": state.mode.value,
         "preload": state.preload,
         "normal_stiffness": state.normal_stiffness,

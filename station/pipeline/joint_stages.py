@@ -15,7 +15,13 @@ from typing import Any, TypeVar
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.analysis.contact.model_catalogue import contact_law_code
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.catalogue.installed_effects import (
+    effect_code,
+    effect_packages,
+    installed_catalogue,
+)
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.intake.session_campaign import session_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
@@ -99,7 +105,10 @@ def contact_stage(
 ) -> ContactPrediction:
     """Predict the joint between surfaces, see `predict_joint`."""
     structures = tuple(one.structure for one in surfaces)
-    given = table.model_dump(mode="json", exclude={"link"})
+    given = [
+        table.model_dump(mode="json", exclude={"link"}),
+        *contact_law_code(table.model),
+    ]
     return run.stages.run(
         "contact",
         run.stages.key("contact", given, run.stages.digest(structures)),
@@ -135,15 +144,21 @@ def gap_stage(
         without: names of effects to leave out of the catalogue.
         run: store and source.
     """
-    left = frozenset(without)
+    left, entries = frozenset(without), installed_catalogue()
 
     def make() -> Page:
         found, left_out = gap_of(
-            "session", judged, nominal_parameters(bench), without=left
+            "session",
+            judged,
+            nominal_parameters(bench),
+            without=left,
+            entries=entries,
         )
-        return diagnosis_json(found) | {"left_out": list(left_out)}
+        packages = effect_packages(entries)
+        page = diagnosis_json(found) | {"left_out": list(left_out)}
+        return page | {"packages": packages}
 
-    given = [bench.model_dump(mode="json"), sorted(left)]
+    given = [bench.model_dump(mode="json"), sorted(left), *effect_code(left)]
     known = run.digest or run.stages.digest(tuple(judged))
     facts = run.stages.digest(
         tuple((r.name, r.hits, r.preload, r.provenance) for r in judged)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.catalogue.nonlinear_effects import CUBIC, QUADRATIC
 from jointbench.analysis.gap.diagnosis.evidence_facts import Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
 from jointbench.analysis.gap.diagnosis.location import Relative
@@ -17,7 +18,7 @@ CLEAR_SD = 4.0
 """Distance from 0 at which an estimate of a single record counts [sd]."""
 TAKEN = 0.3
 """Share of the residual that joint estimates per record must explain to be listed."""
-ODD, EVEN = "cubic_stiffness", "quadratic_stiffness"
+ODD, EVEN = CUBIC.effect.name, QUADRATIC.effect.name
 
 
 def describe(
