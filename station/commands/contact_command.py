@@ -7,12 +7,12 @@ from jointbench.station.pipeline.contact_options import ContactOptions
 
 @options_of(ContactOptions)
 def contact_command(given: ContactOptions) -> None:
-    """Predict stiffness and damping of a rough joint by contact law.
+    """Predict stiffness and damping of a rough joint.
 
-    The surface is given by D and G, or by measured surfaces; the preload by a force,
-    by a bolt torque, or by the stiffness or real area to reach. Results are the
-    normal and tangential stiffness [N/m], the real area [m^2] and the damping
-    coefficient [N s/m].
+    The prediction follows a fractal contact law. The surface is given by D and G, or
+    by measured surfaces. The preload is given by a force, by a bolt torque, or by the
+    stiffness or real area to reach. Results are the normal and tangential stiffness
+    [N/m], the real area [m^2] and the damping coefficient [N s/m].
 
     Examples:
         jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus '29.3 GPa'

@@ -43,8 +43,12 @@ class FittedTable:
     def _table(self, widths: Sequence[int]) -> Table:
         table = Table(box=None, pad_edge=False)
         for number, (head, width) in enumerate(zip(self.columns, widths, strict=True)):
-            justify = "left" if number == 0 else "right"
-            table.add_column(seen(head), justify=justify, width=width, overflow="fold")
+            table.add_column(
+                seen(head),
+                justify="right" if number else "left",
+                width=width,
+                overflow="fold",
+            )
         for row in self.rows:
             table.add_row(*(seen(cell) for cell in row))
         return table

@@ -14,6 +14,7 @@ _NAMES_SHARE = 0.4
 # A quoted quantity and a remark in brackets stay in one line, and so do an option and
 # its value.
 _WORD = re.compile(r"'[^']*'\S*|\[[^\]]*\]\S*|\S+")
+_PART = re.compile(r"[^\s,]+,?")
 _OPTION = re.compile(r"--\S+ (?:'[^']*'|[^-\s]\S*)|'[^']*'|\S+")
 _EXAMPLES = re.compile(r"^Examples?:\s*$", re.MULTILINE)
 
@@ -105,5 +106,7 @@ def _words(text: str, width: int, pattern: re.Pattern[str]) -> Iterator[str]:
             yield word
         elif word.startswith("--"):
             yield from word.split(" ", maxsplit=1)
+        elif pattern is _WORD:
+            yield from _PART.findall(word)
         else:
-            yield from word.split()
+            yield word
