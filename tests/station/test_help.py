@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -208,6 +209,15 @@ def test_version_imports_no_library() -> None:
         "assert not heavy, heavy\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+def test_the_package_root_stays_a_namespace() -> None:
+    """An ``__init__.py`` there would cost time at each import and hide other parts."""
+    root = Path(__file__).parents[2] / "library"
+    assert {one.name for one in root.iterdir() if one.is_file()} == {
+        "__main__.py",
+        "py.typed",
+    }
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish", "powershell", "pwsh"])
