@@ -69,7 +69,7 @@ def measure_command(
         jointbench measure examples/plates.toml --out plates.h5 --source
         'sim:plates?seed=1'
     """
-    # gRPC writes of every lost connection to standard error; the session says it.
+    # gRPC reports lost connections on standard error; the session reports them itself.
     os.environ.setdefault("GRPC_VERBOSITY", "NONE")
     from jointbench.station.measure.bench_session import run_measure
 

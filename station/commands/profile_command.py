@@ -40,7 +40,8 @@ def profile_command(
     traverse: Annotated[
         str | None,
         typer.Option(
-            metavar="QUANTITY", help="DH-8: traverse length, for example '4.8 mm'."
+            metavar="QUANTITY",
+            help="Diavite DH-8: traverse length, for example '4.8 mm'.",
         ),
     ] = None,
     baud: Annotated[
@@ -53,11 +54,13 @@ def profile_command(
     ] = None,
     filtered: Annotated[
         bool,
-        typer.Option("--filtered", help="DH-8: read the filtered roughness profile."),
+        typer.Option(
+            "--filtered", help="Diavite DH-8: read the filtered roughness profile."
+        ),
     ] = False,
     unsigned: Annotated[
         bool,
-        typer.Option("--unsigned", help="DH-8: heights are unsigned numbers."),
+        typer.Option("--unsigned", help="Diavite DH-8: heights are unsigned numbers."),
     ] = False,
     force: Force = False,
     json: Json = None,

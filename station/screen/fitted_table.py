@@ -25,10 +25,12 @@ class FittedTable:
     Attributes:
         columns: heads.
         rows: cells, as many in each as there are heads.
+        words: numbers of the columns of text, which are left-aligned.
     """
 
     columns: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+    words: frozenset[int] = frozenset({0})
 
     def __rich_console__(
         self, console: Console, options: ConsoleOptions
@@ -45,7 +47,7 @@ class FittedTable:
         for number, (head, width) in enumerate(zip(self.columns, widths, strict=True)):
             table.add_column(
                 seen(head),
-                justify="right" if number else "left",
+                justify="left" if number in self.words else "right",
                 width=width,
                 overflow="fold",
             )
@@ -56,8 +58,8 @@ class FittedTable:
     def _blocks(self) -> Iterator[str]:
         for row in self.rows:
             first, *rest = zip(self.columns, row, strict=True)
-            yield f"{first[0]}: {first[1]}"
-            yield from (f"  {head}: {cell}" for head, cell in rest if cell)
+            yield f"{first[0]}: {first[1].strip()}"
+            yield from (f"  {head}: {cell.strip()}" for head, cell in rest if cell)
 
 
 def fitted_widths(

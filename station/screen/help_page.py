@@ -35,10 +35,10 @@ _LIBRARY_HELP = {
 
 
 class HelpCommand(TyperCommand):
-    """A command whose help says what it does, then its values, then examples."""
+    """A command whose help has a description, the options and examples."""
 
     def get_help(self, ctx: Any) -> str:
-        """Return the page; a reader of 40 columns loses nothing.
+        """Return the page; it is complete at any width.
 
         Args:
             ctx: context of the call, as the library gives it.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Help as text: docstrings taken apart, lines wrapped, nothing cut off."""
+"""Text of the help: docstrings split into parts, lines wrapped."""
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -10,7 +10,7 @@ INDENT = "  "
 _GAP = "  "
 _WIDEST_NAMES = 28
 _NAMES_SHARE = 0.4
-"""Largest part of a line that the names in a list take; longer ones get a line."""
+"""Largest fraction of a line that the names in a list take [-]."""
 # A quoted quantity and a remark in brackets stay in one line, and so do an option and
 # its value.
 _WORD = re.compile(r"'[^']*'\S*|\[[^\]]*\]\S*|\S+")
@@ -21,7 +21,7 @@ _EXAMPLES = re.compile(r"^Examples?:\s*$", re.MULTILINE)
 
 @dataclass(frozen=True, slots=True)
 class CommandText:
-    """The docstring of a command, taken apart.
+    """The parts of the docstring of a command.
 
     Attributes:
         summary: its first paragraph, the line in the list of commands.
@@ -35,10 +35,10 @@ class CommandText:
 
 
 def command_text(docstring: str | None) -> CommandText:
-    """Take the docstring of a command apart.
+    """Split the docstring of a command into its parts.
 
-    Examples stand below the heading ``Examples:``, each beginning with ``jointbench``
-    and going on in the lines after it.
+    Examples follow the heading ``Examples:``. Each begins with ``jointbench`` and may
+    continue on the next lines.
     """
     prose, *rest = _EXAMPLES.split(cleandoc(docstring or ""), maxsplit=1)
     paragraphs = [" ".join(p.split()) for p in prose.split("\n\n") if p.strip()]
@@ -54,13 +54,13 @@ def wrapped(text: str, width: int, indent: str = "") -> str:
 
 
 def command_line(text: str, width: int, indent: str = INDENT) -> str:
-    """Return a command in lines that a shell takes as one."""
+    """Return a command in lines that a shell reads as one."""
     lines = _lines(text, width - len(indent) - len(INDENT) - len(" \\"), _OPTION)
     return f" \\\n{indent}{INDENT}".join([indent + lines[0], *lines[1:]])
 
 
 def names_width(names: Iterable[str], width: int) -> int:
-    """Return how wide the column of names is on a page; longer names get a line.
+    """Return the width of the column of names; longer names take a line of their own.
 
     Args:
         names: of the page.
@@ -71,7 +71,7 @@ def names_width(names: Iterable[str], width: int) -> int:
 
 
 def definitions(rows: Sequence[tuple[str, str]], names: int, width: int) -> str:
-    """Return names and what they mean, side by side.
+    """Return names and their meanings in two columns.
 
     Args:
         rows: name and meaning.
@@ -100,7 +100,7 @@ def _lines(text: str, width: int, pattern: re.Pattern[str] = _WORD) -> list[str]
 
 
 def _words(text: str, width: int, pattern: re.Pattern[str]) -> Iterator[str]:
-    """Yield what stays in one line; what is longer than a line is taken apart."""
+    """Yield words that are not broken; words longer than a line are split."""
     for word in pattern.findall(text):
         if len(word) <= width:
             yield word

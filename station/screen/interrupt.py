@@ -15,7 +15,7 @@ from contextlib import ExitStack, contextmanager
 from types import FrameType
 from typing import Protocol
 
-_KILLS = ("SIGTERM", "SIGHUP", "SIGBREAK")
+_TERMINATION = ("SIGTERM", "SIGHUP", "SIGBREAK")
 Handler = Callable[[int, FrameType | None], None]
 
 
@@ -25,12 +25,12 @@ class Stoppable(Protocol):
     interrupted: bool
 
 
-def kills() -> tuple[signal.Signals, ...]:
+def termination_signals() -> tuple[signal.Signals, ...]:
     """Return the signals of this system that ask a process to end.
 
     A signal that is ignored at the start stays ignored, as under ``nohup``.
     """
-    found = [getattr(signal, name) for name in _KILLS if hasattr(signal, name)]
+    found = [getattr(signal, name) for name in _TERMINATION if hasattr(signal, name)]
     return tuple(s for s in found if signal.getsignal(s) is not signal.SIG_IGN)
 
 
@@ -48,7 +48,7 @@ def interruptible() -> Iterator[None]:
         if not again:
             raise KeyboardInterrupt
 
-    with _handling(dict.fromkeys(kills(), stop)), _closed_window():
+    with _handling(dict.fromkeys(termination_signals(), stop)), _closed_window():
         yield
 
 
@@ -67,11 +67,11 @@ def patient_interrupt(work: Stoppable) -> Iterator[None]:
             raise KeyboardInterrupt
         work.interrupted = True
 
-    with _handling(dict.fromkeys((signal.SIGINT, *kills()), note)):
+    with _handling(dict.fromkeys((signal.SIGINT, *termination_signals()), note)):
         yield
 
 
-def restless(
+def interruptible_wait(
     work: Stoppable, sleep: Callable[[float], None] = time.sleep
 ) -> Callable[[float], None]:
     """Return a wait that raises KeyboardInterrupt once the work is interrupted.

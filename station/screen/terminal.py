@@ -6,7 +6,7 @@ Tables go to standard output, unless the JSON goes there; progress to standard e
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager, suppress
 from math import isfinite
 from pathlib import Path
@@ -96,14 +96,24 @@ def progress_bar(first: str) -> Iterator[Callable[[str, float], None]]:
 
 
 def table(
-    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]
+    title: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    words: Set[int] = frozenset({0}),
 ) -> RenderableType:
-    """Return a titled table, its first column left-aligned, the others right-aligned.
+    """Return a titled table; columns of text are left-aligned, others right-aligned.
 
     Cells are texts without markup: brackets are units. They wrap where the terminal is
     too narrow.
+
+    Args:
+        title: above the table.
+        columns: heads.
+        rows: cells.
+        words: numbers of the columns of text.
     """
-    content = FittedTable(tuple(columns), tuple(tuple(row) for row in rows))
+    content = FittedTable(tuple(columns), tuple(map(tuple, rows)), frozenset(words))
     return Group(Text(), seen(title, style="bold"), content)
 
 

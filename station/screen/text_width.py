@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The width of what is printed: COLUMNS, else the terminal, else 80 columns."""
+"""The width of the output: COLUMNS, else the terminal, else 80 columns."""
 
 import shutil
 

@@ -51,7 +51,6 @@ FullScale = Annotated[
     float | None,
     typer.Option(
         metavar="NUMBER",
-        help="WAV: full scale in the unit of --columns [unit of the column], for "
-        "example 500.",
+        help="WAV: full scale [unit of --columns], for example 500.",
     ),
 ]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Options that say what is written, and where."""
+"""Options of the output: files to write, and their format."""
 
 from pathlib import Path
 from typing import Annotated
