@@ -13,7 +13,6 @@ import typer
 
 from jointbench.station.commands.bench_commands import (
     calibrate_command,
-    demo_command,
     measure_command,
     record_command,
     simulate_command,
@@ -39,6 +38,7 @@ from jointbench.station.commands.reprocessing_commands import (
     process_command,
     reprocess_command,
 )
+from jointbench.station.demo.demo_command import demo_command
 from jointbench.station.screen.exit_codes import exit_code, show_traceback
 from jointbench.station.screen.help_page import HelpCommand, HelpGroup
 

@@ -24,7 +24,6 @@ _SMALL_SHARE = 0.005
 _WIDEST = 110
 _LABEL = 9
 """Width of the words that lead the lines."""
-_LONGEST_NAME = 34
 _VIEW_HEADS = ("view", "largest shares")
 _TRIED_HEADS = ("explanation", "behind", "chi2/dof", "pull", "why")
 
@@ -60,7 +59,7 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     if where:
         screen.print(table("Where the gap sits", _VIEW_HEADS, where, words={0, 1}))
     if len(found.candidates) > 1:
-        tried = _candidates(screen, found)
+        tried = _candidates(found)
         screen.print(table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
     if next_step(found):
         screen.print()
@@ -149,14 +148,10 @@ def _where(found: Diagnosis) -> list[tuple[str, str]]:
     return rows
 
 
-def _candidates(
-    screen: Console, found: Diagnosis
-) -> list[tuple[str, str, str, str, str]]:
-    room = min(screen.width, _WIDEST) - 3 * 10
-    widest = min(max(room // 2, 22), _LONGEST_NAME)
+def _candidates(found: Diagnosis) -> list[tuple[str, str, str, str, str]]:
     return [
         (
-            _short(" + ".join(one.effects), widest),
+            _short(" + ".join(one.effects)),
             short(one.behind),
             f"{one.chi2_per_dof:.4g}",
             short(one.pull),
@@ -166,6 +161,5 @@ def _candidates(
     ]
 
 
-def _short(name: str, widest: int) -> str:
-    name = "base alone" if name == "none" else name.replace("link:joint", "joint")
-    return name if len(name) <= widest else f"{name[: widest - 3]}..."
+def _short(name: str) -> str:
+    return "base alone" if name == "none" else name.replace("link:joint", "joint")
