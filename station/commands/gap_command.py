@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench gap``: where model and measurement disagree, and what is missing."""
+"""``jointbench gap``: the effect that a model lacks to explain a measurement."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -38,16 +38,16 @@ def run_gap(
     report: Path | None,
     json_target: str | None,
 ) -> Diagnosis:
-    """Diagnose a source, show verdict and evidence, and write the page if asked.
+    """Diagnose a source, show verdict and evidence, and write the report if asked.
 
     Args:
         source: campaign file, session, MAT file, model file that names data, or URL.
         more: further sessions of the same bench.
-        model: bench model, where the source brings none.
-        preload: on the joint with unit, where the session does not say.
+        model: bench model, where the source has none.
+        preload: on the joint with unit, where the session gives none.
         without: names of effects to leave out of the catalogue, joined by commas.
         effects: files of the user's own effects, run as Python.
-        report: HTML page to write, or None.
+        report: HTML report to write, or None.
         json_target: where the JSON goes.
     """
     sources = [str(source), *map(str, more)]
@@ -66,15 +66,15 @@ def run_gap(
         done = examine(sources, wanted, progress=lambda line: status.update(seen(line)))
     _show(done, packages, json_target)
     if report is not None:
-        page = gap_report(done.found, title=done.title)
+        content = gap_report(done.found, title=done.title)
         if done.scores:
             section = score_section(done.scores, done.unit)
-            page = replace(page, sections=(*page.sections, section))
+            content = replace(content, sections=(*content.sections, section))
         if packages:
             section = packages_section(packages)
-            page = replace(page, sections=(*page.sections, section))
-        write_report(page, report)
-        console(json_target).print(f"\nreport: {report}")
+            content = replace(content, sections=(*content.sections, section))
+        write_report(content, report)
+        console(json_target).print(f"\nreport: {report}", soft_wrap=True)
     write_json(json_target, _json(sources, done, packages))
     return done.found
 
@@ -96,7 +96,9 @@ def _show(done: Examined, packages: Mapping[str, str], json_target: str | None) 
     for remark in done.remarks[:MOST_REMARKS]:
         screen.print(f"note: {remark}")
     if len(done.remarks) > MOST_REMARKS:
-        screen.print(f"note: {len(done.remarks) - MOST_REMARKS} more like these")
+        screen.print(
+            f"note: {len(done.remarks) - MOST_REMARKS} more notes; use --json for all"
+        )
 
 
 def _json(

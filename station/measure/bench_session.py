@@ -38,7 +38,7 @@ from jointbench.station.measure.plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure.session_engine import MeasureSession
 from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
-from jointbench.station.screen.interrupt import patient_interrupt, restless
+from jointbench.station.screen.interrupt import interruptible_wait, patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
 from jointbench.station.sources.serial_port import line_name
 
@@ -160,7 +160,7 @@ def _stream_settings(plan: MeasurePlan, record: Record) -> StreamSettings:
         block=round(acquisition.block * acquisition.sample_rate),
         buffer=acquisition.buffer,
         patience=acquisition.patience,
-        sleep=restless(record),
+        sleep=interruptible_wait(record),
     )
 
 

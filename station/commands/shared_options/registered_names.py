@@ -4,13 +4,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from typer.core import TyperCommand
+from jointbench.station.screen.help_page import HelpCommand
 
 Names = Callable[[], Sequence[str]]
 """Returns names of a registry; called when the help is shown, not at the start."""
 
 
-def command_with_names(options: Mapping[str, tuple[str, Names]]) -> type[TyperCommand]:
+def command_with_names(options: Mapping[str, tuple[str, Names]]) -> type[HelpCommand]:
     """Return a class of commands whose help lists names that are installed.
 
     Args:
@@ -18,14 +18,13 @@ def command_with_names(options: Mapping[str, tuple[str, Names]]) -> type[TyperCo
             returns them; without names its help stays as it is.
     """
 
-    class CommandWithNames(TyperCommand):
+    class CommandWithNames(HelpCommand):
         """Completes the help of some options just before it is shown."""
 
-        # Typer ships its own copy of click or uses that of others, by its version.
-        def format_help(self, ctx: Any, formatter: Any) -> None:
+        def get_help(self, ctx: Any) -> str:
             for parameter in self.params:
                 _complete(parameter, options)
-            super().format_help(ctx, formatter)
+            return super().get_help(ctx)
 
     return CommandWithNames
 

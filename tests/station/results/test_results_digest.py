@@ -138,7 +138,7 @@ def test_process_says_what_it_made_anew(make_session, tmp_path: Path, capsys) ->
     overwrite(target)
     capsys.readouterr()
     run_process(session, **where, json_target=str(tmp_path / "p.json"))
-    assert "made again" in " ".join(capsys.readouterr().out.split())
+    assert "computed again" in " ".join(capsys.readouterr().out.split())
     page = json.loads((tmp_path / "p.json").read_text(encoding="utf-8"))
     assert "corrupted" in page["ledger"][0]["rotten"]
 
