@@ -28,6 +28,7 @@ from jointbench.analysis.gap.model.diagnosis_record import (
 )
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.effect_parameter import Reported
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench, values_of
 from jointbench.analysis.gap.residuals.evaluation_stages import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -52,6 +53,7 @@ def diagnose(
     *,
     without: frozenset[str] = frozenset(),
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    policy: Policy = STANDARD,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find, name and add what a model misses.
@@ -60,6 +62,7 @@ def diagnose(
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
+        policy: thresholds of the verdict.
         progress: told what is being tried, one line at a time.
 
     Returns:
@@ -73,12 +76,12 @@ def diagnose(
         Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63, 425, for the question; the
         rules of naming are those of `jointbench.analysis.gap.judgement.naming`.
     """
-    bench = make_bench(campaign, without=without, entries=entries)
+    bench = make_bench(campaign, without=without, entries=entries, policy=policy)
     outcome = investigate(bench, progress or (lambda line: None))
     final = outcome.bench
     if not isinstance(final, LumpedBench):
         raise TypeError("the loop must hand back the bench it was given")
-    return conclude(outcome, final, limits=campaign_limits(campaign))
+    return conclude(outcome, final, limits=campaign_limits(campaign, policy))
 
 
 def conclude(
@@ -125,6 +128,7 @@ def conclude(
         reason=verdict.reason,
         exhibit=exhibit,
         explanations=tuple(_labels(f) for f in outcome.level if outcome.gate.passed),
+        policy=bench.policy,
     )
     if finding is Finding.NAMED and not found.foretold:
         return replace(found, reason=verdict.reason + UNFORETOLD_WORDS)

@@ -17,7 +17,6 @@ from jointbench.analysis.gap.diagnosis.location import (
     telling_view,
 )
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.judgement.naming import PULL_LIMIT
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.evidence_records import (
@@ -72,14 +71,14 @@ def make_exhibit(
     )
     curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
     facts = gather(bench, base, outcome, finding, relative["output"])
-    limits = _limits(outcome)
+    limits = _limits(outcome, bench)
     view = telling_view(bench, residual, facts)
     where = ""
     look: tuple[str, ...] = ()
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
         where = locate(bench, residual, facts)
         look = describe(bench, residual, relative, facts, wishes, tests)
-    elif not outcome.base_gate.passed and np.abs(base.pulls).max() > PULL_LIMIT:
+    elif not outcome.base_gate.passed and _pulled_off(bench, base):
         where, view = pulled(bench, base), "sheet"
     elif not outcome.base_gate.passed:
         where = locate(bench, residual, facts)
@@ -103,14 +102,19 @@ def _cube(bench: LumpedBench, fit: Fit) -> FloatArray:
     return fit.residual.reshape(bench.campaign.response.shape)
 
 
-def _limits(outcome: SearchOutcome) -> CampaignLimits:
+def _pulled_off(bench: LumpedBench, base: Fit) -> bool:
+    """Return whether a base parameter lies beyond the limit of its prior."""
+    return bool(np.abs(base.pulls).max() > bench.policy.prior_limit)
+
+
+def _limits(outcome: SearchOutcome, bench: LumpedBench) -> CampaignLimits:
     """Repeat the limits of the gate."""
     return CampaignLimits(
         chi2_per_dof=1.0 + outcome.gate.excess,
         chi2_allowed=1.0 + outcome.gate.allowed,
         remaining=outcome.gate.remaining,
         remaining_allowed=outcome.gate.remaining_allowed,
-        pull_allowed=PULL_LIMIT,
+        pull_allowed=bench.policy.prior_limit,
     )
 
 

@@ -8,11 +8,7 @@ import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
 from jointbench.analysis.gap.judgement.naming import Gate, gate
-from jointbench.analysis.gap.judgement.rivals import (
-    CROWDED_WITHIN,
-    rivals,
-    without_twins,
-)
+from jointbench.analysis.gap.judgement.rivals import rivals, without_twins
 from jointbench.analysis.gap.judgement.winner_judging import Hopes, far_off, judge
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, may_join
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
@@ -39,8 +35,6 @@ from jointbench.analysis.gap.search.selection_round import (
 
 _MOST_EFFECTS = 3
 _FIRSTS = 3
-_THIRD_LEFT = 0.01
-"""Share of the base's excess chi2 that a pair may leave for a third effect."""
 _HOPEFUL = 4.0
 """Excess of the cost over the best first's above which a first is given no second."""
 _NOTHING = 0.01
@@ -48,13 +42,8 @@ _NOTHING = 0.01
 _WRONG_VALLEY = 2.0
 """Chi2 over dof above which a base may have stopped in a wrong valley."""
 _SECONDS = 4
-MOST_EFFORT = 3.2e9
-"""Samples predicted after which no further effect is looked for: 75 to 87 s of a core
-of 2.3 GHz."""
 _MOVED = 1000.0
 """Gain of a winner by being settled after which one of its effects may be needless."""
-_MIN_GAIN = 35.0
-"""Chi2 that a further effect must take, beyond its charge."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -109,7 +98,7 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
             break
         grown |= {labels_of(f.candidates) for f in firsts}
         try:
-            with limited(effort, MOST_EFFORT):
+            with limited(effort, bench.policy.most_samples):
                 after = _one_more(found, firsts, base, progress)
         except SearchExhausted:
             given_up = True
@@ -205,8 +194,8 @@ def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
 
     What is not told apart from the best was fitted again when that was judged.
     """
-    best = score(found.bench, found.fits[0])
-    close = [f for f in found.fits if score(found.bench, f) < best + CROWDED_WITHIN]
+    near = score(found.bench, found.fits[0]) + found.bench.policy.rival_score_one_site
+    close = [f for f in found.fits if score(found.bench, f) < near]
     known = {labels_of(f.candidates) for f in close}
     more = exchanged(found.bench, found.fits[0], known, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
@@ -228,7 +217,8 @@ def _worth_more(found: _Round, base: Fit) -> bool:
     links = [c.site for c in fit.candidates if c.site.kind == "link"]
     apart = len(set(links)) == len(links)
     dof = found.bench.blocks.dof
-    return apart and fit.chi2 - dof < _THIRD_LEFT * (base.chi2 - dof)
+    share = found.bench.policy.third_effect_share
+    return apart and fit.chi2 - dof < share * (base.chi2 - dof)
 
 
 def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome | None:
@@ -314,5 +304,6 @@ def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
 
 
 def _worthwhile(bench: Bench, more: Fit, fewer: Fit) -> bool:
-    gain = _MIN_GAIN if len(more.candidates) > len(fewer.candidates) else 0.0
+    added = len(more.candidates) > len(fewer.candidates)
+    gain = bench.policy.least_gain if added else 0.0
     return score(bench, more) + gain < score(bench, fewer)

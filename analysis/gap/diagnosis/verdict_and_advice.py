@@ -9,7 +9,6 @@ from jointbench.analysis.gap.diagnosis.location import counted_samples
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.campaign_limits import flat_tops
 from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
-from jointbench.analysis.gap.judgement.naming import GLOBAL_SD
 from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import labels_of, words_of
@@ -19,8 +18,6 @@ from jointbench.analysis.gap.search.selection_round import score
 
 MOSTLY = 0.8
 """Share of the misfit from which one record is suspected by itself."""
-MOST_RIVALS = 3
-"""Explanations that fit alike beyond which nothing is told apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +60,7 @@ def verdict_on(
         reason = f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}"
         return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
     step = _separates(outcome.level[0], outcome.level[1])
-    if len(outcome.level) > MOST_RIVALS:
+    if len(outcome.level) > bench.policy.most_rivals:
         reason = f"too many explanations fit alike: {names}"
         return DiagnosisVerdict(Finding.UNKNOWN, reason, step)
     reason = f"{names}: their scores lie too close together"
@@ -103,7 +100,7 @@ def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
     worst = int(np.argmax(share))
     total = float(np.clip(share, 0, None).sum())
     noise = noise_sd(bench) * np.sqrt(share.size) * np.mean(np.bincount(groups))
-    if share[worst] < max(MOSTLY * total, GLOBAL_SD * noise):
+    if share[worst] < max(MOSTLY * total, bench.policy.chi2_limit * noise):
         return ""
     labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
     return (
@@ -125,7 +122,7 @@ def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
     behind = min(others) - score(bench, outcome.best)
     return (
         f"no experiment needed: the nearest rival is {behind:.0f} behind, "
-        f"{rival_within(outcome.best):.0f} tell it apart"
+        f"{rival_within(outcome.best, bench.policy):.0f} tell it apart"
     )
 
 

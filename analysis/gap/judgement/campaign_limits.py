@@ -5,10 +5,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.hit_scatter import repeat_groups
 
-_ONE_LEVEL = 1.5
-"""Ratio of the hardest hit to the softest below which all have one level."""
 _FLAT_SAMPLES = 6
 """Pairs of neighbours at the common maximum from which a record counts as clipped."""
 _AT_TOP_SD = 5.0
@@ -17,20 +16,20 @@ _SHARPER = 1.5
 """Growth of what lies near the maximum, from one to the other of these distances, below
 which it is an edge; the crest of an oscillation doubles."""
 _LOUD_SD = 50.0
-_MIN_RECORDS = 4
 
 
-def campaign_limits(campaign: Campaign) -> str:
+def campaign_limits(campaign: Campaign, policy: Policy = STANDARD) -> str:
     """Return why no verdict but `unknown` can be given, or an empty text."""
     if campaign.continuous:
         return ""
-    if campaign.force.shape[0] < _MIN_RECORDS:
+    least = policy.least_records
+    if campaign.force.shape[0] < least:
         return (
-            f"{campaign.force.shape[0]} records are too few, at least {_MIN_RECORDS} "
+            f"{campaign.force.shape[0]} records are too few, at least {least} "
             "are needed: hit each point at three levels, twice"
         )
     level = np.abs(campaign.force).max(axis=1)
-    if level.max() < _ONE_LEVEL * level.min():
+    if level.max() < policy.one_level_ratio * level.min():
         return (
             f"all hits have one level ({level.min():.0f} to {level.max():.0f} N): "
             "nothing that depends on it can be told apart; hit over 30x in level"

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.analysis.gap.judgement.amplitudes import AMPLITUDE_SD, weakest_amplitude
+from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
 from jointbench.analysis.gap.judgement.naming import Gate, gate
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY, labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FULL
+from jointbench.analysis.gap.residuals.evaluation_stages import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -95,7 +95,7 @@ def judge(
 
 def far_off(bench: Bench, fit: Fit) -> bool:
     """Tell whether a fit leaves a misfit of many times the noise."""
-    return fit.chi2 > EVERYDAY * bench.blocks.dof
+    return fit.chi2 > bench.policy.far_chi2 * bench.blocks.dof
 
 
 def _brought_near(
@@ -111,7 +111,7 @@ def _brought_near(
         return bench, fit
     there = bench.refine(fit.base, fit.terms)
     r = there.residual(fit.base, fit.terms, FULL)
-    if float(r @ r) < EVERYDAY * bench.blocks.dof:
+    if float(r @ r) < bench.policy.far_chi2 * bench.blocks.dof:
         return bench, fit
     there = bench.refine(fit.base, fit.terms, astray=True)
     if not there.expanded:
@@ -173,7 +173,8 @@ def _alike(bench: Bench, fit: Fit, base: Fit) -> Fit:
     effect was in. The base of before, to which there was no scatter, then makes that
     effect look needed, though its amplitude is none.
     """
-    if len(fit.candidates) != 1 or weakest_amplitude(fit) > AMPLITUDE_SD:
+    limit = bench.policy.amplitude_limit
+    if len(fit.candidates) != 1 or weakest_amplitude(fit) > limit:
         return base
     return minimise(make_problem(bench, ()), fit.base)
 

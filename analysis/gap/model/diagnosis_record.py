@@ -8,6 +8,7 @@ from typing import Any
 
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import Exhibit, exhibit_json
+from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_json
 
 _SEEN = 1.0
 """Gap below which it does not count by what share it shrank."""
@@ -123,6 +124,7 @@ class Diagnosis:
         exhibit: the evidence as curves and sentences; None where none was made.
         explanations: labels of the effects of each explanation that passed and is not
             told apart from the best, that first; ("none",) is the base alone.
+        policy: thresholds that the verdict rests on.
     """
 
     verdict: Finding
@@ -138,6 +140,7 @@ class Diagnosis:
     reason: str
     exhibit: Exhibit | None = None
     explanations: tuple[tuple[str, ...], ...] = ()
+    policy: Policy = STANDARD
 
     @property
     def foretold(self) -> bool:
@@ -195,6 +198,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "experiment": d.experiment,
         "reason": d.reason,
         "exhibit": None if d.exhibit is None else exhibit_json(d.exhibit),
+        "policy": policy_json(d.policy),
     }
 
 

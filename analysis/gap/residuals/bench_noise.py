@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
-from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FULL
+from jointbench.analysis.gap.residuals.evaluation_stages import FULL
 from jointbench.analysis.gap.residuals.fit_records import Settled
 from jointbench.analysis.gap.residuals.hit_scatter import (
     gain_scatter,
@@ -99,7 +99,7 @@ def refine_noise(
     settling = np.log(np.maximum(np.exp(off) * (1.0 + rise) - rise, LEAST_FACTOR))
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)
-    if left @ left > EVERYDAY * bench.blocks.dof and not astray:
+    if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not astray:
         return settle(refined, None)
     return expanded
 
@@ -142,9 +142,10 @@ def _scatter_of(
     patterns = _patterns(bench.excitation.conditions)
     return tuple(
         gain_scatter(
-            without_trend(coefficients[:, i], variances[:, i], patterns),
+            without_trend(coefficients[:, i], variances[:, i], patterns, bench.policy),
             variances[:, i],
             groups,
+            bench.policy,
         )
         for i in range(count)
     )

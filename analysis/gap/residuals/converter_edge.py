@@ -16,7 +16,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Term
-from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FINE, FULL
+from jointbench.analysis.gap.residuals.evaluation_stages import FINE, FULL
 from jointbench.analysis.gap.residuals.lumped_residual import SomeBench
 from jointbench.analysis.gap.response.excitation import pass_band_end
 
@@ -57,7 +57,7 @@ def with_converter_edge(
     left = plain.residual(base, terms, FINE)
     change = np.linalg.solve(normal, -slopes @ left)
     left = left + change @ slopes
-    if not left @ left < EVERYDAY * bench.blocks.dof:
+    if not left @ left < bench.policy.far_chi2 * bench.blocks.dof:
         return plain
     return _with_taper(bench, usual + change @ splines)
 

@@ -21,6 +21,3 @@ class Stage:
 MIDDLE = Stage(oversampling=2)
 FULL = Stage()
 FINE = Stage(oversampling=8)
-EVERYDAY = 30.0
-"""Chi2 over dof beyond which a misfit is a missing effect of everyday size: directed
-tests may point the wrong way, and nothing can be told of noise, settling or filter."""

@@ -2,7 +2,7 @@
 """Whitened residuals of a lumped model: what a campaign and a noise make of a fit."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -13,6 +13,7 @@ from jointbench.analysis.gap.catalogue.catalogue import site_index
 from jointbench.analysis.gap.catalogue.probes import PROBES
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled
@@ -50,6 +51,7 @@ class LumpedResidual:
         blocks: records as groups.
         short: the same with fewer samples, by length.
         settled: where the model is expanded about the settling of each hit, or None.
+        policy: thresholds that fits of the bench are judged by.
     """
 
     campaign: Campaign
@@ -63,6 +65,7 @@ class LumpedResidual:
     blocks: Blocks
     short: dict[int, "LumpedResidual"]
     settled: Settled | None
+    policy: Policy = field(default=STANDARD, kw_only=True)
 
     @property
     def expanded(self) -> bool:

@@ -13,6 +13,7 @@ from jointbench.analysis.gap.catalogue.catalogue import (
 )
 from jointbench.analysis.gap.catalogue.probes import PROBES
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Blocks
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.lumped_residual import gated_excitation
@@ -30,6 +31,7 @@ def make_bench(
     *,
     without: frozenset[str] = frozenset(),
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    policy: Policy = STANDARD,
 ) -> LumpedBench:
     """Prepare a campaign for the engine.
 
@@ -37,6 +39,7 @@ def make_bench(
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
+        policy: thresholds that its fits are judged by.
 
     Raises:
         UsageError: `without` holds a name that no entry has.
@@ -66,6 +69,7 @@ def make_bench(
         blocks=_blocks(campaign),
         short={},
         settled=None,
+        policy=policy,
     )
     return replace(bench, scales=_scales(bench))
 

@@ -9,7 +9,6 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.evaluation_stages import (
-    EVERYDAY,
     FINE,
     FULL,
     MIDDLE,
@@ -28,9 +27,6 @@ from jointbench.analysis.gap.search.screening import Direction, Screening
 
 Progress = Callable[[str], None]
 
-_COST_PER_PARAMETER = 10.0
-"""Chi2 that one more parameter must earn: far above chance, far below any name."""
-_COST_PER_PHASE = 2.0
 _COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
     (Stage(0.005, 2), 5),
     (Stage(0.016, 2), 6),
@@ -54,10 +50,10 @@ _MARCH_ERROR = 50.0
 
 def score(bench: Bench, fit: Fit) -> float:
     """Return the cost of a fit with a charge for every parameter."""
-    charge = 0.0
+    charge, policy = 0.0, bench.policy
     for candidate in fit.candidates:
-        charge += _COST_PER_PARAMETER * len(candidate.effect.parameters)
-        charge += _COST_PER_PHASE * bench.phases(candidate)
+        charge += policy.parameter_charge * len(candidate.effect.parameters)
+        charge += policy.phase_charge * bench.phases(candidate)
     return fit.cost + charge
 
 
@@ -81,7 +77,7 @@ def race(
         One fit for each candidate that came far enough, best score first.
     """
     runners = _near(bench, fit, screening, candidates)
-    if fit.chi2 > EVERYDAY * bench.blocks.dof:
+    if fit.chi2 > bench.policy.far_chi2 * bench.blocks.dof:
         runners += _far(bench, fit, screening, candidates, progress)
     return _run_out(bench, runners, progress)
 
