@@ -11,6 +11,7 @@ from jointbench.station.report.gap_figures import (
     wish_figure,
 )
 from jointbench.station.report.gap_numbers import percent, short, sure
+from jointbench.station.report.gap_policy_section import policy_section
 from jointbench.station.report.gap_sentences import (
     SMALL_GAP,
     effect_words,
@@ -49,6 +50,7 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
         Section("candidates", "Explanations tried", _candidates(found)),
         Section("limits", "What could be seen, and what is left", _limits(found)),
         Section("base", "The model at the end", (_base(found), _pulls(found))),
+        policy_section(found.policy),
     ]
     return Report(
         title=headline(found),
@@ -250,11 +252,13 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
         )
         for one in found.candidates[:MOST_CANDIDATES]
     )
+    policy = found.policy
     columns = ("explanation", "behind", "chi2/dof", "pull [sd]", "reason")
     caption = (
-        "Best first. The score is chi2 with the priors' pull and a charge of 10 for "
-        "each parameter; one that is 15 behind is told apart (60 where one place "
-        "bears two effects)."
+        "Best first. The score is chi2 with the priors' pull and a charge of "
+        f"{policy.parameter_charge:g} for each parameter; one that is "
+        f"{policy.rival_score:g} behind is told apart "
+        f"({policy.rival_score_one_site:g} where one place bears two effects)."
     )
     items: list[Item] = [DataTable(caption, columns, rows)]
     if found.exhibit is not None and found.verdict is not Finding.NONE:

@@ -9,6 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence import make_exhibit
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
@@ -39,7 +40,6 @@ from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
-FAR = 1e12
 UNFORETOLD_WORDS = (
     "; held out, a condition is not foretold by the others: it shows the effect "
     "alone, so add conditions next to it"
@@ -169,7 +169,7 @@ def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
         if {c.label for c in f.candidates} != own
         and not own < {c.label for c in f.candidates}
     ]
-    margin = (min(others) if others else FAR) - score(bench, fit)
+    margin = (min(others) if others else DIAGNOSIS.no_rival_score) - score(bench, fit)
     allowed = max(outcome.gate.allowed, 1e-12)
     slack = 1.0 - max(outcome.gate.excess, 0.0) / allowed
     sure = weakest(fit, (outcome.base, *outcome.ranked))

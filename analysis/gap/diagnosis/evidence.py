@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import gather
 from jointbench.analysis.gap.diagnosis.findings import advise, describe
 from jointbench.analysis.gap.diagnosis.location import (
@@ -36,17 +37,6 @@ _UNITS = {
     Output.VELOCITY: "m/s",
     Output.ACCELERATION: "m/s^2",
 }
-_SHOWN = 0.9
-"""Share of a record's misfit that the window of the picture holds."""
-_LEAD_TIME = 1e-3
-_SHORTEST = 256
-_LONGEST = 2048
-_LINES = 400
-_FORCE_FLOOR = 0.03
-"""Of the largest line of the force, below which a response function is not drawn."""
-_FINEST = 48
-"""Bands per decade that the misfit's spectrum is averaged over."""
-_MOST_TESTS = 8
 
 
 def make_exhibit(
@@ -93,7 +83,7 @@ def make_exhibit(
         spectra=spectra,
         wishes=wishes,
         limits=limits,
-        tests=tests[:_MOST_TESTS],
+        tests=tests[: DIAGNOSIS.figure_tests],
     )
 
 
@@ -189,12 +179,25 @@ def _window(bench: LumpedBench, residual: FloatArray) -> tuple[int, int]:
     rate, n = bench.campaign.sample_rate, residual.size
     if bench.campaign.continuous:
         peak = int(np.argmax(np.abs(residual)))
-        first = min(max(peak - _LONGEST // 4, 0), max(n - _LONGEST // 2, 0))
-        return first, min(first + _LONGEST // 2, n)
-    first = max(bench.gate[0] - int(_LEAD_TIME * rate), 0)
+        first = min(
+            max(peak - DIAGNOSIS.figure_most_samples // 4, 0),
+            max(n - DIAGNOSIS.figure_most_samples // 2, 0),
+        )
+        return first, min(first + DIAGNOSIS.figure_most_samples // 2, n)
+    first = max(bench.gate[0] - int(DIAGNOSIS.figure_lead * rate), 0)
     power = np.cumsum(residual[first:] ** 2)
-    reach = int(np.searchsorted(power, _SHOWN * power[-1])) if power[-1] > 0 else 0
-    return first, min(first + min(max(reach, _SHORTEST), _LONGEST), n)
+    reach = (
+        int(np.searchsorted(power, DIAGNOSIS.figure_share * power[-1]))
+        if power[-1] > 0
+        else 0
+    )
+    return first, min(
+        first
+        + min(
+            max(reach, DIAGNOSIS.figure_least_samples), DIAGNOSIS.figure_most_samples
+        ),
+        n,
+    )
 
 
 def _spectra(
@@ -213,9 +216,9 @@ def _spectra(
     campaign = bench.campaign
     force = np.fft.rfft(campaign.force[rows], axis=1)
     power = np.sum(np.abs(force) ** 2, axis=0)
-    kept = np.flatnonzero(power > _FORCE_FLOOR**2 * power.max())
+    kept = np.flatnonzero(power > DIAGNOSIS.figure_force_floor**2 * power.max())
     frequency = np.fft.rfftfreq(campaign.force.shape[1], 1 / campaign.sample_rate)
-    kept = kept[frequency[kept] > 0.0][: 4 * _LINES]
+    kept = kept[frequency[kept] > 0.0][: 4 * DIAGNOSIS.figure_lines]
     centres, misfits = _misfit_spectra(bench, whitened)
 
     def ratio(response: FloatArray) -> FloatArray:
@@ -259,7 +262,7 @@ def _misfit_spectra(
 def _bands(frequency: NDArray[np.floating[Any]]) -> IntArray:
     """Number lines from the second on into bands: single lines, then log-spaced."""
     decades = np.log10(frequency[1:] / frequency[1])
-    return np.asarray(np.floor(_FINEST * decades), dtype=np.int64)
+    return np.asarray(np.floor(DIAGNOSIS.figure_bands * decades), dtype=np.int64)
 
 
 def _wishes(bench: LumpedBench, base: Fit, best: Fit) -> Wishes | None:

@@ -7,16 +7,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
 from jointbench.analysis.gap.diagnosis.location import Relative
 from jointbench.analysis.gap.model.evidence_records import DirectedTest, Wishes
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-CLEAR_SD = 4.0
-"""Distance from 0 at which a wish of a record counts."""
-TAKEN = 0.3
-"""Share of the misfit that the joint's own numbers must take to be worth telling."""
 ODD, EVEN = "cubic_stiffness", "quadratic_stiffness"
 
 
@@ -150,7 +147,7 @@ def _wish_lines(wishes: Wishes, facts: Facts) -> list[str]:
         "joint: a stiffness and damping of its own for each record would take "
         f"{100 * wishes.share:.0f} % of the misfit"
     ]
-    if wishes.share < TAKEN:
+    if wishes.share < DIAGNOSIS.taken_share:
         more = ", so more than those is at work" if facts.guessed else ""
         return [lines[0] + more]
     views = [
@@ -189,7 +186,10 @@ def _trend(word: str, view: str, x: FloatArray, y: FloatArray, sd: FloatArray) -
     means = [float(np.average(y[x == v], weights=weight[x == v])) for v in at]
     errors = [float(np.sqrt(1.0 / weight[x == v].sum())) for v in at]
     change = means[-1] - means[0]
-    if abs(change) < CLEAR_SD * np.hypot(errors[0], errors[-1]) or abs(change) < 1e-3:
+    if (
+        abs(change) < DIAGNOSIS.clear_sd * np.hypot(errors[0], errors[-1])
+        or abs(change) < 1e-3
+    ):
         return ""
     steps = np.diff(means)
     steady = np.all(steps > 0) or np.all(steps < 0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.judgement.naming import Gate, gate
 from jointbench.analysis.gap.judgement.rivals import rivals, without_twins
 from jointbench.analysis.gap.judgement.winner_judging import Hopes, far_off, judge
@@ -32,18 +33,6 @@ from jointbench.analysis.gap.search.selection_round import (
     race_on,
     score,
 )
-
-_MOST_EFFECTS = 3
-_FIRSTS = 3
-_HOPEFUL = 4.0
-"""Excess of the cost over the best first's above which a first is given no second."""
-_NOTHING = 0.01
-"""Excess over dof that noise may make of nothing."""
-_WRONG_VALLEY = 2.0
-"""Chi2 over dof above which a base may have stopped in a wrong valley."""
-_SECONDS = 4
-_MOVED = 1000.0
-"""Gain of a winner by being settled after which one of its effects may be needless."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,8 +80,8 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
     found = _other_sliders(found, base, progress)
     grown: set[frozenset[str]] = set()
     given_up = False
-    for count in range(1, _MOST_EFFECTS):
-        firsts = found.fits[: _FIRSTS if count == 1 else 1]
+    for count in range(1, DIAGNOSIS.most_effects):
+        firsts = found.fits[: DIAGNOSIS.first_effects if count == 1 else 1]
         known = bool(firsts) and labels_of(firsts[0].candidates) in grown
         if known or not _worth_more(found, base):
             break
@@ -170,7 +159,7 @@ def judged(
     """
     found = _Round(*judge(bench, fits, base, progress, hopes))
     best = found.fits[0]
-    if len(best.candidates) == 1 or fits[0].cost - best.cost < _MOVED:
+    if len(best.candidates) == 1 or fits[0].cost - best.cost < DIAGNOSIS.needless_gain:
         return found
     merged = _take_back(found.bench, found.fits, progress)
     if merged[0] is best:
@@ -228,11 +217,14 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome |
     wrong valley (3 of 1,500 without an effect). An effect that leads it out looks as
     if it explained all that the base had missed.
     """
-    if not found.fits or base.chi2 < _WRONG_VALLEY * found.bench.blocks.dof:
+    if (
+        not found.fits
+        or base.chi2 < DIAGNOSIS.wrong_minimum_chi2 * found.bench.blocks.dof
+    ):
         return None
     progress("base again")
     fit = minimise(make_problem(found.bench, ()), found.fits[0].base)
-    if fit.chi2 > _WRONG_VALLEY * found.bench.blocks.dof:
+    if fit.chi2 > DIAGNOSIS.wrong_minimum_chi2 * found.bench.blocks.dof:
         return None
     bench, fit = settled_base(found.bench, fit)
     screening = screen(bench, fit, bench.candidates)
@@ -286,8 +278,8 @@ def _addable(bench: Bench, fit: Fit) -> list[Candidate]:
 def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     """Return the fits that a second effect may yet bring ahead of all others."""
     dof = bench.blocks.dof
-    least = max(fits[0].cost - dof, _NOTHING * dof)
-    return [f for f in fits if f.cost - dof < _HOPEFUL * least]
+    least = max(fits[0].cost - dof, DIAGNOSIS.noise_excess * dof)
+    return [f for f in fits if f.cost - dof < DIAGNOSIS.second_cost_ratio * least]
 
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
@@ -295,7 +287,7 @@ def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
     pulled = np.abs(first.pulls).max() > 3.5
     chosen: list[Candidate] = []
     for d in screening.directions:
-        if d.candidate not in chosen and len(chosen) < _SECONDS:
+        if d.candidate not in chosen and len(chosen) < DIAGNOSIS.second_candidates:
             chosen.append(d.candidate)
     for c in _addable(bench, first):
         if pulled and c.effect.by_prior and c not in chosen:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.location import counted_samples
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.campaign_limits import flat_tops
@@ -15,9 +16,6 @@ from jointbench.analysis.gap.model.effect import labels_of, words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.selection_round import score
-
-MOSTLY = 0.8
-"""Share of the misfit from which one record is suspected by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +98,9 @@ def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
     worst = int(np.argmax(share))
     total = float(np.clip(share, 0, None).sum())
     noise = noise_sd(bench) * np.sqrt(share.size) * np.mean(np.bincount(groups))
-    if share[worst] < max(MOSTLY * total, bench.policy.chi2_limit * noise):
+    if share[worst] < max(
+        DIAGNOSIS.one_record_share * total, bench.policy.chi2_limit * noise
+    ):
         return ""
     labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
     return (

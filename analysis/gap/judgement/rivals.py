@@ -3,14 +3,13 @@
 
 from collections.abc import Sequence
 
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect import labels_of
 from jointbench.analysis.gap.model.policy import Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import score
 
-_TWIN_WITHIN = 0.5
-"""Score within which the same fault at one channel and at all is one statement."""
 _EVERYWHERE = "all"
 
 
@@ -51,7 +50,8 @@ def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
         f
         for f in fits
         if not any(
-            _twin_of(f, c) and abs(score(bench, f) - score(bench, c)) < _TWIN_WITHIN
+            _twin_of(f, c)
+            and abs(score(bench, f) - score(bench, c)) < JUDGEMENT.same_fault_score
             for c in fits
         )
     ]

@@ -6,14 +6,10 @@ from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
 
+from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import Exhibit, exhibit_json
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_json
-
-_SEEN = 1.0
-"""Gap below which it does not count by what share it shrank."""
-_UNFORETOLD = 0.5
-"""Share of the gap that a name may leave on held-out records before that is said."""
 
 
 class Finding(StrEnum):
@@ -145,8 +141,8 @@ class Diagnosis:
     @property
     def foretold(self) -> bool:
         """Whether the conditions foretell each that was held out, or need not."""
-        left = _UNFORETOLD * self.gap_before.value
-        return self.gap_before.value < _SEEN or self.gap_after.value < left
+        left = CAMPAIGN.unpredicted_share * self.gap_before.value
+        return self.gap_before.value < CAMPAIGN.seen_gap or self.gap_after.value < left
 
     @property
     def shrink(self) -> float:

@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass
 
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+
 
 @dataclass(frozen=True, slots=True)
 class Stage:
@@ -15,9 +17,9 @@ class Stage:
     """
 
     window: float | None = None
-    oversampling: int = 4
+    oversampling: int = RESIDUALS.full_steps
 
 
-MIDDLE = Stage(oversampling=2)
+MIDDLE = Stage(oversampling=RESIDUALS.middle_steps)
 FULL = Stage()
-FINE = Stage(oversampling=8)
+FINE = Stage(oversampling=RESIDUALS.fine_steps)

@@ -8,9 +8,7 @@ import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
-
-_SCATTER_MAX = 0.004
-_SCATTER_TRIED = 2e-7
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 
 
 def repeat_groups(
@@ -133,7 +131,12 @@ def _trend(
 
 def _scatter_grid() -> FloatArray:
     """Return the scatters that are tried [-], the first none at all."""
-    return np.concatenate([[0.0], np.geomspace(_SCATTER_TRIED, _SCATTER_MAX, 360)])
+    return np.concatenate(
+        [
+            [0.0],
+            np.geomspace(RESIDUALS.smallest_scatter, RESIDUALS.largest_scatter, 360),
+        ]
+    )
 
 
 def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:

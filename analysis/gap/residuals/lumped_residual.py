@@ -25,14 +25,12 @@ from jointbench.analysis.gap.residuals.joint_settling import (
     stiffness_rise,
 )
 from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import HitConditions, LumpedEffect
 from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation
 from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.gap.response.search_effort import spend
-
-WINDOW_REACH = 3.5
-"""Decay times after which a windowed record is cut."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -195,7 +193,9 @@ def _windowed(
 ) -> FloatArray:
     """Return the residual under an exponential window, cut where it has decayed."""
     decay = stage.window or 1.0
-    reach = bench.gate[1] + int(WINDOW_REACH * decay * bench.campaign.sample_rate)
+    reach = bench.gate[1] + int(
+        RESIDUALS.window_reach * decay * bench.campaign.sample_rate
+    )
     short = _shortened(bench, scipy.fft.next_fast_len(reach, real=True))
     r = short.response(base, terms, stage.oversampling)
     r -= short.campaign.response

@@ -18,12 +18,10 @@ from jointbench.analysis.gap.residuals.fit_records import Blocks
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.lumped_residual import gated_excitation
 from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.dynamic_stiffness import dynamic_stiffness, invert
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.response.predict_records import motion, undamped
-
-PAD = 48
-"""Samples kept on each side of a hit: the anti-alias filter rings that far."""
 
 
 def make_bench(
@@ -84,8 +82,8 @@ def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
     where = np.flatnonzero(loud.any(axis=0))
     if where.size == 0 or np.ptp(where) > n // 2:
         return (0, n), 0.0
-    first = max(int(where[0]) - PAD, 0)
-    last = min(int(where[-1]) + PAD, n)
+    first = max(int(where[0]) - RESIDUALS.force_padding, 0)
+    last = min(int(where[-1]) + RESIDUALS.force_padding, n)
     outside = np.concatenate([force[:, :first], force[:, last:]], axis=1)
     return (first, last), float(np.sqrt(np.mean(outside**2)))
 

@@ -23,12 +23,10 @@ from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.response.threads import each
+from jointbench.analysis.gap.search.search_settings import SEARCH
 
-PROBE = 1e-6
-_SEEN = 1e-10
-"""Share of a direction's squared length that the fit must leave for it to count."""
-SCREEN = Stage(oversampling=2)
-_DRAWS = 4000
+PROBE = SEARCH.probe_amplitude
+SCREEN = Stage(oversampling=SEARCH.screening_steps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -190,7 +188,9 @@ def _judge(
     gram = (tested.left @ tested.left.T).astype(np.float64)
     score = tested.left @ tangent.residual
     left = np.diag(gram).copy()
-    left = np.where(left > _SEEN * np.maximum(tested.norm, 1e-300), left, np.inf)
+    left = np.where(
+        left > SEARCH.least_direction * np.maximum(tested.norm, 1e-300), left, np.inf
+    )
     amplitude = -score / left
     minimum = tangent.q.T @ tangent.residual
     directions = []
@@ -266,6 +266,6 @@ def null_threshold(
     values, vectors = np.linalg.eigh(correlation)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     rng = np.random.default_rng(seed)
-    draws = rng.standard_normal((_DRAWS, root.shape[1])) @ root.T
+    draws = rng.standard_normal((SEARCH.null_draws, root.shape[1])) @ root.T
     draws = np.where(one_sided[keep] & (draws < 0), 0.0, draws)
     return float(np.quantile(np.max(draws**2, axis=1), 1.0 - chance))
