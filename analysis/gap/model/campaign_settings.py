@@ -14,7 +14,7 @@ class CampaignSettings:
         64,
         "samples",
         "last samples of a record that are not compared: the anti-alias filter "
-        "has no data behind them",
+        "has no data after them",
     )
     seen_gap: float = numerical(
         1.0,

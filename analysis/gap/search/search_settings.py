@@ -133,7 +133,7 @@ class SearchSettings:
         "starts kept after each window",
         "development campaigns",
     )
-    finalists: int = numerical(
+    final_fits: int = numerical(
         5,
         "fits",
         "fits kept for the final step",

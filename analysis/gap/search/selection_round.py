@@ -102,7 +102,7 @@ def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fi
         middle = minimise(r.problem, r.x, MIDDLE, iterations=MOST_STEPS, rival=best)
         done.append(Runner(r.problem, middle.x, middle.cost, middle))
         best = min(best or np.inf, middle.cost)
-    runners = _keep(done, SEARCH.finalists)
+    runners = _keep(done, SEARCH.final_fits)
     hopeful = [r for r in runners if r.cost < SEARCH.pruning_ratio * runners[0].cost]
     fits = [finish(r.problem, r.x, progress) for r in hopeful]
     fits += [r.fit for r in runners if r not in hopeful and r.fit is not None]
