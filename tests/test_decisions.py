@@ -1,4 +1,4 @@
-"""The decision records: all listed, holes explained, citations of numbers that exist."""
+"""Decision records: all listed, holes explained, citations of numbers that exist."""
 
 import re
 from collections import Counter

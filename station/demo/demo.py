@@ -19,8 +19,8 @@ from jointbench.station.demo.demo_gap import (
     DemoGap,
     gap_json,
     gap_sections,
+    session_for_gap,
     show_gap,
-    visit_for_gap,
 )
 from jointbench.station.demo.demo_truth import compare_with_truth
 from jointbench.station.files.output_paths import (
@@ -112,7 +112,7 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     bench = read_toml(model_file, BenchModel)
     analysis = analyse_session(read_session(session_file), bench)
     with working("a second visit: looking for what the model misses"):
-        gap = visit_for_gap(out, seed=seed)
+        gap = session_for_gap(out, seed=seed)
     comparisons = (*compare_with_truth(visit.truth, analysis), *gap.comparisons)
     _show(analysis, bench, json_target)
     show_gap(gap, json_target)

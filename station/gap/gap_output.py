@@ -12,7 +12,7 @@ from rich.text import Text
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
 from jointbench.station.report.gap_numbers import percent, short, sure
 from jointbench.station.report.gap_sentences import (
-    SHEET,
+    PRIORS,
     SMALL_GAP,
     headline,
     next_step,
@@ -28,14 +28,14 @@ _MOST_SLICES = 3
 _SMALL_SHARE = 0.005
 _WIDEST = 110
 _LABEL = 9
-"""Width of the words that lead the lines."""
+"""Width of the labels at the beginning of lines."""
 _LONGEST_NAME = 34
 _VIEW_HEADS = ("view", "largest shares")
-_TRIED_HEADS = ("explanation", "behind", "chi2/dof", "pull", "why")
+_TRIED_HEADS = ("explanation", "delta score", "chi2/dof", "prior dev. [sd]", "reason")
 
 
 def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
-    """Print verdict, effects, where the gap sat, rivals, and what to do next.
+    """Print verdict, effects, location of the gap, rivals and the next step.
 
     Args:
         found: the diagnosis.
@@ -50,9 +50,9 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     _say(screen, "", f"{headline(found)}.")
     _say(screen, "", found.reason)
     if found.effects:
-        columns = ("effect", "value ± sd", "unit", "sure")
+        columns = ("effect", "value ± sd", "unit", "confidence")
         screen.print(
-            _table("What the model lacks", columns, _effects(found), words={0, 2})
+            _table("Missing from the model", columns, _effects(found), words={0, 2})
         )
     screen.print()
     _say(screen, "gap", _gap_words(found))
@@ -63,7 +63,7 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     _say(screen, "limits", _limit_words(found))
     where = _where(found)
     if where:
-        screen.print(_table("Where the gap sits", _VIEW_HEADS, where, words={0, 1}))
+        screen.print(_table("Location of the gap", _VIEW_HEADS, where, words={0, 1}))
     if len(found.candidates) > 1:
         tried = _candidates(screen, found)
         screen.print(_table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
@@ -73,7 +73,7 @@ def show_on(screen: Console, found: Diagnosis) -> None:
 
 
 def _say(screen: Console, label: str, *texts: str) -> None:
-    """Print texts as paragraphs that hang behind a label."""
+    """Print texts as paragraphs with a hanging label."""
     width = min(screen.width, _WIDEST)
     for number, text in enumerate(texts):
         lead = f"{label}:" if label and number == 0 else ""
@@ -118,44 +118,44 @@ def _effects(found: Diagnosis) -> list[tuple[str, str, str, str]]:
 
 def _gap_words(found: Diagnosis) -> str:
     before, after = found.gap_before, found.gap_after
-    pull = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+    deviation = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
     if found.verdict not in (Finding.NAMED, Finding.AMBIGUOUS):
         return (
-            f"{short(before.value)} on held-out records; sheet pulled by "
-            f"{short(pull)} sd"
+            f"{short(before.value)} on held-out records; largest prior deviation "
+            f"{short(deviation)} sd"
         )
     shrink = ""
     if before.value > SMALL_GAP:
-        shrink = f" (shrinks by {percent(found.shrink)})"
+        shrink = f" (reduced by {percent(found.shrink)})"
     return (
         f"{short(before.value)} before, {short(after.value)} after, on held-out "
-        f"records{shrink}; sheet pulled by {short(pull)} sd before, "
+        f"records{shrink}; largest prior deviation {short(deviation)} sd before, "
         f"{short(after.pull)} sd after"
     )
 
 
 def _limit_words(found: Diagnosis) -> str:
     largest, limit = found.null_statistic
-    words = f"null test {short(largest)} of {short(limit)}"
+    words = f"null test {short(largest)} (limit {short(limit)})"
     if found.exhibit is not None:
         limits = found.exhibit.limits
         words += (
-            f"; at the end chi2/dof {limits.chi2_per_dof:.4g} of "
-            f"{limits.chi2_allowed:.4g}"
+            f"; final chi2/dof {limits.chi2_per_dof:.4g} (limit "
+            f"{limits.chi2_allowed:.4g})"
         )
         if limits.remaining is not None:
             words += (
-                f", directed test left {short(limits.remaining)} of "
-                f"{short(limits.remaining_allowed)}"
+                f", largest remaining directed test {short(limits.remaining)} (limit "
+                f"{short(limits.remaining_allowed)})"
             )
     scatter = found.noise.get("scatter_gain", 0.0)
-    return f"{words}; hits repeat to {100 * scatter:.2g} %"
+    return f"{words}; hits repeat within {100 * scatter:.2g} %"
 
 
 def _where(found: Diagnosis) -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
-    sheet = found.exhibit is not None and found.exhibit.view == SHEET
-    if found.verdict is Finding.NONE or sheet:
+    priors = found.exhibit is not None and found.exhibit.view == PRIORS
+    if found.verdict is Finding.NONE or priors:
         return rows
     for view in found.gap_before.views:
         if view.name == "order" or len(view.share) < 2:
@@ -189,5 +189,5 @@ def _candidates(
 
 
 def _short(name: str, widest: int) -> str:
-    name = "base alone" if name == "none" else name.replace("link:joint", "joint")
+    name = "base model" if name == "none" else name.replace("link:joint", "joint")
     return name if len(name) <= widest else f"{name[: widest - 3]}..."

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench report``: one offline page about a session."""
+"""``jointbench report``: one offline HTML report about a session."""
 
 from pathlib import Path
 
@@ -40,10 +40,10 @@ def run_report(
     json_target: str | None,
     run: StageRun | None = None,
 ) -> Path:
-    """Write the page of `session` beside it, or to `out`.
+    """Write the report of `session` next to it, or to `out`.
 
-    Modes are those of the results that exist, see `stored_results`; where there are
-    none, they are looked for now, by stages that `run` keeps.
+    Modes come from existing results, see `stored_results`; without results they are
+    extracted now, and `run` stores the stages.
     """
     target = out or session.with_suffix(".html")
     given = (session, model, geometry, results)
@@ -60,8 +60,12 @@ def run_report(
         {"preload_n": one.preload, "results": one.run or None}
         for one in analysis.preloads
     ]
-    page = {"report": str(target), "remarks": list(analysis.remarks), "modes": runs}
-    write_json(json_target, page)
+    content_json = {
+        "report": str(target),
+        "remarks": list(analysis.remarks),
+        "modes": runs,
+    }
+    write_json(json_target, content_json)
     return target
 
 
@@ -73,7 +77,7 @@ def compose(
     extra: tuple[Section, ...] = (),
     geometry: Geometry | None = None,
 ) -> Report:
-    """Arrange an analysis as a page; `extra` sections come first.
+    """Arrange an analysis as a report; `extra` sections come first.
 
     Shapes are drawn on the `geometry`, or on a row of points without one.
     """
@@ -105,7 +109,7 @@ def compose(
 
 
 def _joint_sections(analysis: SessionAnalysis, link: str) -> list[Section]:
-    """Return a section for each preload with links; one where there is but one."""
+    """Return one section for each preload with identified links."""
     known = [one for one in analysis.preloads if one.joint is not None]
     if len(known) < 2:
         return [joint_section(analysis.contact, analysis.joint, link)]
@@ -119,7 +123,7 @@ def _joint_sections(analysis: SessionAnalysis, link: str) -> list[Section]:
 
 
 def joint_link(bench: BenchModel | None) -> str:
-    """Return the link that the contact law speaks of, else the last one."""
+    """Return the link of the contact law, else the last link."""
     if bench is None:
         return ""
     return bench.contact.link if bench.contact else list(bench.links)[-1]

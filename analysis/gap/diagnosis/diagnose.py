@@ -41,10 +41,10 @@ from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
 UNFORETOLD_WORDS = (
-    "; held out, a condition is not foretold by the others: it shows the effect "
+    "; held out, a condition is not predicted by the others: it shows the effect "
     "alone, so add conditions next to it"
 )
-LOOK_CLOSER = "look at the views of the gap; widen levels, points and preloads"
+LOOK_CLOSER = "check the views of the gap; widen levels, points and preloads"
 
 
 @one_thread()

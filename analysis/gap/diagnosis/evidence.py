@@ -13,9 +13,9 @@ from jointbench.analysis.gap.diagnosis.findings import advise, describe
 from jointbench.analysis.gap.diagnosis.location import (
     counted_samples,
     locate,
-    pulled,
-    relative_misfits,
-    telling_view,
+    most_significant_view,
+    prior_deviation_words,
+    relative_residuals,
 )
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.model.diagnosis_record import Finding
@@ -52,7 +52,7 @@ def make_exhibit(
     """
     best = outcome.best if outcome.best.candidates else base
     residual = _cube(bench, base)
-    relative = relative_misfits(bench, residual)
+    relative = relative_residuals(bench, residual)
     wishes = _wishes(bench, base, best)
     tests = _tests(bench, base, outcome)
     models = (
@@ -62,14 +62,14 @@ def make_exhibit(
     curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
     facts = gather(bench, base, outcome, finding, relative["output"])
     limits = _limits(outcome, bench)
-    view = telling_view(bench, residual, facts)
+    view = most_significant_view(bench, residual, facts)
     where = ""
     look: tuple[str, ...] = ()
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
         where = locate(bench, residual, facts)
         look = describe(bench, residual, relative, facts, wishes, tests)
     elif not outcome.base_gate.passed and _pulled_off(bench, base):
-        where, view = pulled(bench, base), "sheet"
+        where, view = prior_deviation_words(bench, base), "sheet"
     elif not outcome.base_gate.passed:
         where = locate(bench, residual, facts)
     return Exhibit(

@@ -20,12 +20,12 @@ from jointbench.analysis.gap.search.selection_round import score
 
 @dataclass(frozen=True, slots=True)
 class DiagnosisVerdict:
-    """What an outcome comes to.
+    """The verdict on a search outcome.
 
     Attributes:
         finding: none, named, ambiguous or unknown.
         reason: in one line.
-        step: what to do next; empty where the look of the misfit has to tell.
+        step: what to do next; empty where the residual's signature decides.
     """
 
     finding: Finding
@@ -36,12 +36,12 @@ class DiagnosisVerdict:
 def verdict_on(
     outcome: SearchOutcome, bench: LumpedBench, limits: str
 ) -> DiagnosisVerdict:
-    """Judge an outcome.
+    """Derive the verdict from a search outcome.
 
     Args:
         outcome: of the loop on that bench.
         bench: with its noise as estimated at the end.
-        limits: why the campaign can show no more than `unknown`; empty where it can.
+        limits: reason why the campaign allows no verdict but `unknown`, or empty.
     """
     if limits:
         return DiagnosisVerdict(Finding.UNKNOWN, limits, _way_out(limits))
@@ -50,8 +50,9 @@ def verdict_on(
     if not outcome.best.candidates:
         return DiagnosisVerdict(
             Finding.NONE,
-            "the base explains the records to within their noise",
-            "none needed; to look deeper, hit at more levels and preloads",
+            "the base model explains the records within their noise",
+            "none required; for a lower detection limit, hit at more levels and "
+            "preloads",
         )
     names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) == 1:
@@ -59,38 +60,38 @@ def verdict_on(
         return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
     step = _separates(outcome.level[0], outcome.level[1])
     if len(outcome.level) > bench.policy.most_rivals:
-        reason = f"too many explanations fit alike: {names}"
+        reason = f"too many explanations fit equally well: {names}"
         return DiagnosisVerdict(Finding.UNKNOWN, reason, step)
-    reason = f"{names}: their scores lie too close together"
+    reason = f"{names}: the difference of their scores is not significant"
     return DiagnosisVerdict(Finding.AMBIGUOUS, reason, step)
 
 
 def _unknown(outcome: SearchOutcome, bench: LumpedBench) -> DiagnosisVerdict:
-    """Say why the best fit is no name, and whether more might have been tried."""
+    """Give the reason against the best fit, and whether the search was complete."""
     flat = flat_tops(bench.campaign.response, bench.noise.sigma)
     if flat:
         reason = (
             f"record {flat[0]} has flat tops (and {len(flat) - 1} others): "
-            "a channel is overloaded; lower its gain and hit again"
+            "a channel is overloaded; reduce its gain and repeat the hits"
         )
         return DiagnosisVerdict(Finding.UNKNOWN, reason, _way_out(reason))
     if odd := _odd_record(outcome, bench):
         return DiagnosisVerdict(Finding.UNKNOWN, odd, _way_out(odd))
-    reason = f"no effect explains it: {outcome.gate.reason}"
+    reason = f"no effect of the catalogue explains the records: {outcome.gate.reason}"
     if outcome.given_up:
-        reason += "; the search for a further one was ended for its length"
+        reason += "; the search for a further effect reached its effort limit"
     return DiagnosisVerdict(Finding.UNKNOWN, reason, "")
 
 
 def _way_out(reason: str) -> str:
-    """Return what a reason says last: what to do about it."""
+    """Return the last clause of a reason: the way out."""
     return reason.replace(": ", "; ").rpartition("; ")[2]
 
 
 def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
-    """Return a warning where one record holds nearly all of the misfit.
+    """Return a warning if one record holds nearly all of the residual.
 
-    Its excess must be more than that of noise, or some record always holds most.
+    Its excess must exceed that of noise, since one record always holds most.
     """
     groups = bench.blocks.group
     counted = counted_samples(bench) * bench.blocks.shape[1]
@@ -105,12 +106,12 @@ def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
     labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
     return (
         f"record {worst} ({labels}) holds {100 * share[worst] / total:.0f} % of the "
-        "misfit: check its labels (preload, level, point) or measure it again"
+        "residual: check its labels (preload, level, point) or repeat it"
     )
 
 
 def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
-    """Say how far the nearest rival of a name is behind: no experiment is needed."""
+    """Give the delta score of the nearest rival: no experiment is required."""
     own = labels_of(outcome.best.candidates)
     others = [
         score(bench, f)
@@ -118,16 +119,17 @@ def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
         if not (labels_of(f.candidates) <= own or own <= labels_of(f.candidates))
     ]
     if not others:
-        return "no experiment needed: no other explanation came near"
-    behind = min(others) - score(bench, outcome.best)
+        return "no further experiment required: no other explanation comes close"
+    delta_score = min(others) - score(bench, outcome.best)
+    limit = rival_within(outcome.best, bench.policy)
     return (
-        f"no experiment needed: the nearest rival is {behind:.0f} behind, "
-        f"{rival_within(outcome.best, bench.policy):.0f} tell it apart"
+        f"no further experiment required: the nearest rival has a delta score of "
+        f"{delta_score:.0f} (limit {limit:.0f})"
     )
 
 
 def _separates(first: Fit, second: Fit) -> str:
-    """Return the experiment that tells two fits apart by what one alone holds."""
+    """Return the experiment that distinguishes two fits by what only one contains."""
     own = [c for c in first.candidates if c not in second.candidates]
     other = [c for c in second.candidates if c not in first.candidates]
     for a in own:
@@ -136,4 +138,4 @@ def _separates(first: Fit, second: Fit) -> str:
                 advice = left.effect.separates.get(right.effect.name)
                 if advice:
                     return f"{left.label} or {right.label}: {advice}"
-    return "repeat at more levels, points and preloads to tell the first two apart"
+    return "repeat at more levels, points and preloads to distinguish the best two"

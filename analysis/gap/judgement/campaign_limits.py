@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a campaign cannot show, whatever the fit says: its own limits, in words."""
+"""Limits of a campaign: what it cannot show regardless of the fit."""
 
 import numpy as np
 
@@ -18,19 +18,20 @@ def campaign_limits(campaign: Campaign, policy: Policy = STANDARD) -> str:
     if campaign.force.shape[0] < least:
         return (
             f"{campaign.force.shape[0]} records are too few, at least {least} "
-            "are needed: hit each point at three levels, twice"
+            "are required: hit each point at three levels, twice"
         )
     level = np.abs(campaign.force).max(axis=1)
     if level.max() < policy.one_level_ratio * level.min():
         return (
             f"all hits have one level ({level.min():.0f} to {level.max():.0f} N): "
-            "nothing that depends on it can be told apart; hit over 30x in level"
+            "effects that depend on level cannot be distinguished; hit at levels over "
+            "a factor of 30"
         )
     if campaign.repeatability is None and not repeat_groups(
         campaign.hit, campaign.level, campaign.preload
     ):
         return (
-            "no condition was measured twice, so the repeatability is not known; "
+            "no condition was measured twice, so the repeatability is unknown; "
             "repeat at least one point, level and preload"
         )
     return ""

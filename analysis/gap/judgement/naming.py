@@ -70,13 +70,14 @@ def gate(
         worst, beyond = _worst(fit, left, limit + model, limit + min(model, bound))
     reason = ""
     if excess > allowed:
-        reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
+        reason = f"chi2/dof is {1 + excess:.4f}, the limit is {1 + allowed:.4f}"
     elif worst and beyond > 0.0:
         reason = _looks_like(worst)
     elif unlike := _unlike(bench, fit, model):
         reason = unlike
     elif np.abs(fit.pulls).max() > policy.prior_limit:
-        reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
+        worst_prior = np.abs(fit.pulls).max()
+        reason = f"a base parameter is {worst_prior:.1f} sd from its nominal value"
     unexplained = bool(reason)
     reason = reason or _doubt(fit, (base, *others), policy)
     return Gate(
@@ -92,21 +93,21 @@ def gate(
 
 
 def _doubt(fit: Fit, others: Sequence[Fit], policy: Policy) -> str:
-    """Say why a fit that explains everything is no name yet, if so."""
-    sure = weakest(fit, others) if fit.candidates else np.inf
-    if sure < policy.amplitude_limit:
-        return f"an effect is only {sure:.1f} sigma from off"
+    """Give the reason against naming a fit that explains the records, or nothing."""
+    distance = weakest(fit, others) if fit.candidates else np.inf
+    if distance < policy.amplitude_limit:
+        return f"an effect is only {distance:.1f} sd from zero"
     return at_the_end(fit, policy)
 
 
 def _looks_like(left: Direction) -> str:
-    """Say what a fit leaves, by the directed test that sees most of it."""
+    """Describe the residual of a fit by its largest directed test."""
     if left.candidate.effect.family != PROBE_FAMILY:
-        return f"a further effect would take {left.drop:.0f} units of chi2"
+        return f"a further effect would lower chi2 by {left.drop:.0f}"
     kind = left.candidate.effect.name
     return (
-        f"{left.drop:.0f} units of chi2 are left that look like: {kind}, "
-        f"{left.candidate.site}"
+        f"the residual resembles a {kind} at {left.candidate.site}, which would lower "
+        f"chi2 by {left.drop:.0f}"
     )
 
 
@@ -130,11 +131,11 @@ def _worst(
 
 
 def _unlike(bench: Bench, fit: Fit, allowed: float) -> str:
-    """Say which parts of the records the fit does not hold for alike, if any."""
+    """Name the parts of the records that need parameters of their own, if any."""
     if not bench.blocks.white:
         return ""
     policy, worst = bench.policy, most_unlike(bench, fit, allowed)
     limit = policy.parts_chance if fit.candidates else policy.parts_chance_base
     if worst.chance > limit:
         return ""
-    return f"{worst.excess:.0f} units of chi2 are left by {worst.view}"
+    return f"separate parameters by {worst.view} would lower chi2 by {worst.excess:.0f}"

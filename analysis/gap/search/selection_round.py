@@ -184,7 +184,7 @@ def _far(
             x = np.concatenate([fit.x, [amplitude]])
             runners.append(_started(problem, x))
         if candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
-            progress(f"{candidate.label} from the sheet")
+            progress(f"{candidate.label} from nominal values")
             runners.append(_from_nominal(problem, fit, directions))
     for (stage, iterations), keep in zip(
         _COARSE_ROUNDS, SEARCH.coarse_survivors, strict=True
@@ -241,7 +241,7 @@ def _from_nominal(
 
 
 def _trying(runner: Runner, done: Sequence[Runner]) -> str:
-    """Say what is tried, and what explains most so far."""
+    """Name the candidate of the moment, and the best so far."""
     if not done:
         return runner.label
     best = min(done, key=lambda r: r.cost)
