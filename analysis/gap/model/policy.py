@@ -26,6 +26,7 @@ class Policy:
         "sd of chi2/dof with the noise estimate counted",
         "closed form of the sd (expected_misfit.noise_sd); checked on the full null "
         "draws of docs/gap-null.md",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     null_chance: float = decision(
         0.005,
@@ -33,12 +34,14 @@ class Policy:
         "chance that noise alone exceeds the null limit of the directed tests",
         "quantile of 4,000 linearised draws; checked on the full draws of "
         "docs/gap-null.md",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     null_factor: float = decision(
         1.3,
         "-",
         "factor on the linearised null limit, for shapes between the grid points",
         "null draws of an earlier prototype",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     prior_limit: float = decision(
         4.0,
@@ -46,18 +49,21 @@ class Policy:
         "deviation of a base parameter from its nominal value, in sd of its prior, "
         "above which a fit is rejected",
         "closed form: one test in 16,000 by chance",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     amplitude_limit: float = decision(
         4.0,
         "sd",
         "distance of the weakest effect from zero below which a fit is rejected",
         "closed form: one test in 16,000 by chance",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     parts_chance: float = decision(
         3e-4,
         "-",
         "chance below which parts of the records differ, for a fit with effects",
         "closed form over 12 cuts; 22 right fits (seeds 80000 on), none below 1e-3",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     parts_chance_base: float = decision(
         3e-5,
@@ -65,6 +71,7 @@ class Policy:
         "chance below which parts of the records differ, for the base alone",
         "closed form over 12 cuts; 60 nulls (seeds 70000 on): the smallest chance "
         "was 1.3e-4",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     model_error_factor: float = decision(
         1.0,
@@ -72,6 +79,7 @@ class Policy:
         "factor on the share of the base's excess chi2 that a right law may leave",
         "1 by definition; the shares themselves were set on right laws fitted alone "
         "in the development campaigns",
+        "-30 %: not run; +30 %: not run",
     )
     model_error_elsewhere: float = decision(
         2e-5,
@@ -79,6 +87,7 @@ class Policy:
         "largest share of the base's excess chi2 that the model error of a law may "
         "leave at sites other than its own",
         "development campaigns, right laws fitted alone",
+        "-30 %: not run; +30 %: not run",
     )
     shape_sd_share: float = decision(
         0.3,
@@ -86,6 +95,7 @@ class Policy:
         "sd of a shape parameter below which it counts as known when it is checked "
         "for standing at the end of its range",
         "hidden 92007: a Jenkins slider fitted by a Bouc-Wen element at its limit",
+        "-30 %: not run; +30 %: not run",
     )
     shape_end_share: float = decision(
         1e-3,
@@ -93,24 +103,29 @@ class Policy:
         "distance from the end of its range below which a shape parameter stands at "
         "its limit",
         "hidden 92007, as above",
+        "-30 %: not run; +30 %: not run",
     )
     rival_score: float = decision(
         15.0,
         "chi2",
         "score difference below which a rival is not distinguished from the best fit",
         "calibration campaigns (benchmarks/gap/calibrate.py)",
+        "-30 %: 1 of 16 (1 x ambiguous, truth in it to right); +30 %: 1 of 16 (1 "
+        "x right to ambiguous, truth in it)",
     )
     rival_score_one_site: float = decision(
         60.0,
         "chi2",
         "the same where one site carries two effects",
         "calibration campaigns (benchmarks/gap/calibrate.py)",
+        "-30 %: not run; +30 %: not run",
     )
     most_rivals: int = decision(
         3,
         "-",
         "number of explanations that fit alike above which the verdict is unknown",
         "a list of more names does not help the reader; no campaign set it",
+        "-30 %: not run; +30 %: not run",
     )
     parameter_charge: float = decision(
         10.0,
@@ -118,18 +133,21 @@ class Policy:
         "charge on the score of a fit for each parameter of its effects",
         "far above chance (1 per parameter) and far below the score of a name; no "
         "campaign set it",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     phase_charge: float = decision(
         2.0,
         "chi2",
         "charge on the score for each phase that an effect fits by itself",
         "a phase is bounded and costs less than a free parameter; no campaign set it",
+        "-30 %: not run; +30 %: not run",
     )
     least_gain: float = decision(
         35.0,
         "chi2",
         "score that a further effect must gain beyond its charge",
         "development campaigns with two effects",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     third_effect_share: float = decision(
         0.01,
@@ -137,6 +155,7 @@ class Policy:
         "share of the base's excess chi2 that a pair may leave for a third effect to "
         "be tried",
         "computing time: campaigns without an answer took up to 270 s",
+        "-30 %: not run; +30 %: not run",
     )
     far_chi2: float = decision(
         30.0,
@@ -144,24 +163,28 @@ class Policy:
         "chi2/dof above which a fit is far from the records: pairs are searched under "
         "short windows, and noise and settling are not estimated there",
         "development case 01, pair 93000",
+        "-30 %: not run; +30 %: not run",
     )
     least_scatter: float = decision(
         2e-5,
         "-",
         "relative scatter between hits below which the scatter counts as zero",
         "400 nulls, 210 of them without scatter (docs/gap-confusion.md); hidden 95054",
+        "-30 %: 0 of 16; +30 %: 0 of 10",
     )
     scatter_chance: float = decision(
         0.0025,
         "-",
         "chance of the differences between repeats that bounds the scatter above",
         "chi2 pivot in closed form; development campaigns",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     trend_chance: float = decision(
         3e-4,
         "-",
         "chance below which a pattern over the records is a trend and not scatter",
         "closed form for two patterns; 2,000 draws in a test; single 91004",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     most_samples: float = decision(
         3.2e9,
@@ -169,6 +192,7 @@ class Policy:
         "predicted samples after which no further effect is searched for",
         "75 to 87 s on a core of 2.3 GHz; 100 pairs (one right answer took more: "
         "97033)",
+        "-30 %: not run; +30 %: not run",
     )
     one_level_ratio: float = decision(
         1.5,
@@ -176,12 +200,14 @@ class Policy:
         "ratio of the hardest hit to the softest below which the campaign has one "
         "level and the verdict is unknown",
         "a level effect cannot be separated within it; no campaign set it",
+        "-30 %: not run; +30 %: not run",
     )
     least_records: int = decision(
         4,
         "records",
         "number of records below which the verdict is unknown",
         "two levels, each repeated; no campaign set it",
+        "-30 %: not run; +30 %: not run",
     )
 
 
