@@ -182,6 +182,13 @@ class DiagnosisSettings:
         "tests",
         "directed tests that the evidence keeps",
     )
+    prior_candidates_sd: float = numerical(
+        3.5,
+        "sd",
+        "prior deviation above which effects that only priors show are tried as a "
+        "second effect",
+        "below the limit of 4 sd at which a fit is rejected",
+    )
 
 
 DIAGNOSIS = DiagnosisSettings()

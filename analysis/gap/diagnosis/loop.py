@@ -284,7 +284,7 @@ def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
     """Choose seconds by predicted drop, and those that only the priors see."""
-    pulled = np.abs(first.pulls).max() > 3.5
+    pulled = np.abs(first.pulls).max() > DIAGNOSIS.prior_candidates_sd
     chosen: list[Candidate] = []
     for d in screening.directions:
         if d.candidate not in chosen and len(chosen) < DIAGNOSIS.second_candidates:

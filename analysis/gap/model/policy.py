@@ -79,7 +79,7 @@ class Policy:
         "factor on the share of the base's excess chi2 that a right law may leave",
         "1 by definition; the shares themselves were set on right laws fitted alone "
         "in the development campaigns",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 10",
     )
     model_error_elsewhere: float = decision(
         2e-5,
@@ -170,7 +170,7 @@ class Policy:
         "-",
         "relative scatter between hits below which the scatter counts as zero",
         "400 nulls, 210 of them without scatter (docs/gap-confusion.md); hidden 95054",
-        "-30 %: 0 of 16; +30 %: 0 of 10",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     scatter_chance: float = decision(
         0.0025,

@@ -77,7 +77,8 @@ def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
     n = force.shape[1]
     sigma = float(np.std(force[:, n // 2 :]))
     loud = np.abs(force) > np.maximum(
-        8 * sigma, 3e-3 * np.abs(force).max(axis=1, keepdims=True)
+        RESIDUALS.hit_noise_sd * sigma,
+        RESIDUALS.hit_share * np.abs(force).max(axis=1, keepdims=True),
     )
     where = np.flatnonzero(loud.any(axis=0))
     if where.size == 0 or np.ptp(where) > n // 2:

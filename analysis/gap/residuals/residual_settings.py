@@ -127,6 +127,16 @@ class ResidualSettings:
         "bands",
         "slices of time and frequency in which a residual is shown",
     )
+    hit_noise_sd: float = numerical(
+        8.0,
+        "sd of the noise",
+        "force above which a sample belongs to a hit",
+    )
+    hit_share: float = numerical(
+        3e-3,
+        "of the peak",
+        "force above which a sample belongs to a hit, in a quiet record",
+    )
 
 
 RESIDUALS = ResidualSettings()

@@ -247,10 +247,8 @@ def _looked_at(
 
 _Stages = Sequence[tuple[Stage, int]]
 BASE_STAGES: _Stages = (
-    (Stage(0.002), 6),
-    (Stage(0.006), 6),
-    (Stage(0.020), 6),
-    (FULL, 20),
+    *((Stage(decay), SEARCH.window_iterations) for decay in SEARCH.base_windows),
+    (FULL, SEARCH.base_iterations),
 )
 
 

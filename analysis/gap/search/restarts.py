@@ -115,7 +115,7 @@ def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
 
 def _hope(fit: Fit, best: Fit) -> float:
     """Return the cost at which a start is no better than nothing."""
-    return 10.0 * max(fit.cost, best.cost)
+    return SEARCH.restart_cost_ratio * max(fit.cost, best.cost)
 
 
 def _borrowed(fit: Fit, best: Fit) -> FloatArray:

@@ -252,6 +252,35 @@ class SearchSettings:
         "cost below which another start is worth a descent",
         "development campaigns",
     )
+    base_windows: tuple[float, float, float] = numerical(
+        (0.002, 0.006, 0.02),
+        "s",
+        "decays of the windows under which a base is fitted, coarse to fine",
+        "development campaigns",
+    )
+    window_iterations: int = numerical(
+        6,
+        "steps",
+        "most steps of the fit of a base under a window",
+        "development campaigns",
+    )
+    base_iterations: int = numerical(
+        20,
+        "steps",
+        "most steps of the fit of a base to whole records",
+        "development campaigns",
+    )
+    coarse_iterations: tuple[int, int] = numerical(
+        (5, 6),
+        "steps",
+        "steps of every start under each of two windows",
+        "development campaigns",
+    )
+    restart_cost_ratio: float = numerical(
+        10.0,
+        "-",
+        "cost of a start, over that of the fits, above which it is not used",
+    )
 
 
 SEARCH = SearchSettings()

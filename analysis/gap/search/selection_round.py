@@ -29,8 +29,8 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 Progress = Callable[[str], None]
 
 _COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
-    (Stage(SEARCH.short_window, SEARCH.screening_steps), 5),
-    (Stage(SEARCH.longer_window, SEARCH.screening_steps), 6),
+    (Stage(SEARCH.short_window, SEARCH.screening_steps), SEARCH.coarse_iterations[0]),
+    (Stage(SEARCH.longer_window, SEARCH.screening_steps), SEARCH.coarse_iterations[1]),
 )
 HUGE = SEARCH.nominal_restart_chi2
 STARTS = SEARCH.shape_starts
