@@ -11,6 +11,7 @@ from jointbench.station.report.gap_figures import (
     response_function,
 )
 from jointbench.station.report.gap_numbers import percent, short, sure
+from jointbench.station.report.gap_policy_section import policy_section
 from jointbench.station.report.gap_sentences import (
     SMALL_GAP,
     effect_words,
@@ -49,6 +50,7 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
         Section("candidates", "Explanations tried", _candidates(found)),
         Section("limits", "Tests, noise and repeatability", _limits(found)),
         Section("base", "Final model", (_base(found), _deviations(found))),
+        policy_section(found.policy),
     ]
     return Report(
         title=headline(found),
@@ -250,6 +252,7 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
         )
         for one in found.candidates[:MOST_CANDIDATES]
     )
+    policy = found.policy
     columns = (
         "explanation",
         "delta score",
@@ -258,9 +261,10 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
         "reason",
     )
     caption = (
-        "Best first. The score is chi2 plus the penalty of the priors plus 10 for "
-        "each parameter; a rival is excluded at a delta score of 15 (60 where one site "
-        "has two effects)."
+        "Best first. The score is chi2 plus the penalty of the priors plus "
+        f"{policy.parameter_charge:g} for each parameter; a rival is excluded at a "
+        f"delta score of {policy.rival_score:g} "
+        f"({policy.rival_score_one_site:g} where one site has two effects)."
     )
     items: list[Item] = [DataTable(caption, columns, rows)]
     if found.exhibit is not None and found.verdict is not Finding.NONE:

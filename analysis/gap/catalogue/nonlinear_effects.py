@@ -4,6 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.catalogue.catalogue_settings import CATALOGUE_SETTINGS
 from jointbench.analysis.gap.model.effect import Effect
 from jointbench.analysis.gap.model.effect_parameter import (
     Parameter,
@@ -15,9 +16,7 @@ from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
 from jointbench.analysis.gap.response.slider_integration import slider_tables
 
 _LOG = Transform.LOG
-_IWAN_SLIDERS = 14
-_SHARPNESS = (14.0, 0.6)
-"""Median and log-sd of the sharpness of real sliders: none is a perfect corner."""
+_SHARPNESS = CATALOGUE_SETTINGS.slider_sharpness
 
 
 def _cubic(v: FloatArray) -> Law:
@@ -73,7 +72,7 @@ def _jenkins_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _iwan(v: FloatArray) -> Law:
-    edges = np.linspace(0.0, 1.0, _IWAN_SLIDERS + 1)
+    edges = np.linspace(0.0, 1.0, CATALOGUE_SETTINGS.iwan_sliders + 1)
     power = float(v[2])
     share = np.diff(edges**power)
     centre = np.diff(edges ** (power + 1.0)) / share * power / (power + 1.0)
@@ -188,7 +187,14 @@ JENKINS = LumpedEffect(
                 "slip", "m", "travel", 0.003, 3.0, (0.02, 0.07, 0.15, 0.3, 0.6), _LOG
             ),
             Parameter(
-                "sharpness", "-", "one", 2.0, 200.0, _SHARPNESS[:1], _LOG, _SHARPNESS
+                "sharpness",
+                "-",
+                "one",
+                2.0,
+                200.0,
+                _SHARPNESS[:1],
+                _LOG,
+                _SHARPNESS,
             ),
         ),
         "Jenkins 1962; smooth corner after Wen 1976, eq. (2)",
@@ -212,7 +218,14 @@ IWAN = LumpedEffect(
             Parameter("phimax", "m", "travel", 0.02, 10.0, (0.2, 0.6, 1.5), _LOG),
             Parameter("chi_plus_2", "-", "one", 1.05, 2.2, (1.6,), _LOG, (1.6, 0.3)),
             Parameter(
-                "sharpness", "-", "one", 2.0, 200.0, _SHARPNESS[:1], _LOG, _SHARPNESS
+                "sharpness",
+                "-",
+                "one",
+                2.0,
+                200.0,
+                _SHARPNESS[:1],
+                _LOG,
+                _SHARPNESS,
             ),
         ),
         "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)",

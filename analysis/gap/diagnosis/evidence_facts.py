@@ -4,6 +4,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.level_evidence import (
     LevelScaling,
     Recurrence,
@@ -15,8 +16,7 @@ from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-UNEVEN = 2.0
-"""Ratio of relative misfits from which a view is worth a word."""
+UNEVEN = DIAGNOSIS.uneven_ratio
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -8,16 +8,13 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.catalogue.nonlinear_effects import CUBIC, QUADRATIC
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
 from jointbench.analysis.gap.diagnosis.location import Relative
 from jointbench.analysis.gap.model.evidence_records import DirectedTest, Wishes
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-CLEAR_SD = 4.0
-"""Distance from 0 at which an estimate of a single record counts [sd]."""
-TAKEN = 0.3
-"""Share of the residual that joint estimates per record must explain to be listed."""
 ODD, EVEN = CUBIC.effect.name, QUADRATIC.effect.name
 
 
@@ -160,7 +157,7 @@ def _record_lines(wishes: Wishes, facts: Facts) -> list[str]:
         "joint: separate stiffness and damping for each record would explain "
         f"{100 * wishes.share:.0f} % of the residual"
     ]
-    if wishes.share < TAKEN:
+    if wishes.share < DIAGNOSIS.taken_share:
         more = ", so another cause contributes" if facts.guessed else ""
         return [lines[0] + more]
     views = [
@@ -199,7 +196,10 @@ def _trend(word: str, view: str, x: FloatArray, y: FloatArray, sd: FloatArray) -
     means = [float(np.average(y[x == v], weights=weight[x == v])) for v in at]
     errors = [float(np.sqrt(1.0 / weight[x == v].sum())) for v in at]
     change = means[-1] - means[0]
-    if abs(change) < CLEAR_SD * np.hypot(errors[0], errors[-1]) or abs(change) < 1e-3:
+    if (
+        abs(change) < DIAGNOSIS.clear_sd * np.hypot(errors[0], errors[-1])
+        or abs(change) < 1e-3
+    ):
         return ""
     steps = np.diff(means)
     steady = np.all(steps > 0) or np.all(steps < 0)

@@ -11,16 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import UNEVEN, Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
 from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-_GROWS = 0.7
-"""Size at the next lower level, over the hardest, below which a residual grows."""
-_MAINLY = 0.6
-_BAND_SHARE = 0.8
 _CONTROLLED = ("hit point", "preload")
 Relative = dict[str, dict[str, float]]
 
@@ -76,7 +73,7 @@ def locate(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     top = int(np.argmax(channels))
     name = bench.campaign.model.channels[top].name
     several = channels.size > 1
-    if several and channels[top] > _MAINLY:
+    if several and channels[top] > DIAGNOSIS.mainly_share:
         parts.append(f"mainly on {name} ({100 * channels[top]:.0f} %)")
     elif several:
         parts.append("on all channels")
@@ -117,9 +114,9 @@ def _level_words(bench: LumpedBench, excess: FloatArray, facts: Facts) -> str:
     if facts.scaling is LevelScaling.PROPORTIONAL:
         return "is proportional to the hit at every level"
     size = facts.levels[0].size
-    if size < _GROWS:
+    if size < DIAGNOSIS.growth_ratio:
         return f"grows with level ({held})"
-    if size > 1.0 / _GROWS:
+    if size > 1.0 / DIAGNOSIS.growth_ratio:
         return f"decreases with level, relative to the hit ({held})"
     return f"changes shape with level ({held})"
 
@@ -142,7 +139,7 @@ def _band(bench: LumpedBench, residual: FloatArray) -> tuple[float, float]:
     excess = np.maximum(np.sum(power - 1.0, axis=(0, 1)), 0.0)
     excess[0] = 0.0
     total = np.cumsum(excess)
-    want = _BAND_SHARE * total[-1]
+    want = DIAGNOSIS.band_share * total[-1]
     ends = np.searchsorted(total, np.concatenate([[0.0], total[:-1]]) + want)
     ends = np.where(ends < n // 2, ends, 10 * n)
     first = int(np.argmin(ends - np.arange(ends.size)))

@@ -5,22 +5,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.location import counted_samples
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.campaign_limits import flat_tops
 from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
-from jointbench.analysis.gap.judgement.naming import GLOBAL_SD
 from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import labels_of, words_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.selection_round import score
-
-MOSTLY = 0.8
-"""Share of the residual above which a single record is suspected."""
-MOST_RIVALS = 3
-"""Equally good explanations above which the verdict is `unknown`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +59,7 @@ def verdict_on(
         reason = f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}"
         return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
     step = _separates(outcome.level[0], outcome.level[1])
-    if len(outcome.level) > MOST_RIVALS:
+    if len(outcome.level) > bench.policy.most_rivals:
         reason = f"too many explanations fit equally well: {names}"
         return DiagnosisVerdict(Finding.UNKNOWN, reason, step)
     reason = f"{names}: the difference of their scores is not significant"
@@ -104,7 +99,9 @@ def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
     worst = int(np.argmax(share))
     total = float(np.clip(share, 0, None).sum())
     noise = noise_sd(bench) * np.sqrt(share.size) * np.mean(np.bincount(groups))
-    if share[worst] < max(MOSTLY * total, GLOBAL_SD * noise):
+    if share[worst] < max(
+        DIAGNOSIS.one_record_share * total, bench.policy.chi2_limit * noise
+    ):
         return ""
     labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
     return (
@@ -124,9 +121,10 @@ def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
     if not others:
         return "no further experiment required: no other explanation comes close"
     delta_score = min(others) - score(bench, outcome.best)
+    limit = rival_within(outcome.best, bench.policy)
     return (
         f"no further experiment required: the nearest rival has a delta score of "
-        f"{delta_score:.0f} (limit {rival_within(outcome.best):.0f})"
+        f"{delta_score:.0f} (limit {limit:.0f})"
     )
 
 

@@ -5,13 +5,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect import labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 
-_NOISE_SHARE = 0.2
-"""Share of the samples that the noise estimate is worth: 0.39 of the spectrum, halved
-by the taper."""
 MODEL_ERROR = {
     "friction": 1e-6,
     "stiffness": 1e-7,
@@ -60,4 +58,4 @@ def noise_sd(bench: Bench) -> float:
     The noise is estimated from a share of the same samples, so that what both hold
     cancels.
     """
-    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / _NOISE_SHARE - 1.0)))
+    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / JUDGEMENT.noise_share - 1.0)))

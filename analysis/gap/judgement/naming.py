@@ -6,28 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.analysis.gap.judgement.amplitudes import (
-    AMPLITUDE_SD,
-    at_the_end,
-    weakest,
-)
+from jointbench.analysis.gap.judgement.amplitudes import at_the_end, weakest
 from jointbench.analysis.gap.judgement.expected_misfit import forgiven, noise_sd
 from jointbench.analysis.gap.judgement.own_parameters import most_unlike
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY
+from jointbench.analysis.gap.model.policy import Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.screening import Direction, Screening
-
-PULL_LIMIT = 4.0
-GLOBAL_SD = 4.5
-UNLIKE_CHANCE = 3e-4
-"""Chance below which parts of the records want parameters of their own."""
-UNLIKE_BASE_CHANCE = 3e-5
-"""The same before anything is named: a base that is complete must stay so."""
-_WIDENED = 1.3
-"""Room over the linearised null quantile, for the shapes between the grid's points."""
-_ELSEWHERE = 2e-5
-"""The most that a law may leave of its error at other places than its own."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,14 +59,15 @@ def gate(
         left: directed tests of the fit; None to pass them over.
         others: what else was fitted, for what the fit would be without an effect.
     """
-    dof = bench.blocks.dof
+    policy, dof = bench.policy, bench.blocks.dof
     excess = fit.chi2 / dof - 1.0
-    model = forgiven(fit, (base, *others), dof)
-    allowed = GLOBAL_SD * noise_sd(bench) + model / dof
+    model = policy.model_error_factor * forgiven(fit, (base, *others), dof)
+    allowed = policy.chi2_limit * noise_sd(bench) + model / dof
     worst, beyond = None, -np.inf
     if left is not None and bench.blocks.white:
-        elsewhere = min(model, _ELSEWHERE * max(base.chi2 - dof, 0.0))
-        worst, beyond = _worst(fit, left, model, elsewhere)
+        bound = policy.model_error_elsewhere * max(base.chi2 - dof, 0.0)
+        limit = policy.null_factor * left.threshold
+        worst, beyond = _worst(fit, left, limit + model, limit + min(model, bound))
     reason = ""
     if excess > allowed:
         reason = f"chi2/dof is {1 + excess:.4f}, the limit is {1 + allowed:.4f}"
@@ -88,11 +75,11 @@ def gate(
         reason = _looks_like(worst)
     elif unlike := _unlike(bench, fit, model):
         reason = unlike
-    elif np.abs(fit.pulls).max() > PULL_LIMIT:
+    elif np.abs(fit.pulls).max() > policy.prior_limit:
         worst_prior = np.abs(fit.pulls).max()
         reason = f"a base parameter is {worst_prior:.1f} sd from its nominal value"
     unexplained = bool(reason)
-    reason = reason or _doubt(fit, (base, *others))
+    reason = reason or _doubt(fit, (base, *others), policy)
     return Gate(
         passed=not reason,
         reason=reason,
@@ -105,11 +92,12 @@ def gate(
     )
 
 
-def _doubt(fit: Fit, others: Sequence[Fit]) -> str:
+def _doubt(fit: Fit, others: Sequence[Fit], policy: Policy) -> str:
     """Give the reason against naming a fit that explains the records, or nothing."""
-    if fit.candidates and (distance := weakest(fit, others)) < AMPLITUDE_SD:
+    distance = weakest(fit, others) if fit.candidates else np.inf
+    if distance < policy.amplitude_limit:
         return f"an effect is only {distance:.1f} sd from zero"
-    return at_the_end(fit)
+    return at_the_end(fit, policy)
 
 
 def _looks_like(left: Direction) -> str:
@@ -136,8 +124,7 @@ def _worst(
     for d in left.directions:
         if d.suggested:
             continue
-        model = here if d.candidate.site in own else elsewhere
-        limit = _WIDENED * left.threshold + model
+        limit = here if d.candidate.site in own else elsewhere
         if d.drop - limit > beyond:
             worst, beyond = d, d.drop - limit
     return worst, beyond
@@ -147,7 +134,8 @@ def _unlike(bench: Bench, fit: Fit, allowed: float) -> str:
     """Name the parts of the records that need parameters of their own, if any."""
     if not bench.blocks.white:
         return ""
-    worst = most_unlike(bench, fit, allowed)
-    if worst.chance > (UNLIKE_CHANCE if fit.candidates else UNLIKE_BASE_CHANCE):
+    policy, worst = bench.policy, most_unlike(bench, fit, allowed)
+    limit = policy.parts_chance if fit.candidates else policy.parts_chance_base
+    if worst.chance > limit:
         return ""
     return f"separate parameters by {worst.view} would lower chi2 by {worst.excess:.0f}"

@@ -14,6 +14,8 @@ from jointbench.analysis.gap.model.diagnosis_record import (
     Finding,
     diagnosis_json,
 )
+from jointbench.analysis.gap.model.policy import STANDARD, policy_digest
+from jointbench.analysis.gap.model.setting import settings_of
 from jointbench.station.gap import gap_output
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.report.gap_report import gap_report
@@ -214,3 +216,19 @@ def test_pairs_are_put_into_words() -> None:
     """Names lose their underscores, sites become places."""
     words = effect_words("preload_stiffness@link:joint + hidden_mode@body:m2")
     assert words == "preload stiffness in the joint and hidden mode on body m2"
+
+
+def test_the_provenance_holds_the_policy_of_the_verdict() -> None:
+    """Every decision setting is listed, and a varied policy is marked as such."""
+    diagnosis = found("named")
+    section = gap_report(diagnosis, title="made").sections[-1]
+    assert section.anchor == "provenance"
+    table = next(item for item in section.items if isinstance(item, DataTable))
+    names = [row[0] for row in table.rows]
+    assert names == [setting.name for setting in settings_of(STANDARD)]
+    page = render(gap_report(diagnosis, title="made"))
+    assert f"digest {policy_digest(STANDARD)[:16]}" in page
+    varied = replace(diagnosis, policy=replace(STANDARD, rival_score=20.0))
+    page = render(gap_report(varied, title="made"))
+    assert "a varied policy" in page
+    assert "a delta score of 20 (" in page
