@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What removing the mean line takes from a power law."""
 
-import numpy as np
 from scipy.special import gamma as gamma_function
 
 from jointbench.acquisition.basics.arrays import FloatArray
