@@ -110,7 +110,8 @@ BANNED = (
         "face (of a joint)",
         r"\bfaces?\b(?!-)",
         "contact surface",
-        fine=r"faces? of (an? )?(element|mesh)|(element|boundary) faces?",
+        fine=r"faces? of (an? )?(element|mesh)|(element|boundary) faces?"
+        r"|face = |(structure of|surface) face\b|face: caution",
         elsewhere=_MESHES,
     ),
     Banned(

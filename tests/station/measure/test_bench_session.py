@@ -180,7 +180,7 @@ def test_a_cable_off_pauses_the_session_until_it_is_back(tmp_path: Path) -> None
 
 
 def test_a_wrong_teds_warns_by_channel(tmp_path: Path) -> None:
-    """The warning is in the file, the session goes on."""
+    """The warning is in the file, the session continues."""
     measured = run(tmp_path, "sim:plates?faults=wrong_teds@0:1", repeats="1")
     session = read_session(tmp_path / "s.h5")
     warnings = [
@@ -231,7 +231,7 @@ def test_verify_reads_a_session_through(tmp_path: Path) -> None:
 
 
 def test_a_finished_session_needs_no_recovery(tmp_path: Path) -> None:
-    """The error says what to type instead."""
+    """The error names what to type instead."""
     run(tmp_path, repeats="1")
     with pytest.raises(UsageError, match="verify"):
         run_recover(tmp_path / "s.h5", out=None, overwrite=False, json_target=None)
@@ -301,7 +301,7 @@ def test_without_a_driver_measure_leaves_with_the_instrument_code(
 
 
 def test_a_stand_alone_server_is_measured_by_its_address(tmp_path: Path) -> None:
-    """`ni+grpc://` finds the simulated device and its hand by itself."""
+    """`ni+grpc://` finds the simulated device and its operator."""
     setup = replace(ChassisSetup(), speed=math.inf)
     with SimulatedChassis(setup) as server:
         measured = run(tmp_path, f"ni+grpc://{server.address}", repeats="1")
