@@ -151,7 +151,7 @@ BANNED = (
         "page (of a report, in code)",
         r"\bpages?\b",
         "report",
-        fine=r"page of the doc\w+|(docs|memory|man|web|code) pages?",
+        fine=r"page of the doc\w+|(docs|memory|man|web|code) pages?|/pages",
         only=_CODE,
     ),
     Banned(

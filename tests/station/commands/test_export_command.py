@@ -111,7 +111,7 @@ def test_a_table_of_a_result_has_labels_in_its_heads_and_words_for_verdicts(
 
 
 def test_variables_of_a_result_keep_their_whole_names(result: Path) -> None:
-    """A standard deviation is distinguished from its quantity; texts keep their rows."""
+    """Quantity and standard deviation differ by name; texts keep their rows."""
     content = scipy.io.loadmat(exported(result, "mat")["mat"])
     sd = content["modal_0_modes_natural_frequency_sd"]
     assert sd.size == content["modal_0_modes_natural_frequency"].size

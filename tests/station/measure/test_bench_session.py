@@ -21,7 +21,11 @@ from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.commands.verify_command import run_recover, run_verify
 from jointbench.station.main import app, exit_code
 from jointbench.station.measure.bench_session import Measured, measure, run_measure
-from jointbench.station.measure.chassis import OpenChassis, SimulatedHand, open_chassis
+from jointbench.station.measure.chassis import (
+    OpenChassis,
+    OperatorOfSimulation,
+    open_chassis,
+)
 from jointbench.station.measure.plan import conditions, read_plan
 from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.pipeline.chain import ChainSettings
@@ -119,7 +123,7 @@ def test_every_scripted_hit_gets_its_verdict_and_only_good_ones_count(
     setup = ChassisSetup(bench=bench, speed=math.inf)
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
-        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        opened = OpenChassis(chassis, "sim:", True, OperatorOfSimulation(chassis))
         measured = measure(plan, opened, tmp_path / "s.h5", TextScreen(console("-")))
         chassis.close()
         wanted = [VERDICTS[stroke.fate] for stroke in server.history]
@@ -139,7 +143,7 @@ def test_the_first_hit_of_a_point_is_compared_with_those_before_it(
     )
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
-        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        opened = OpenChassis(chassis, "sim:", True, OperatorOfSimulation(chassis))
         measured = measure(plan, opened, tmp_path / "s.h5", TextScreen(console("-")))
         chassis.close()
     verdicts = [hit.verdict for hit in measured.record.hits]

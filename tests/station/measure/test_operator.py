@@ -15,7 +15,7 @@ from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates_bench import PlatesBench
 from jointbench.station.commands.verify_command import run_verify
 from jointbench.station.measure.bench_session import Measured, measure
-from jointbench.station.measure.chassis import OpenChassis, SimulatedHand
+from jointbench.station.measure.chassis import OpenChassis, OperatorOfSimulation
 from jointbench.station.measure.observer import Command, HitNews
 from jointbench.station.measure.observer import Operator as Striker
 from jointbench.station.measure.plan import Condition, read_plan
@@ -70,7 +70,7 @@ class Wandering:
         """Ask for one stroke, once at the wrong place."""
         place = condition if self.asked else replace(condition, point="3")
         self.asked += 1
-        SimulatedHand(self.chassis).ask(place)
+        OperatorOfSimulation(self.chassis).ask(place)
 
 
 def session(
@@ -79,7 +79,7 @@ def session(
     *,
     fates: tuple[Fate, ...] = (Fate.GOOD,),
     on_hit: Callable[[int], None] = lambda number: None,
-    hand: Callable[[Chassis], Striker] = SimulatedHand,
+    hand: Callable[[Chassis], Striker] = OperatorOfSimulation,
 ) -> tuple[Measured, Operator]:
     """Measure two points, two hits each, with an operator who says things."""
     text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")

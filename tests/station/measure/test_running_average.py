@@ -1,4 +1,4 @@
-"""The average of a condition while it grows: the same numbers, no hit transformed twice."""
+"""The running average of a condition: the same numbers, each hit transformed once."""
 
 import numpy as np
 import pytest
@@ -77,7 +77,7 @@ def test_an_average_that_grows_is_the_average_of_all_hits(damping: float) -> Non
 def test_a_hit_is_transformed_when_it_comes_and_hardly_ever_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Forty hits, a spoiler looked for after each: 23,000 if all were transformed each time."""
+    """Forty hits with a search for outliers: transforming all each time takes 23,000."""
     transformed = []
     real = measure_average.hit_spectra
 

@@ -179,7 +179,7 @@ def test_nothing_to_do_opens_neither_sessions_nor_results(
     def no_one(tasks, recipe):
         raise AssertionError("nothing is to be done")
 
-    again = run(tmp_path, backend=nobody)
+    again = run(tmp_path, backend=no_one)
     assert (again.counts[State.SKIPPED], again.counts[State.FAILED]) == (1, 1)
     assert again.failed[0].reason == first.failed[0].reason
 
