@@ -77,7 +77,7 @@ def test_an_average_that_grows_is_the_average_of_all_hits(damping: float) -> Non
 def test_a_hit_is_transformed_when_it_comes_and_hardly_ever_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Forty hits with a search for outliers: transforming all each time takes 23,000."""
+    """Forty hits with a search for outliers: 23,000 if all are repeated."""
     transformed = []
     real = measure_average.hit_spectra
 
