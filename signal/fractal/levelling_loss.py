@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What removing the mean line takes from a power law."""
+"""Loss of a power law by removal of the mean line."""
 
 import numpy as np
 from scipy.special import gamma as gamma_function
@@ -8,7 +8,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 
 
 def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
-    """Return what removing the mean line takes from S = t^s of a unit length.
+    """Return the loss of S = t^s on a unit length by removal of the mean line.
 
     Args:
         share: lag over the length of the profile, between 0 and 1 [-].
@@ -28,10 +28,10 @@ def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
     def moment(t: FloatArray) -> FloatArray:
         """Integrate cov(z(t), b) from 0 to t."""
         rest = 1 - t
-        ahead = t ** (s + 3) / (s + 3) - t ** (s + 2) / (2 * (s + 2))
-        behind = rest ** (s + 3) / (s + 3) - rest ** (s + 2) / (2 * (s + 2))
+        left = t ** (s + 3) / (s + 3) - t ** (s + 2) / (2 * (s + 2))
+        right = rest ** (s + 3) / (s + 3) - rest ** (s + 2) / (2 * (s + 2))
         start = 1 / (s + 3) - 1 / (2 * (s + 2))
-        first = (ahead + behind - start) / (s + 1)
+        first = (left + right - start) / (s + 1)
         second = (t ** (s + 3) + rest ** (s + 3) - 1) / ((s + 2) * (s + 3))
         integral: FloatArray = -6 * (first - second)
         return integral

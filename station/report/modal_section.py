@@ -241,7 +241,7 @@ def _window(chain: ModalChain) -> str:
 
 def _misfit(chain: ModalChain) -> str:
     """Say which intervals rest on misfit; results of earlier versions do not tell."""
-    if np.isnan(chain.result.model.misfit).all():
+    if np.isnan(chain.result.model.residual_ratio).all():
         return "The results file does not say how much of the intervals is noise."
     return systematic_words(chain)
 

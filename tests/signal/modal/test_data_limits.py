@@ -12,10 +12,10 @@ from jointbench.acquisition.records.recordings import Channel, Quantity, Recordi
 from jointbench.signal.frf.frf import estimate_frf
 from jointbench.signal.hits.find_hits import find_hits
 from jointbench.signal.modal.data_limits import (
-    asked_words,
     block_words,
     mode_words,
     pulse_duration,
+    requested_band_words,
     time_scale_words,
 )
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
@@ -74,12 +74,12 @@ def test_a_block_long_enough_says_nothing(structure: Make, hammered: Make) -> No
 def test_a_band_beyond_the_record_is_told(structure: Make, hammered: Make) -> None:
     """8192 Hz: half is 4096 Hz, filters act from 3200 Hz on; 1 s holds 3 Hz."""
     record = find_hits(hammered(structure((400.0,), (0.01,))))
-    assert asked_words([record], None) == ()
-    assert asked_words([record], (10.0, 3000.0)) == ()
-    low, high = asked_words([record], (1.0, 5000.0))
+    assert requested_band_words([record], None) == ()
+    assert requested_band_words([record], (10.0, 3000.0)) == ()
+    low, high = requested_band_words([record], (1.0, 5000.0))
     assert "begins at 1 Hz" in low
     assert "nothing above 4096 Hz" in high
-    (near,) = asked_words([record], (10.0, 3500.0))
+    (near,) = requested_band_words([record], (10.0, 3500.0))
     assert "3200 Hz" in near
 
 

@@ -122,7 +122,7 @@ def test_shapes_are_those_of_the_structure_up_to_a_factor() -> None:
 
 
 def test_a_sine_of_the_spindle_is_told_from_a_resonance() -> None:
-    """A line at 150 Hz beside the modes: its envelope keeps still."""
+    """A sine at 150 Hz besides the modes has a constant envelope."""
     run = spindle_run(60.0, 3)
     time = np.arange(run.samples.shape[1]) / RATE
     sine = 0.5 * run.samples.std() * np.sin(2.0 * np.pi * 150.0 * time)
