@@ -92,7 +92,7 @@ def serve(parent: Connection, modules: int, rate: float) -> None:
     from jointbench.simulators.measuring.operator import SimulatedOperator
     from jointbench.simulators.plates.plates_bench import PlatesBench
 
-    bench = PlatesBench(hand=SimulatedOperator(interval=2.0))
+    bench = PlatesBench(operator=SimulatedOperator(interval=2.0))
     setup = ChassisSetup(bench=bench, modules=modules, top_rate=rate)
     with SimulatedChassis(setup) as server:
         parent.send(server.address)

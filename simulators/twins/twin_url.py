@@ -21,18 +21,18 @@ INSTRUMENTS = ("diavite", "mitutoyo", "mark10")
 _WRENCH_ERROR = 0.02  # relative standard deviation of a good wrench
 _COUNTS_PER_METRE = 128e6  # of a DH-8
 _TRAVERSE = 4.8e-3  # [m]
-_DIMENSION, _ROUGHNESS = 1.45, 5e-11  # [-], [m] of the ground face that was traced
+_DIMENSION, _ROUGHNESS = 1.45, 5e-11  # [-], [m] of the measured ground surface
 _KEYS = "seed, torques, bolts, points, unplug"
 
 
 def is_twin_url(url: str) -> bool:
-    """Tell whether a URL names a serial instrument without hardware."""
+    """Return whether a URL names a simulated serial instrument."""
     parts = urlsplit(url)
     return parts.scheme == "sim" and parts.path in INSTRUMENTS
 
 
 def twin_from_url(url: str) -> Twin:
-    """Plug in the instrument that a URL names.
+    """Connect the instrument of a URL.
 
     Args:
         url: ``sim:diavite``, ``sim:mitutoyo`` or ``sim:mark10`` and, as a query, any
@@ -41,7 +41,7 @@ def twin_from_url(url: str) -> Twin:
             line breaks.
 
     Raises:
-        UsageError: an unknown instrument or key, or a value that does not read so.
+        UsageError: an unknown instrument or key, or an invalid value.
     """
     if not is_twin_url(url):
         known = ", ".join(f"sim:{name}" for name in INSTRUMENTS)
@@ -65,7 +65,8 @@ def twin_from_url(url: str) -> Twin:
         )
     if points < 16 or bolts < 1 or not torques:
         raise UsageError(
-            f"{url!r} makes no instrument; give 16 points or more, a bolt and a torque"
+            f"{url!r} is no valid instrument; give 16 points or more, a bolt and a "
+            "torque"
         )
     made: dict[str, Callable[[], Answer]] = {
         "diavite": lambda: _diavite(seed, points),
@@ -76,7 +77,7 @@ def twin_from_url(url: str) -> Twin:
 
 
 def _heights(seed: int, points: int) -> FloatArray:
-    """Return the heights of a ground face along a traverse [m]."""
+    """Return the heights of a ground surface along a traverse [m]."""
     face = rough_profile(
         points,
         spacing=_TRAVERSE / points,

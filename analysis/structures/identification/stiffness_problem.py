@@ -26,7 +26,8 @@ _FLAT = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StiffnessProblem: """Unknowns and measurements of an identification.
+class StiffnessProblem:
+    """Unknowns and measurements of an identification.
 
     The unknowns are logarithms of stiffness and damping. Each state has its own
     unknowns, except those that states share.

@@ -198,12 +198,12 @@ def test_two_bodies_that_read_one_channel_are_refused():
         identify_links(chain(), named_twice)
 
 
-def test_damping_of_a_hardly_strained_joint_cannot_be_told_from_zero():
+def test_damping_of_a_hardly_strained_joint_cannot_be_distinguished_from_zero():
     """Damping ratios good to 60 % leave the joint's share undecided."""
     result = identify_links(chain(), measure(TRUTH, damping_sd=0.6))
     one = result.parameter("joint.damping")
     assert not one.identifiable
-    assert "told from zero" in one.reason
+    assert "distinguished from zero" in one.reason
     assert result.verdict is IdentificationVerdict.PARTLY
 
 

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from jointbench.simulators.mechanics.joint_laws import JointLaw, LawKind
 from jointbench.simulators.mechanics.plant import GROUND, Plant, PlantLink
-from jointbench.simulators.mechanics.plant_march import step_plant
+from jointbench.simulators.mechanics.plant_integration import step_plant
 from jointbench.simulators.mechanics.sliders import jenkins_bank
 
 MASSES = np.array([9.0, 4.6])

@@ -14,7 +14,7 @@ from jointbench.simulators.mechanics.plant import (
     plant_modes,
     two_bodies,
 )
-from jointbench.simulators.mechanics.plant_march import PlantState, step_plant
+from jointbench.simulators.mechanics.plant_integration import PlantState, step_plant
 
 BENCH = two_bodies(m1=9.0, m2=4.6, k0=2.2e7, c0=320.0, kj=6.0e7, cj=240.0)
 
