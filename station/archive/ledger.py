@@ -149,7 +149,7 @@ def ledger_seal(path: Path) -> tuple[Seal, int]:
     lines = _lines(path)
     rotten = sum(not _is_whole(line) for line in lines)
     if rotten:
-        return Seal.ROTTEN, rotten
+        return Seal.CORRUPTED, rotten
     signed = all(_CHECK in line for line in lines)
     return (Seal.WHOLE if signed else Seal.UNSIGNED), 0
 

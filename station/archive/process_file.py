@@ -136,7 +136,7 @@ def _has_key(path: Path, key: str) -> bool:
     """Tell whether a result of this very key is there, whole or unsigned.
 
     Raises:
-        RottenFile: a result is there, and its content is not what its digest says.
+        CorruptedFile: a result is there, and its content is not what its digest says.
         FormatError: a file is there that cannot be read.
     """
     if not path.exists():

@@ -132,7 +132,7 @@ def _session(path: Path) -> Checked:
 
 def _results(path: Path) -> Checked:
     seal = _seal(path)
-    if seal is Seal.ROTTEN:
+    if seal is Seal.CORRUPTED:
         return Checked(path, "results", seal, (ROTTEN,))
     read_result(path)
     result_tables(path)
@@ -145,7 +145,7 @@ def _table(path: Path) -> Checked:
             raise UsageError(f"{shown(path.name)} is no table of an archive of ours")
     seal = _seal(path)
     problems = (ROTTEN.replace("process`, `reprocess` or `modal", "archive"),)
-    return Checked(path, "table", seal, problems if seal is Seal.ROTTEN else ())
+    return Checked(path, "table", seal, problems if seal is Seal.CORRUPTED else ())
 
 
 def _seal(path: Path) -> Seal:

@@ -45,7 +45,7 @@ class SimulatedHand:
         optional = {"torque": torque, "level": condition.level}
         wishes |= {k: v for k, v in optional.items() if v is not None}  # type: ignore[misc]
         try:
-            self.chassis.hand(json.dumps(wishes).encode())
+            self.chassis.strike(json.dumps(wishes).encode())
         except ConnectionLost:
             return
 

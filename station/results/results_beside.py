@@ -49,7 +49,7 @@ def stored_results(
 
     Raises:
         UsageError: the file given was made of another session.
-        RottenFile: a results file is not what its digest says.
+        CorruptedFile: a results file is not what its digest says.
     """
     digest = file_digest(session)
     preloads = [preload for preload, _ in by_preload(recordings)]

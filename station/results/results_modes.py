@@ -82,7 +82,7 @@ def read_run(path: Path) -> StoredRun:
     """Read the modes of a results file of any layout.
 
     Raises:
-        RottenFile: its content is not what its digest says.
+        CorruptedFile: its content is not what its digest says.
         FormatError: it is damaged, or no results file.
         HostileFile: it asks for more than a result would.
     """

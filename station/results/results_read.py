@@ -101,7 +101,7 @@ def open_result(path: Path) -> Iterator[h5py.File]:
     """Open a results file through the guards, its content compared with its digest.
 
     Raises:
-        RottenFile: the content is not what the digest says.
+        CorruptedFile: the content is not what the digest says.
         FormatError: it is damaged.
         HostileFile: it asks for more than a result would.
     """
@@ -124,7 +124,7 @@ def read_result(path: Path) -> StoredResult:
     """Read a results file of any layout.
 
     Raises:
-        RottenFile: its content is not what its digest says.
+        CorruptedFile: its content is not what its digest says.
         FormatError: it is no results file, of a later layout, or damaged.
         HostileFile: it asks for more than a result would.
     """

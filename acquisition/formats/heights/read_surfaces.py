@@ -70,18 +70,18 @@ def read_surface(
             z, or of x, y and z (text or .npy), or, with the extra ``surfaces``, a
             maker's own format. A Mitutoyo SJ CSV or a Mahr TXT needs `columns` too.
         columns: what the columns of a table hold and in which unit, for example
-            ``"x:mm,y:mm,z:um"``, or ``"z:um@0.5um"`` for heights alone; it overrules
-            what the content looks like. Formats that state their units, and tables
-            with units above their columns, do without.
+            ``"x:mm,y:mm,z:um"``, or ``"z:um@0.5um"`` for heights alone; it overrides
+            the recognised format. Formats that state their units, and tables with units
+            above their columns, do without.
         name: of the surface; the name of the file without its ending if None.
 
     Returns:
-        Heights in metres with a mask of the points that are there. Provenance tells
-        what the file was taken for and why, and holds `cautions`.
+        Heights in metres with a mask of the points that are there. The provenance holds
+        the recognised format, its reason, and `cautions`.
 
     Raises:
         BadData: the file cannot be opened, or is none of these; the subclass and the
-            message say why and what to do.
+            message give reason and remedy.
         UsageError: `columns` names something unknown.
     """
     path = Path(path)
@@ -123,6 +123,6 @@ def _read(path: Path, columns: str | None, name: str | None) -> tuple[Surface, b
 
 
 def _is_plain(path: Path) -> bool:
-    """Tell whether a file with a maker's ending is but a table, as .dat often is."""
+    """Return whether a file with a vendor's suffix is only a table, as .dat often is."""
     head = read_head(path, _PLAIN_BYTES)
     return path.suffix.lower() == ".dat" and b"\x00" not in head

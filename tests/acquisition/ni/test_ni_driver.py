@@ -114,7 +114,7 @@ def test_a_hit_comes_in_newtons_with_its_peak() -> None:
     """The peak of the pulse is what the hand says, within what sampling can see."""
     with chassis() as client:
         made = stream(client)
-        client.hand(b'{"point": "1", "level": 200}')
+        client.strike(b'{"point": "1", "level": 200}')
         blocks = [i.samples for i in take(made, 20) if isinstance(i, Block)]
         made.close()
     force = np.hstack(blocks)[0]
@@ -130,7 +130,7 @@ def test_a_wrong_sensitivity_gives_wrong_newtons() -> None:
         with chassis() as client:
             made = NiStream(client, (hammer, A1), StreamSettings(12_800.0, 512))
             made.start()
-            client.hand(b"{}")
+            client.strike(b"{}")
             blocks = [i.samples for i in take(made, 20) if isinstance(i, Block)]
             made.close()
         peaks.append(np.hstack(blocks)[0].max())
@@ -143,7 +143,7 @@ def test_samples_do_not_depend_on_the_size_of_a_block() -> None:
     for block in (512, 768):
         with chassis() as client:
             made = stream(client, block=block)
-            client.hand(b'{"point": "3"}')
+            client.strike(b'{"point": "3"}')
             items = take(made, 6144 // block)
             made.close()
         streams.append(np.hstack([i.samples for i in items if isinstance(i, Block)]))
@@ -270,7 +270,7 @@ def test_the_hardware_trigger_stands_exactly_where_it_was_asked_for() -> None:
         task.start_triggered(
             12_800.0, samples=1024, source="force", before=100, level=20.0
         )
-        client.hand(b"{}")
+        client.strike(b"{}")
         samples = task.read(1024, timeout=10.0)
         task.close()
     assert samples[0, 99] < 20.0 <= samples[0, 100]
