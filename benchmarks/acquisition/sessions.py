@@ -46,7 +46,7 @@ VERDICTS = {
 
 
 class Quiet(TextScreen):
-    """Say nothing."""
+    """Print nothing."""
 
     def __init__(self) -> None:
         super().__init__(console("-"))
@@ -78,7 +78,9 @@ def many_hits(folder: Path, seed: int) -> None:
         'most_rejected = 100\nlength = "0.5 s"'
     )
     path.write_text(plan_text(hits).replace("25.6 kHz", "12.8 kHz"), encoding="utf-8")
-    bench = PlatesBench(operator=SimulatedOperator(seed=seed, fates=fates(seed)), seed=seed)
+    bench = PlatesBench(
+        operator=SimulatedOperator(seed=seed, fates=fates(seed)), seed=seed
+    )
     with SimulatedChassis(ChassisSetup(bench=bench, speed=math.inf)) as server:
         chassis = Chassis(server.address)
         opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))

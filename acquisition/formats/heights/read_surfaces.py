@@ -123,6 +123,6 @@ def _read(path: Path, columns: str | None, name: str | None) -> tuple[Surface, b
 
 
 def _is_plain(path: Path) -> bool:
-    """Return whether a file with a vendor's suffix is only a table, as .dat often is."""
+    """Return whether a file with a vendor suffix is only a table, as .dat often is."""
     head = read_head(path, _PLAIN_BYTES)
     return path.suffix.lower() == ".dat" and b"\x00" not in head

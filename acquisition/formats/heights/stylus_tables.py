@@ -97,7 +97,7 @@ def parse_stylus_list(
                 else "whole numbers below a resolution RES",
                 spacing=f"{column.spacing:g} m, as given",
                 missing_points=int((~valid).sum()),
-                note=note,
+                told=note,
             ),
         ),
     )

@@ -111,7 +111,7 @@ def test_a_wrong_teds_differs_from_the_right_one() -> None:
 
 
 def test_a_hit_comes_in_newtons_with_its_peak() -> None:
-    """The peak of the pulse is what the hand says, within what sampling can see."""
+    """The peak of the pulse is that of the stroke, within the sampling error."""
     with chassis() as client:
         made = stream(client)
         client.strike(b'{"point": "1", "level": 200}')
@@ -214,7 +214,7 @@ def test_a_bare_read_of_overwritten_samples_raises_overrun() -> None:
 
 
 def test_a_dropped_server_ends_a_segment_and_the_next_one_begins() -> None:
-    """Lost and back are told apart, and the new task counts from zero."""
+    """Lost and back are distinguished, and the new task counts from zero."""
     with chassis("drop@1024:0.1") as client:
         made = stream(client)
         items = take(made, 6)
@@ -235,7 +235,7 @@ def test_a_server_that_stays_away_ends_in_one_line() -> None:
             take(made, 4)
 
 
-def test_nobody_at_the_address_is_a_lost_connection() -> None:
+def test_no_answer_at_the_address_is_a_lost_connection() -> None:
     """Port 9 of this computer serves nothing."""
     client = Chassis("127.0.0.1:9")
     with pytest.raises(ConnectionLost, match="does not answer"):
@@ -251,7 +251,7 @@ def test_a_computer_without_the_driver_says_what_to_install() -> None:
 
 
 def test_an_open_sensor_loop_is_reported_by_channel() -> None:
-    """The fault opens input 1; the device's own attribute says so."""
+    """The fault opens input 1; the device's attribute shows it."""
     with chassis("open@512:1") as client:
         made = stream(client)
         take(made, 1)
@@ -277,7 +277,7 @@ def test_the_hardware_trigger_stands_exactly_where_it_was_asked_for() -> None:
 
 
 def test_a_module_without_a_trigger_refuses_it() -> None:
-    """`anlg_trig_supported` says so beforehand, -200077 afterwards."""
+    """`anlg_trig_supported` shows it beforehand, -200077 afterwards."""
     with chassis(analogue_trigger=False) as client:
         assert not client.modules()[0].analogue_trigger
         task = client.task("t", SENSORS)
@@ -299,9 +299,9 @@ def test_a_triaxial_sensor_is_one_sensor_with_three_channels() -> None:
 
 def test_an_input_that_is_used_twice_is_refused() -> None:
     """Two sensors cannot share a plug."""
-    twin = replace(A1, name="a2", axes=(Axis("cDAQSim1Mod1/ai1", "+z", 1e-3),))
+    device = replace(A1, name="a2", axes=(Axis("cDAQSim1Mod1/ai1", "+z", 1e-3),))
     with pytest.raises(UsageError, match="used twice"):
-        require_table((HAMMER, A1, twin))
+        require_table((HAMMER, A1, device))
 
 
 @pytest.mark.parametrize(

@@ -146,7 +146,7 @@ def test_a_sensor_mounted_the_wrong_way_round_shows_in_the_phase() -> None:
 
 
 def test_without_a_driving_point_there_is_no_mass() -> None:
-    """The message says what to do."""
+    """The message states the remedy."""
     from dataclasses import replace
 
     with pytest.raises(ChannelMissing, match="hit once next to a sensor"):

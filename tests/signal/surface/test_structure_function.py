@@ -90,7 +90,7 @@ def test_rows_that_repeat_each_other_are_recognised_as_one():
     assert faces[1].row_distance > 8e-6
 
 
-def test_provenance_tells_levelling_and_lags():
+def test_provenance_holds_levelling_and_lags():
     """The steps before the estimate stay, levelling among them."""
     estimate = structure_function(profile(walk(100)))
     assert [note.name for note in estimate.provenance] == [
@@ -133,7 +133,7 @@ def test_two_faces_add():
 
 
 def test_faces_without_a_common_lag_do_not_combine():
-    """A face measured at 1 mm spacing shares no lag with one of 0.3 mm length."""
+    """A surface measured at 1 mm spacing shares no lag with one of 0.3 mm length."""
     fine = structure_function(profile(walk(300)))
     heights = walk(300)
     coarse = structure_function(Profile("c", heights, 1e-3, all_valid(heights)))

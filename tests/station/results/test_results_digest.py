@@ -229,7 +229,7 @@ def test_export_refuses_a_rotten_result(make_session, kind: str) -> None:
     """No number of it leaves."""
     path = made(make_session("s.h5"))
     overwrite(path)
-    with pytest.raises(CorruptedFile, match="make it anew"):
+    with pytest.raises(CorruptedFile, match="make it again"):
         run_export(path, kind=kind, folder=None, json_target=None)
     assert not list(path.parent.glob(f"s.plain.results*.{kind}"))
 
