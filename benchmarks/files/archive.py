@@ -180,8 +180,7 @@ def make_archive(
     draw = random.Random(seed)
     kinds = list(POISONS)
     paths = [
-        folder / f"plate-{i % SPECIMENS}" / f"measurement-{i:04d}.h5"
-        for i in range(sessions)
+        folder / f"plate-{i % SPECIMENS}" / f"visit-{i:04d}.h5" for i in range(sessions)
     ]
     first = [(path, i, None) for i, path in enumerate(paths[:measurements])]
     rest = [
@@ -206,13 +205,13 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--sessions", type=int, default=2000)
     parser.add_argument("--poisoned", type=int, default=40)
-    parser.add_argument("--measurements", type=int, default=250)
+    parser.add_argument("--visits", type=int, default=250)
     options = parser.parse_args()
     named = make_archive(
         options.folder,
         sessions=options.sessions,
         poisoned=options.poisoned,
-        measurements=options.measurements,
+        measurements=options.visits,
     )
     print(f"{options.sessions} sessions, {len(named)} of them poisoned")
 
