@@ -50,7 +50,7 @@ VERDICTS = {
 
 
 class Quiet(TextScreen):
-    """Say nothing."""
+    """Print nothing."""
 
     def __init__(self) -> None:
         super().__init__(console("-"))
@@ -82,7 +82,9 @@ def many_hits(folder: Path, seed: int) -> None:
         'most_rejected = 100\nlength = "0.5 s"'
     )
     path.write_text(plan_text(hits).replace("25.6 kHz", "12.8 kHz"), encoding="utf-8")
-    bench = PlatesBench(hand=SimulatedOperator(seed=seed, fates=fates(seed)), seed=seed)
+    bench = PlatesBench(
+        operator=SimulatedOperator(seed=seed, fates=fates(seed)), seed=seed
+    )
     with SimulatedChassis(ChassisSetup(bench=bench, speed=math.inf)) as server:
         chassis = Chassis(server.address)
         opened = OpenChassis(chassis, "sim:", True, OperatorOfSimulation(chassis))

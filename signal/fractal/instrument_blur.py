@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What blur, tip and band limit of an instrument leave of a structure function."""
+"""Effect of blur, tip and band limit of an instrument on a structure function."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,12 @@ _ASYMPTOTIC_FROM = 40.0
 _ASYMPTOTIC_TERMS = 6
 _QUADRATURE_NODES = 96
 _QUADRATURE_LAGS = 60.0
-"""Lag beyond which a cosine over the band averages out [samples]; the nodes follow
-it up to there."""
+"""Lag beyond which a cosine over the band averages out [samples]; the nodes resolve it
+up to there."""
 _TIP_FALL = 1.3
 """Times 1 / s: half the power by which a tip's path falls off [-], see `tip_fall`."""
 _TIP_BLURS = 16
-"""Gaussian blurs that make up the path of a tip: S within 2e-3 at all lags [-]."""
+"""Gaussian blurs that represent the path of a tip: S within 2e-3 at all lags [-]."""
 _TIP_TAILS = (1e-4, 1.0 - 1e-7)
 """Shares of them below the narrowest and the widest [-]."""
 _FRACTION_TERMS = 60
@@ -39,7 +39,7 @@ def blurred_power(
         exponent: s [-].
         width: standard deviation of the blur [samples], above 0; an array broadcasts
             with `lag`.
-        axes: 1 or 2 directions of blur; with 2 the surface is taken as isotropic.
+        axes: 1 or 2 directions of blur; 2 assumes an isotropic surface.
 
     Source:
         Abramowitz and Stegun, 13.1.2 and 13.5.1 (far from the origin).
@@ -65,12 +65,13 @@ def tip_fall(exponent: float) -> float:
     """Return n of the transfer |K|^2 = (1 + (omega a)^2)^-n of a round tip's path.
 
     A parabola and a self-affine profile of one D have one length in common, the width
-    of contact, so |K|^2 is one function of it for each D. The path has creases: far out
-    its spectrum falls as omega^-4, n = (3 - s) / 2, but few data see so far. Fitted to
-    the mean S of paths of tips of 1 to 5 um on profiles of D = 1.3, 1.5 and 1.7, with
-    points eight times as dense as well, n = 1.3 / s leaves an error of D of 0.005 at
-    most at 1.3 and 1.5 and 0.016 at 1.7; a Gaussian leaves up to 0.035, and five to a
-    hundred times the squares. Tips many points wide (15 um here) see more of the fall.
+    of contact, so |K|^2 is one function of it for each D. The path has creases: at high
+    frequency its spectrum falls as omega^-4, n = (3 - s) / 2, but few data reach it.
+    Fitted to the mean S of paths of tips of 1 to 5 um on profiles of D = 1.3, 1.5 and
+    1.7, with points eight times as dense as well, n = 1.3 / s leaves an error of D of
+    0.005 at most at 1.3 and 1.5 and 0.016 at 1.7; a Gaussian leaves up to 0.035, and
+    five to a hundred times the sum of squares. Tips many points wide (15 um here) show
+    more of the fall.
 
     Args:
         exponent: s = 4 - 2D [-].
@@ -84,7 +85,7 @@ def traced_power(lag: FloatArray, exponent: float, width: float) -> FloatArray:
     Args:
         lag: [samples], not negative.
         exponent: s [-].
-        width: standard deviation of the Gaussian blur that takes as much from long
+        width: standard deviation of the Gaussian blur with the same effect on long
             waves [samples], above 0.
 
     Source:
@@ -107,8 +108,8 @@ def band_limited_power(lag: FloatArray, exponent: float, axes: int) -> FloatArra
     Args:
         lag: [samples], not negative.
         exponent: s [-].
-        axes: 1 where waves along the profile only are cut off; 2 where waves of an
-            isotropic map are, along both directions of its grid.
+        axes: 1 if only waves along the profile are cut off; 2 for an isotropic map,
+            along both directions of its grid.
 
     Source:
         S = integral of 2 P(f) (1 - cos 2 pi f lag) up to the Nyquist frequency with
@@ -128,11 +129,11 @@ def band_limited_power(lag: FloatArray, exponent: float, axes: int) -> FloatArra
 
 
 def _missing_across(lag: FloatArray, exponent: float) -> FloatArray:
-    """Return what a limit across a map takes from waves that run slantwise.
+    """Return the loss of oblique waves by a band limit across a map.
 
-    A profile of an isotropic map sees the waves of all directions; of those that are
-    slow along it, the ones too fast across it are missing. What is left of the power
-    at the angular frequency q is a regularised incomplete beta function.
+    A profile of an isotropic map contains the waves of all directions; of those that
+    are slow along it, the ones too fast across it are missing. The remaining share of
+    the power at the angular frequency q is a regularised incomplete beta function.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_QUADRATURE_NODES)
     q = np.pi * (nodes + 1) / 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How the lags of a structure function are weighed: the Cholesky root of its noise."""
+"""Weights of the lags of a structure function: the Cholesky root of its covariance."""
 
 from dataclasses import dataclass
 
@@ -17,10 +17,10 @@ _JITTERS = (1e-9, 1e-7, 1e-5, 1e-3)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Weights:
-    """How the lags are weighed.
+    """Weights of the lags.
 
     Attributes:
-        reference: S that the residuals are taken relative to [m^2], shape (n_lags,).
+        reference: S to which the residuals are relative [m^2], shape (n_lags,).
         root: lower Cholesky root of the covariance of S over `reference` [-].
     """
 
@@ -55,25 +55,25 @@ class Weights:
 def weigh(
     problem: FractalProblem, at: SeenSurface, *, scatter: FloatArray | None = None
 ) -> Weights:
-    """Return the weights that belong to a surface and its instrument.
+    """Return the weights of a surface and its instrument.
 
     Args:
         problem: the structure function to fit.
         at: the surface and instrument.
-        scatter: covariance of S to take in place of the one at `at`, shape (n, n) [-].
+        scatter: covariance of S to use instead of the one at `at`, shape (n, n) [-].
     """
     reference = problem.predicted(at)
-    # A poor start may lose all to levelling; the values themselves then stand in.
+    # Levelling may remove all of a poor start; the values are used instead.
     reference = np.where(reference > 0, reference, problem.estimate.value)
     own = problem.scatter(at) if scatter is None else scatter
-    return Weights(reference, lower_root(own + problem.misfit(at)))
+    return Weights(reference, lower_root(own + problem.model_error(at)))
 
 
 def lower_root(covariance: FloatArray) -> FloatArray:
-    """Return the lower Cholesky root, with as little added variance as it takes.
+    """Return the lower Cholesky root, with the least added variance required.
 
-    On very smooth surfaces neighbouring lags tell the same to more digits than the
-    sums have; the added variance keeps their last digits out of the fit.
+    On very smooth surfaces neighbouring lags are equal to more digits than the sums
+    have; the added variance keeps their last digits out of the fit.
     """
     diagonal = np.diag(np.diag(covariance))
     for jitter in _JITTERS:

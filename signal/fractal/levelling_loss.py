@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What removing the mean line takes from a power law."""
+"""Loss of a power law by removal of the mean line."""
 
 from scipy.special import gamma as gamma_function
 
@@ -7,7 +7,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 
 
 def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
-    """Return what removing the mean line takes from S = t^s of a unit length.
+    """Return the loss of S = t^s on a unit length by removal of the mean line.
 
     Args:
         share: lag over the length of the profile, between 0 and 1 [-].

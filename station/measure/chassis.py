@@ -45,7 +45,7 @@ class OperatorOfSimulation:
         optional = {"torque": torque, "level": condition.level}
         request |= {k: v for k, v in optional.items() if v is not None}  # type: ignore[misc]
         try:
-            self.chassis.hand(json.dumps(request).encode())
+            self.chassis.strike(json.dumps(request).encode())
         except ConnectionLost:
             return
 

@@ -206,7 +206,7 @@ def _model(group: h5py.Group, frf: Frf, steps: Provenance) -> ModalModel:
         shapes_sd=_complex_or_nan(group, "shape_sd", shapes.shape),
         participation=participation,
         significance=unknown if significance is None else significance,
-        misfit=unknown if residual is None else residual,
+        residual_ratio=unknown if residual is None else residual,
         stable_orders=np.zeros(count, np.int64)
         if orders is None
         else read_integers(orders),

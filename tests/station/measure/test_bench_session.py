@@ -119,7 +119,7 @@ def test_every_scripted_hit_gets_its_verdict_and_only_good_ones_count(
 ) -> None:
     """Good, double, overload, weak, good: two are averaged, five are in the file."""
     plan = read_plan(plan_file(tmp_path))
-    bench = PlatesBench(hand=SimulatedOperator(fates=FATES))
+    bench = PlatesBench(operator=SimulatedOperator(fates=FATES))
     setup = ChassisSetup(bench=bench, speed=math.inf)
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
@@ -139,7 +139,7 @@ def test_the_first_hit_of_a_point_is_compared_with_those_before_it(
     fates = (Fate.GOOD, Fate.WEAK, Fate.GOOD)
     plan = read_plan(plan_file(tmp_path, points='["1", "2"]', repeats="1", levels="[]"))
     setup = ChassisSetup(
-        bench=PlatesBench(hand=SimulatedOperator(fates=fates)), speed=math.inf
+        bench=PlatesBench(operator=SimulatedOperator(fates=fates)), speed=math.inf
     )
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)

@@ -89,7 +89,7 @@ def session(
     path.write_text(f"{head}[hits]\n{HITS}\n[joint]{tail}", encoding="utf-8")
     operator = Operator(console("-"), after=dict(after), on_hit=on_hit)
     setup = ChassisSetup(
-        bench=PlatesBench(hand=SimulatedOperator(fates=fates)), speed=math.inf
+        bench=PlatesBench(operator=SimulatedOperator(fates=fates)), speed=math.inf
     )
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
