@@ -23,7 +23,7 @@ from jointbench.station.report.gap_report import gap_report
 from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.truth_table import TruthComparison, compare_value
-from jointbench.station.sources.visit_file import write_visit
+from jointbench.station.sources.recorded_session import record_session_file
 
 _HIDDEN = "cubic_stiffness"
 _GRID = "small"
@@ -57,7 +57,7 @@ def session_for_gap(folder: Path, *, seed: int) -> DemoGap:
         seed: of the bench.
     """
     url = f"sim:two-body-campaign?seed={seed}&hide={_HIDDEN}&grid={_GRID}"
-    written = write_visit(url, folder / FILES[0], overwrite=True)
+    written = record_session_file(url, folder / FILES[0], overwrite=True)
     wanted = GapRequest(model=written.model)
     with side_by_side():
         done = examine([str(written.path)], wanted, progress=lambda line: None)

@@ -2,12 +2,8 @@
 """What ``jointbench gap`` shows on a terminal, in 80 columns or more."""
 
 import textwrap
-from collections.abc import Sequence, Set
-from typing import Literal
 
-from rich.console import Console, Group, RenderableType
-from rich.table import Table
-from rich.text import Text
+from rich.console import Console
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
 from jointbench.station.report.gap_numbers import percent, short, sure
@@ -19,8 +15,7 @@ from jointbench.station.report.gap_sentences import (
     place,
     why_lost,
 )
-from jointbench.station.screen.escaping_console import seen
-from jointbench.station.screen.terminal import console
+from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.value_text import with_sd
 
 _MOST_CANDIDATES = 6
@@ -29,7 +24,6 @@ _SMALL_SHARE = 0.005
 _WIDEST = 110
 _LABEL = 9
 """Width of the labels at the beginning of lines."""
-_LONGEST_NAME = 34
 _VIEW_HEADS = ("view", "largest shares")
 _TRIED_HEADS = ("explanation", "delta score", "chi2/dof", "prior dev. [sd]", "reason")
 
@@ -52,7 +46,7 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     if found.effects:
         columns = ("effect", "value ± sd", "unit", "confidence")
         screen.print(
-            _table("Missing from the model", columns, _effects(found), words={0, 2})
+            table("Missing from the model", columns, _effects(found), words={0, 2})
         )
     screen.print()
     _say(screen, "gap", _gap_words(found))
@@ -63,10 +57,10 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     _say(screen, "limits", _limit_words(found))
     where = _where(found)
     if where:
-        screen.print(_table("Location of the gap", _VIEW_HEADS, where, words={0, 1}))
+        screen.print(table("Location of the gap", _VIEW_HEADS, where, words={0, 1}))
     if len(found.candidates) > 1:
-        tried = _candidates(screen, found)
-        screen.print(_table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
+        tried = _candidates(found)
+        screen.print(table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
     if next_step(found):
         screen.print()
         _say(screen, "next", next_step(found))
@@ -85,23 +79,6 @@ def _say(screen: Console, label: str, *texts: str) -> None:
             text, width, initial_indent=start, subsequent_indent=hang
         ):
             screen.print(line, markup=False, soft_wrap=True)
-
-
-def _table(
-    title: str,
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str]],
-    *,
-    words: Set[int],
-) -> RenderableType:
-    """Return a titled table; columns of words read from the left."""
-    result = Table(box=None, pad_edge=False)
-    for number, column in enumerate(columns):
-        side: Literal["left", "right"] = "left" if number in words else "right"
-        result.add_column(seen(column), justify=side)
-    for row in rows:
-        result.add_row(*(seen(cell) for cell in row))
-    return Group(Text(), seen(title, style="bold"), result)
 
 
 def _effects(found: Diagnosis) -> list[tuple[str, str, str, str]]:
@@ -171,14 +148,10 @@ def _where(found: Diagnosis) -> list[tuple[str, str]]:
     return rows
 
 
-def _candidates(
-    screen: Console, found: Diagnosis
-) -> list[tuple[str, str, str, str, str]]:
-    room = min(screen.width, _WIDEST) - 3 * 10
-    widest = min(max(room // 2, 22), _LONGEST_NAME)
+def _candidates(found: Diagnosis) -> list[tuple[str, str, str, str, str]]:
     return [
         (
-            _short(" + ".join(one.effects), widest),
+            _short(" + ".join(one.effects)),
             short(one.behind),
             f"{one.chi2_per_dof:.4g}",
             short(one.pull),
@@ -188,6 +161,5 @@ def _candidates(
     ]
 
 
-def _short(name: str, widest: int) -> str:
-    name = "base model" if name == "none" else name.replace("link:joint", "joint")
-    return name if len(name) <= widest else f"{name[: widest - 3]}..."
+def _short(name: str) -> str:
+    return "base model" if name == "none" else name.replace("link:joint", "joint")

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.basics.registry import OWN_PACKAGE
 from jointbench.acquisition.records.session import software_version
+from jointbench.analysis.contact.model_catalogue import contact_law_package
 from jointbench.analysis.contact.predict import DAMPING_REASON
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.station.files.output_paths import check_outputs
@@ -222,8 +224,14 @@ def _show(
 
 
 def _reasons(points: Sequence[ContactPoint]) -> list[str]:
-    """Return every reason once, and the dominant source of uncertainty."""
-    lines = [reason for point in points for reason in point.state.reasons]
+    """Return packages of models, every reason once, and the dominant uncertainty."""
+    packages = {p.state.model: contact_law_package(p.state.model) for p in points}
+    lines = [
+        f"{name}: a model of package {package}"
+        for name, package in packages.items()
+        if package != OWN_PACKAGE
+    ]
+    lines += [reason for point in points for reason in point.state.reasons]
     for point in points:
         found = point.uncertainty
         if found is not None and (name := found.stiffness.dominant) is not None:

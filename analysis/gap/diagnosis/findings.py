@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.catalogue.nonlinear_effects import CUBIC, QUADRATIC
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
@@ -14,7 +15,7 @@ from jointbench.analysis.gap.diagnosis.location import Relative
 from jointbench.analysis.gap.model.evidence_records import DirectedTest, Wishes
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-ODD, EVEN = "cubic_stiffness", "quadratic_stiffness"
+ODD, EVEN = CUBIC.effect.name, QUADRATIC.effect.name
 
 
 def describe(

@@ -11,19 +11,16 @@ from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 
 MODEL_ERROR = {
-    "iwan": 5e-5,
-    "coulomb": 1e-5,
     "friction": 1e-6,
     "stiffness": 1e-7,
     "contact": 1e-6,
     "damping": 1e-6,
     "converter": 5e-6,
 }
-"""Share of the base's excess chi2 that a right law may leave, by its name or family:
-an Iwan element has as many sliders as its maker gave it, a stop closes between steps,
-a smooth law is as exact as its march, and linear damping has the share of its family;
-scatter carries samples over the edge of a clip,
-which its slope does not tell."""
+"""Share of the base's excess chi2 that a right law may leave, by its family
+where the effect has no `model_error` of its own: a stop closes between steps, a smooth
+law is as exact as its march, and linear damping has the share of its family; scatter
+carries samples over the edge of a clip, which its slope does not tell."""
 EXACT = 1e-9
 """The same for what is linear or acts on a channel: it is as exact as the base, and
 any more would hide a second effect behind a great first one."""
@@ -45,7 +42,9 @@ def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
     own, allowed = labels_of(fit.candidates), 0.0
     for candidate in fit.candidates:
         effect = candidate.effect
-        share = MODEL_ERROR.get(effect.name, MODEL_ERROR.get(effect.family, EXACT))
+        share = effect.model_error
+        if share is None:
+            share = MODEL_ERROR.get(effect.family, EXACT)
         rest = own - {candidate.label}
         without = [f.chi2 for f in others if labels_of(f.candidates) == rest]
         left = min(without, default=others[0].chi2) - dof
