@@ -110,7 +110,7 @@ class Policy:
         "chi2",
         "score difference below which a rival is not distinguished from the best fit",
         "calibration campaigns (benchmarks/gap/calibrate.py)",
-        "-30 %: 1 of 19 (1 x ambiguous, truth in it to right); +30 %: 1 of 16 (1 "
+        "-30 %: 1 of 20 (1 x ambiguous, truth in it to right); +30 %: 1 of 20 (1 "
         "x right to ambiguous, truth in it)",
     )
     rival_score_one_site: float = decision(
@@ -147,7 +147,7 @@ class Policy:
         "chi2",
         "score that a further effect must gain beyond its charge",
         "development campaigns with two effects",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     third_effect_share: float = decision(
         0.01,
