@@ -151,7 +151,7 @@ def test_what_a_wrong_effect_leaves_is_told_by_its_shape() -> None:
     cube = effect("cube")
     probe = replace(cube, effect=replace(cube.effect, family=PROBE_FAMILY))
     outcome = run(replace(bench, probes=(probe,)))
-    assert "look like: cube, curve:y" in outcome.gate.reason
+    assert "resembles a cube at curve:y" in outcome.gate.reason
     assert names(outcome) == ["square"]
 
 
