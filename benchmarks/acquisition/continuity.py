@@ -183,12 +183,13 @@ def page(runs: list[Run]) -> str:
     lines = [
         "# Streaming in real time",
         "`python benchmarks/acquisition/continuity.py --seconds 600` and `--search "
-        "--seconds 20`; this page is written by it.",
+        "--seconds 20`; these commands write this page.",
         "",
-        "The simulated chassis serves in another process, on the same two cores. Lost "
-        "is the device's counter, less what still waits in its buffer, less what is in "
-        "the file with a right checksum. Load is the five-minute load average at the "
-        "end of the run, all programs together: above 2 the two cores were shared.",
+        "The simulated chassis runs in another process on the same two cores. The lost "
+        "samples are the device's counter minus the samples in its buffer minus the "
+        "samples in the file with a valid checksum. Load is the five-minute load "
+        "average of all programs at the end of the run: above 2 the two cores were "
+        "shared.",
         "",
         "## Runs, longest first",
         "",
@@ -206,19 +207,20 @@ def page(runs: list[Run]) -> str:
         )
         lines += [
             "",
-            "## The most that holds",
+            "## Highest sustained rate",
             "",
-            f"Each point takes {found[0].seconds:g} s; it holds where nothing is lost "
-            f"and the device is at most {BEHIND:g} s ahead at the end.",
+            f"Each point takes {found[0].seconds:g} s; the rate is sustained if no "
+            f"sample is lost and the device is at most {BEHIND:g} s ahead at the end.",
             "",
-            "| channels x rate | million samples a second | CPU of client and store [% "
-            "of a core] | behind at the end [s] | lost | holds | load |",
+            "| channels x rate | million samples per second | CPU of client and store "
+            "[% of a core] | lag at the end [s] | lost | sustained | load |",
             "|---|---|---|---|---|---|---|",
             *(point(run) for run in found),
             "",
-            "None holds."
+            "No rate was sustained."
             if best is None
-            else f"The most that held: {best.channels} channels x {best.rate:g} Hz.",
+            else f"Highest sustained rate: {best.channels} channels "
+            f"x {best.rate:g} Hz.",
         ]
     return "\n".join([*lines, ""])
 

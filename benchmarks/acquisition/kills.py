@@ -150,10 +150,12 @@ def main() -> None:
     print("# Killed while recording\n")
     print(f"- kills (`kill -9`): {options.kills}")
     print(f"- files that open: {opened}")
-    print(f"- of those, recordings that had already logged their end: {finished}")
-    print(f"- files with a sample that differs from the unkilled session: {wrong}")
+    print(f"- of these, recordings already logged as finished: {finished}")
     print(
-        f"- samples handed over and not found: at most {max(lost)}, "
+        f"- files with a sample that differs from the session without a kill: {wrong}"
+    )
+    print(
+        f"- samples passed to the store but not found: at most {max(lost)}, "
         f"that is {max(lost) / block:.2f} blocks of {block}"
     )
     print(f"- kills that lost nothing: {sum(n == 0 for n in lost)}")

@@ -1,4 +1,4 @@
-"""CPU time and memory of every reader of foreign bytes, on files made to cost both.
+"""CPU time and memory of every reader of foreign bytes, on costly files.
 
     python benchmarks/files/bounds.py > docs/files-bounds.md
 
@@ -83,7 +83,7 @@ def main() -> int:
         return 0
     print("# CPU time and memory of every reader\n")
     print(f"Bounds: {CPU:g} s of CPU, and 500 MB + 4 x the file, interpreter and")
-    print("libraries included. Files are made to cost as much as they can.\n")
+    print("libraries included. The files are made as costly as possible.\n")
     print("| reader | file | MB | CPU s | memory MB | allowed MB | |")
     print("|---|---|---|---|---|---|---|")
     broken = 0
@@ -104,7 +104,7 @@ def main() -> int:
             f"{'' if kept else ' **NOT KEPT**'} |",
             flush=True,
         )
-    print(f"\n{broken} of these readings broke a bound.")
+    print(f"\n{broken} of these readings exceeded a bound.")
     return int(broken > 0)
 
 

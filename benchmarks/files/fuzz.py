@@ -250,10 +250,10 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         found, wrong, slowest = fuzz(options.files, options.seed, Path(name))
-    print("# Mutated files over all readers\n")
-    print(f"{options.files} files, seed {options.seed}; each child may take 3 GiB of")
-    print(f"memory beyond its start and {CLOCK:g} s a file.\n")
-    print("| reader | read | refused in one line | anything else |")
+    print("# Mutated files and all readers\n")
+    print(f"{options.files} files, seed {options.seed}; each child process may use")
+    print(f"3 GiB of additional memory and {CLOCK:g} s per file.\n")
+    print("| reader | read | refused in one line | other outcome |")
     print("|---|---|---|---|")
     for reader in READERS:
         row = {kind: n for (who, kind), n in found.items() if who == reader}

@@ -34,8 +34,8 @@ INTRODUCTION = """# Two hundred thousand degrees of freedom
 
 Made by `benchmarks/structures/large.py`: a free marble plate of 500 x 300 x 50 mm,
 {cells} hex20 elements, {size} degrees of freedom; ten elastic modes (and six rigid
-ones). One thread of a two-core machine, every solver in a process of its own; time is
-CPU seconds of the whole process, assembly or reading included, memory its largest.
+ones). One thread of a two-core machine, every solver in a separate process; time is
+CPU seconds of the whole process, including assembly or reading; memory is the peak.
 
 | solver | CPU s | memory [GB] | largest difference from the first, relative |
 |---|---|---|---|
@@ -118,7 +118,7 @@ def run(cells: Sequence[int], solver: str) -> tuple[list[float], float, float]:
 
 
 def main() -> None:
-    """Run every solver that is there and lay the numbers side by side."""
+    """Run every available solver and compare the numbers."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--cells", type=int, nargs=3, default=(56, 34, 8))
     parser.add_argument("--one", choices=[str(s) for s in Solver])
