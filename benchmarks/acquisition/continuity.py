@@ -5,9 +5,9 @@
 
 Every run is added to `continuity.json` beside this script, with the driver's counter
 against what was stored, the CPU of client and store, and the load of the computer;
-`docs/bench-continuity.md` is written from that file alone. The search takes more
-channels and samples a second until a run does not hold, and goes on where an earlier
-search ended.
+`docs/bench-continuity.md` is written from that file alone. The search increases
+channels and samples per second until a rate is not sustained, and continues where an
+earlier search ended.
 """
 
 import argparse
@@ -36,8 +36,8 @@ LADDER = (
     *((48, 102_400.0), (64, 102_400.0), (64, 204_800.0)),
     *((96, 204_800.0), (128, 204_800.0), (128, 409_600.0), (128, 819_200.0)),
 )
-BEHIND = 1.0
-"""A run holds if the device is no further ahead than this at its end [s]."""
+LARGEST_LAG = 1.0
+"""A rate is sustained if the device is no further ahead than this at the end [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ class Run:
     def holds(self) -> bool:
         """Whether nothing was lost and the client kept up."""
         whole = self.lost == 0 and self.gaps == 0 and self.damaged == 0
-        return whole and self.unread <= BEHIND * self.rate
+        return whole and self.unread <= LARGEST_LAG * self.rate
 
 
 def serve(parent: Connection, modules: int, rate: float) -> None:
@@ -210,7 +210,8 @@ def page(runs: list[Run]) -> str:
             "## Highest sustained rate",
             "",
             f"Each point takes {found[0].seconds:g} s; the rate is sustained if no "
-            f"sample is lost and the device is at most {BEHIND:g} s ahead at the end.",
+            f"sample is lost and the device is at most {LARGEST_LAG:g} s ahead "
+            "at the end.",
             "",
             "| channels x rate | million samples per second | CPU of client and store "
             "[% of a core] | lag at the end [s] | lost | sustained | load |",
@@ -236,10 +237,10 @@ def row(run: Run) -> str:
 
 def point(run: Run) -> str:
     """Return a point of the search as a line of the table."""
-    share, behind = 100 * run.cpu / run.seconds, run.unread / run.rate
+    share, lag = 100 * run.cpu / run.seconds, run.unread / run.rate
     return (
         f"| {run.channels} x {run.rate:g} Hz | {run.channels * run.rate / 1e6:.2f} | "
-        f"{share:.1f} | {behind:.2f} | {run.lost} | "
+        f"{share:.1f} | {lag:.2f} | {run.lost} | "
         f"{'yes' if run.holds else 'no'} | {run.load} |"
     )
 

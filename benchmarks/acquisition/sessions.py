@@ -46,7 +46,7 @@ VERDICTS = {
 
 
 class Quiet(TextScreen):
-    """Say nothing."""
+    """Print nothing."""
 
     def __init__(self) -> None:
         super().__init__(console("-"))

@@ -35,18 +35,18 @@ def read_one(reader: str, path: Path) -> dict[str, object]:
     begun = time.process_time()
     try:
         READERS[reader](path)
-        told = "read"
+        outcome = "read"
     except JointbenchError as error:
         lines = str(error).splitlines()
-        told = "refused" if len(lines) == 1 else "many lines"
+        outcome = "refused" if len(lines) == 1 else "many lines"
     except BaseException as error:  # noqa: BLE001 - what is sought
-        told = f"{type(error).__name__}: {error}"[:80]
+        outcome = f"{type(error).__name__}: {error}"[:80]
     # The peak of this process: getrusage counts that of its parent before the start.
     status = Path("/proc/self/status").read_text(encoding="ascii")
     used = int(status.partition("VmHWM:")[2].split()[0]) * 1024
     below = resource.getrusage(resource.RUSAGE_CHILDREN)
     return {
-        "told": told,
+        "told": outcome,
         "cpu": time.process_time() - begun + below.ru_utime + below.ru_stime,
         "memory": used + below.ru_maxrss * 1024,
     }
@@ -63,7 +63,7 @@ def measure(reader: str, path: Path) -> dict[str, object]:
 
 
 def is_kept(found: dict[str, object], size: int) -> bool:
-    """Tell whether a reader kept to the bounds."""
+    """Return whether a reader met the bounds."""
     return (
         found["told"] in {"read", "refused"}
         and float(str(found["cpu"])) <= CPU

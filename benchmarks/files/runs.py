@@ -86,7 +86,7 @@ def ledger_lines(path: Path) -> list[dict[str, object]]:
 
 
 def load_words() -> str:
-    """Say what the machine was doing besides."""
+    """Return the load of the machine as text."""
     load = os.getloadavg()
     return (
         f"{os.cpu_count()} cores; load averages when it ended "

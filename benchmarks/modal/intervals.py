@@ -4,9 +4,9 @@
 Usage: OMP_NUM_THREADS=1 python benchmarks/modal/intervals.py [--seeds 1000] [--first 0]
     [--outputs 40] [--page PAGE.md]
 
-Each seed is new noise on the benchmark case, at 20, 40 and 60 dB; the noise is not
-told to the fit. Intervals are pooled over modes and seeds: 93 to 97 % are wanted at 20
-and 40 dB, 90 to 98 % at 60 dB.
+Each seed is new noise on the benchmark case, at 20, 40 and 60 dB; its level is
+unknown to the fit. Intervals are pooled over modes and seeds: the target is 93 to 97 %
+at 20 and 40 dB, 90 to 98 % at 60 dB.
 """
 
 import argparse

@@ -73,7 +73,7 @@ def errors(case: Case, poles: ComplexArray) -> tuple[float, float]:
 
 def child(name: str, case: Case, decibel: float, order: int, repeats: int) -> Found:
     """Run one of them in this process."""
-    # Imports and compiled loops are nobody's time and memory.
+    # Imports and compiled loops do not count in time and memory.
     PEERS[name](benchmark_case(4, 1024).noisy(decibel, 0), 20)
     frf = case.noisy(decibel, 0)
     before = reset_peak()

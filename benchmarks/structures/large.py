@@ -43,7 +43,7 @@ CPU seconds of the whole process, including assembly or reading; memory is the p
 
 
 def solve(cells: Sequence[int], solver: str) -> list[float]:
-    """Return the elastic frequencies [Hz] with a solver of ours."""
+    """Return the elastic frequencies [Hz] with a solver of jointbench."""
     stiffness, mass = assemble(box_mesh(PLATE, cells), MARBLE)
     found = lowest_modes(stiffness, mass, RIGID + ELASTIC, Solver(solver))
     frequencies: list[float] = found.natural_frequency[RIGID:].tolist()
