@@ -34,7 +34,7 @@ class HostileFile(BadData):
     """A file that asks for more than a measurement would: refused unread."""
 
 
-class RottenFile(FormatError):
+class CorruptedFile(FormatError):
     """A file whose content is not what its own digest says."""
 
 

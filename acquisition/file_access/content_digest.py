@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 from h5py import h5a
 
-from jointbench.acquisition.basics.errors import RottenFile
+from jointbench.acquisition.basics.errors import CorruptedFile
 from jointbench.acquisition.file_access.create_netcdf import new_file
 from jointbench.acquisition.file_access.hdf5_layout import dimension_names
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
@@ -38,7 +38,7 @@ class Seal(StrEnum):
 
     WHOLE = "whole"
     UNSIGNED = "unsigned"
-    ROTTEN = "rotten"
+    CORRUPTED = "rotten"
 
 
 @contextmanager
@@ -75,16 +75,16 @@ def seal_of(file: h5py.File) -> Seal:
     try:
         same = content_digest(file) == stored
     except _DAMAGE:  # a checksum of HDF5 itself, for example
-        return Seal.ROTTEN
-    return Seal.WHOLE if same else Seal.ROTTEN
+        return Seal.CORRUPTED
+    return Seal.WHOLE if same else Seal.CORRUPTED
 
 
 def require_whole(file: h5py.File, path: Path | str) -> None:
-    """Raise `RottenFile` if the content of a file is not what its digest says."""
-    if seal_of(file) is Seal.ROTTEN:
-        raise RottenFile(
-            f"{named(path)} is rotten: its content does not match the digest that it "
-            "was written with; make it anew from the session, or use another copy"
+    """Raise `CorruptedFile` if the content of a file is not what its digest says."""
+    if seal_of(file) is Seal.CORRUPTED:
+        raise CorruptedFile(
+            f"{named(path)} is corrupted: its content does not match its digest; make "
+            "it again from the session, or use another copy"
         )
 
 

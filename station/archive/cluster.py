@@ -52,7 +52,7 @@ class ClusterSettings:
 
 
 def require_safe(settings: ClusterSettings) -> None:
-    """Refuse a scheduler that a stranger could speak for.
+    """Refuse a scheduler that another host could impersonate.
 
     Raises:
         UsageError: it is beyond this machine without TLS, TLS lacks a file, or the
@@ -267,7 +267,7 @@ def _result(
 
 
 def _may_pass(outcome: Outcome) -> bool:
-    """Tell a failure that another try may mend."""
+    """Return whether another attempt may succeed after a failure."""
     lasting = outcome.lasting or outcome.unwritable
     return outcome.state is State.FAILED and not lasting
 

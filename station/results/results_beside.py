@@ -49,7 +49,7 @@ def stored_results(
 
     Raises:
         UsageError: the file given was made of another session.
-        RottenFile: a results file is not what its digest says.
+        CorruptedFile: a results file is not what its digest says.
     """
     digest = file_digest(session)
     preloads = [preload for preload, _ in by_preload(recordings)]
@@ -127,7 +127,7 @@ def _placed(
 
 def _stale(path: Path) -> str:
     return (
-        f"{visible(path.name)} is not shown: it was made of another state of the "
+        f"{visible(path.name)} is not shown: it was made from another state of the "
         "session; make it anew"
     )
 

@@ -82,7 +82,7 @@ def read_run(path: Path) -> StoredRun:
     """Read the modes of a results file of any layout.
 
     Raises:
-        RottenFile: its content is not what its digest says.
+        CorruptedFile: its content is not what its digest says.
         FormatError: it is damaged, or no results file.
         HostileFile: it asks for more than a result would.
     """
@@ -112,7 +112,7 @@ def _run_words(file: h5py.File, modes: Sequence[StoredModes]) -> str:
 
 
 def _asked(steps: Provenance) -> str:
-    """Say what was asked of a run, as far as its steps tell."""
+    """Return the options of a run, as far as its steps record them."""
     details = {step.name: dict(step.detail) for step in steps}
     frf, modes = (details.get(n, {}) for n in ("estimate_frf", "identify_modes"))
     known = (
@@ -175,7 +175,7 @@ def _pair(group: h5py.Group, name: str) -> tuple[float, float] | None:
 
 
 def _missed(group: h5py.Group, frf: Frf, synthesis: Frf) -> FloatArray:
-    """Return what the synthesis misses on each line; files without it are reckoned."""
+    """Return the synthesis error of each line, computed where the file lacks it."""
     stored = _optional(group, "missed")
     if stored is not None:
         return stored

@@ -20,6 +20,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.analysis.gap.response.curve_integration import curve_force
+from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.gap.response.slider_integration import (
     Bank,
     Sliders,
@@ -32,8 +33,7 @@ SLIDERS = 2
 COULOMB = 3
 QUADRATIC_DAMPING = 4
 CURVES = 5
-LANES = 8
-"""Records that are marched side by side."""
+LANES = RESPONSE.lanes
 
 # What a march keeps of its lanes lies in two plain arrays, each quantity at a place
 # that the compiler knows: with an array for each, a step takes twice as long.

@@ -148,7 +148,7 @@ def test_a_universal_file_of_others_becomes_tables(result: Path) -> None:
         modes.natural_frequency, rel=1e-5
     )
     assert [float(row["shape z/1 re"]) for row in found] == [1.0] * len(found)
-    with pytest.raises(UsageError, match="csv or mat"):
+    with pytest.raises(UsageError, match="--to csv or --to mat"):
         run_export(path, kind="uff", folder=None, json_target=None)
 
 

@@ -26,8 +26,8 @@ from jointbench.station.results.result_tables import result_texts
 from jointbench.station.results.results_read import StoredResult, read_result
 from jointbench.station.schemas.recipe import Recipe, read_recipe
 from jointbench.station.schemas.recipe_modal_parts import HitsPart, WindowsPart
-from jointbench.station.sources.open_source import open_visit
-from jointbench.station.sources.record_source import record_visit
+from jointbench.station.sources.open_source import open_runs
+from jointbench.station.sources.record_source import record_runs
 
 BENCH = """\
 [bodies.base]
@@ -288,7 +288,7 @@ def test_links_are_identified_at_every_preload(tmp_path: Path) -> None:
     recordings = []
     for number, preload in enumerate((20_000, 30_000)):
         url = f"sim:two-body?seed={number + 1}&hits=3&interval=0.7&preload={preload}"
-        visit = record_visit(open_visit(url))
+        visit = record_runs(open_runs(url))
         recordings.append(replace(visit.recordings[0], name=f"run-{number}"))
     path = tmp_path / "s.h5"
     write_session(replace(visit, recordings=tuple(recordings), joint=None), path)

@@ -77,7 +77,9 @@ def test_the_second_visit_names_what_was_hidden(
     assert abs(rows["gap.k3"]["estimate"] / rows["gap.k3"]["truth"] - 1) < 0.03
     assert len(read_session(demo / "gap-session.h5").recordings) == 8
     assert read_toml(demo / "gap-session.toml", BenchModel).gap.preload_reference
-    assert "What the model misses" in (demo / "report.html").read_text("utf-8")
+    assert "Gap between model and measurement" in (demo / "report.html").read_text(
+        "utf-8"
+    )
 
 
 def test_the_session_holds_what_the_summary_speaks_of(demo: Path) -> None:

@@ -20,9 +20,9 @@ from jointbench.station.commands.record_command import run_record
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.main import app, exit_code
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.schemas.gap_model import gap_sheet
-from jointbench.station.sources.open_source import open_visit
-from jointbench.station.sources.visit_file import write_visit
+from jointbench.station.schemas.gap_model import nominal_parameters
+from jointbench.station.sources.open_source import open_runs
+from jointbench.station.sources.recorded_session import record_session_file
 
 URL = "sim:two-body-campaign?seed=5&grid=small"
 SILVERBOX = Path(__file__).parents[4] / "shared/data/silverbox/SNLS80mV.mat"
@@ -63,7 +63,7 @@ def test_a_visit_is_a_session_with_a_preload_a_run_and_its_sheet(visit: Path) ->
     assert times == sorted(times)
     assert session.simulated
     assert visit.with_suffix(".truth.json").exists()
-    model = gap_sheet(read_toml(visit.with_suffix(".toml"), BenchModel)).model
+    model = nominal_parameters(read_toml(visit.with_suffix(".toml"), BenchModel)).model
     assert model.base_names == (
         "m1",
         "m2",
@@ -77,7 +77,7 @@ def test_a_visit_is_a_session_with_a_preload_a_run_and_its_sheet(visit: Path) ->
 
 def test_the_crossed_grid_has_every_condition_twice() -> None:
     """Two points, four levels over 30x, three preloads, two repeats."""
-    runs = open_visit("sim:two-body-campaign?seed=2").runs
+    runs = open_runs("sim:two-body-campaign?seed=2").runs
     assert len(runs) == 2 * 4 * 3 * 2
     assert len({(run.preload, run.channels[0].point) for run in runs}) == 6
 
@@ -119,7 +119,7 @@ def test_a_url_is_recorded_and_what_it_hides_is_named(tmp_path: Path) -> None:
     url = f"{URL}&hide=delay&size=0.2"
     found = gap(url, tmp_path / "g.json", report=tmp_path / "g.html")
     assert [effect["name"] for effect in found["effects"]] == ["delay"]
-    truth = open_visit(url).truth
+    truth = open_runs(url).truth
     assert truth is not None
     effects: Any = truth["effects"]
     tau = found["effects"][0]["parameters"]["tau"]["value"]
@@ -194,7 +194,7 @@ def test_a_value_without_its_spread_is_named(
     model = tmp_path / "bench.toml"
     model.write_text("\n".join(lines[:first] + lines[first + 1 :]))
     with pytest.raises(BadData, match=f"{key} is missing"):
-        gap_sheet(read_toml(model, BenchModel))
+        nominal_parameters(read_toml(model, BenchModel))
 
 
 def test_wrong_requests_are_usage_errors(
@@ -216,7 +216,7 @@ def test_wrong_requests_are_usage_errors(
 def test_hits_of_one_level_are_not_judged(tmp_path: Path) -> None:
     """A plain stream is a visit of one run; the verdict says what it lacks."""
     path = tmp_path / "s.h5"
-    write_visit(
+    record_session_file(
         "sim:two-body?seed=4&hits=5&level_scatter=0.02&double_rate=0&overload_rate=0",
         path,
     )
@@ -224,7 +224,7 @@ def test_hits_of_one_level_are_not_judged(tmp_path: Path) -> None:
     assert session.joint is not None
     assert session.recordings[0].preload == session.joint.preload == 25e3
     model = tmp_path / "bench.toml"
-    model.write_text(open_visit(URL).sheet or "")
+    model.write_text(open_runs(URL).model or "")
     few = {"added_mass", "delay", "cubic_stiffness"}  # others are not asked for
     others = ",".join(sorted({e.effect.name for e in CATALOGUE} - few))
     found = gap(path, tmp_path / "g.json", model=model, without=others)
@@ -302,6 +302,6 @@ def test_bad_records_leave_with_code_three(
         scipy.io.savemat(path, {"V1": v1, "V2": v2})
         assert typed(monkeypatch, "gap", str(path), "--model", str(EXAMPLE)) == 3
     model = tmp_path / "bench.toml"
-    model.write_text(open_visit(URL).sheet or "")
+    model.write_text(open_runs(URL).model or "")
     assert typed(monkeypatch, "gap", str(path), "--model", str(model)) == 3
     assert typed(monkeypatch, "gap", str(path)) == 2

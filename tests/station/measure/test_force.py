@@ -232,7 +232,7 @@ def test_recover_never_writes_over_the_recording_it_reads(tmp_path: Path) -> Non
     path = tmp_path / "live.h5"
     path.write_bytes(fixture.read_bytes())
     before = path.read_bytes()
-    with pytest.raises(UsageError, match="an input"):
+    with pytest.raises(UsageError, match="the input file"):
         run_recover(path, out=path, overwrite=True, json_target=None)
     assert path.read_bytes() == before
 

@@ -17,7 +17,7 @@ from jointbench.station.pipeline.code_version import (
     CALLERS,
     STAGE_MODULES,
     imports_of,
-    sources_behind,
+    sources_of,
     stage_sources,
     stage_version,
 )
@@ -149,7 +149,7 @@ def _module(file: str) -> str:
 def test_the_callers_of_stages_are_there() -> None:
     """Behind every stage, each of them with a source."""
     for name in CALLERS:
-        assert sources_behind(f"jointbench.{name}")
+        assert sources_of(f"jointbench.{name}")
 
 
 PROCESS = """

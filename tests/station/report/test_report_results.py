@@ -120,4 +120,4 @@ def test_a_report_shows_results_of_2026(tmp_path: Path, name: str) -> None:
     shutil.copy(KEPT / f"{name}.results.h5", tmp_path / "v.results.h5")
     text, content = page_of(session)
     assert "v.results.h5" in str(content["modes"][0]["results"])  # type: ignore[index]
-    assert "does not say how much of the intervals is noise" in text
+    assert "does not hold the systematic part of the intervals" in text

@@ -1,4 +1,4 @@
-"""Digests of content: accidents to results are found, refused and made anew."""
+"""Digests of content: accidents to results are found, refused and made again."""
 
 import json
 import os
@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import pytest
 
-from jointbench.acquisition.basics.errors import BadData, RottenFile
+from jointbench.acquisition.basics.errors import BadData, CorruptedFile
 from jointbench.acquisition.file_access.content_digest import (
     DIGEST,
     Seal,
@@ -79,7 +79,7 @@ def test_a_frequency_that_was_overwritten_is_not_done_and_is_made_anew(
     overwrite(path)
     outcome = process_task(Task(session, path), PLAIN)
     assert outcome.state is State.DONE
-    assert "rotten" in outcome.rotten
+    assert "corrupted" in outcome.corrupted
     with h5py.File(path, "r") as file:
         assert file[FREQUENCY][0] == before
     assert process_task(Task(session, path), PLAIN).state is State.SKIPPED
@@ -92,7 +92,7 @@ def test_whatever_number_changes_is_found(make_session, name: str) -> None:
     with h5py.File(path, "r+") as file:
         dataset = file[name]
         dataset[(0,) * dataset.ndim] = 1.25
-    assert check_file(path).state is Seal.ROTTEN
+    assert check_file(path).state is Seal.CORRUPTED
 
 
 def test_an_attribute_or_a_dataset_that_comes_or_goes_is_found(make_session) -> None:
@@ -101,12 +101,12 @@ def test_an_attribute_or_a_dataset_that_comes_or_goes_is_found(make_session) -> 
     kept = path.read_bytes()
     with h5py.File(path, "r+") as file:
         file["modal/0/frf"].attrs["averages"] = np.int64(50)
-    assert check_file(path).state is Seal.ROTTEN
+    assert check_file(path).state is Seal.CORRUPTED
     path.write_bytes(kept)
     assert check_file(path).state is Seal.WHOLE
     with h5py.File(path, "r+") as file:
         del file["stages"]
-    assert check_file(path).state is Seal.ROTTEN
+    assert check_file(path).state is Seal.CORRUPTED
 
 
 def test_values_that_are_stored_otherwise_have_the_same_digest(make_session) -> None:
@@ -138,12 +138,12 @@ def test_process_says_what_it_made_anew(make_session, tmp_path: Path, capsys) ->
     overwrite(target)
     capsys.readouterr()
     run_process(session, **where, json_target=str(tmp_path / "p.json"))
-    assert "made anew" in " ".join(capsys.readouterr().out.split())
+    assert "computed again" in " ".join(capsys.readouterr().out.split())
     page = json.loads((tmp_path / "p.json").read_text(encoding="utf-8"))
-    assert "rotten" in page["ledger"][0]["rotten"]
+    assert "corrupted" in page["ledger"][0]["rotten"]
 
 
-def test_reprocess_makes_a_rotten_result_anew_and_says_so(
+def test_reprocess_makes_a_corrupted_result_again_and_reports_it(
     make_session, tmp_path: Path
 ) -> None:
     """One of two: the other is left as it is."""
@@ -153,7 +153,7 @@ def test_reprocess_makes_a_rotten_result_anew_and_says_so(
     overwrite(tmp_path / "a.plain.results.h5")
     again = run(tmp_path)
     assert (again.counts[State.DONE], again.counts[State.SKIPPED]) == (1, 1)
-    assert [one.path.name for one in again.rotten] == ["a.h5"]
+    assert [one.path.name for one in again.corrupted] == ["a.h5"]
     lines = [x for x in read_ledger(tmp_path / "plain.ledger.jsonl") if x.get("rotten")]
     assert len(lines) == 1
 
@@ -164,7 +164,7 @@ def test_a_result_that_is_cut_short_is_made_anew_and_said(make_session) -> None:
     path = made(session)
     path.write_bytes(path.read_bytes()[:-2000])
     outcome = process_task(Task(session, path), PLAIN)
-    assert (outcome.state, bool(outcome.rotten)) == (State.DONE, True)
+    assert (outcome.state, bool(outcome.corrupted)) == (State.DONE, True)
 
 
 def test_nothing_to_do_opens_neither_sessions_nor_results(
@@ -204,7 +204,7 @@ def test_where_a_time_moved_the_digests_decide(
     assert len(looked) == 1
 
 
-def test_results_from_before_digests_are_unsigned_and_not_rotten(
+def test_results_from_before_digests_are_unsigned_and_not_corrupted(
     make_session,
 ) -> None:
     """Skipped, exported and shown as before, whatever became of them."""
@@ -213,7 +213,7 @@ def test_results_from_before_digests_are_unsigned_and_not_rotten(
     unsign(path)
     assert check_file(path).state is Seal.UNSIGNED
     outcome = process_task(Task(session, path), PLAIN)
-    assert (outcome.state, outcome.rotten) == (State.SKIPPED, "")
+    assert (outcome.state, outcome.corrupted) == (State.SKIPPED, "")
     assert run_export(path, kind="csv", folder=None, json_target=None)
 
 
@@ -225,36 +225,36 @@ def test_results_that_are_kept_from_2026_are_unsigned(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["csv", "mat", "uff"])
-def test_export_refuses_a_rotten_result(make_session, kind: str) -> None:
+def test_export_refuses_a_corrupted_result(make_session, kind: str) -> None:
     """No number of it leaves."""
     path = made(make_session("s.h5"))
     overwrite(path)
-    with pytest.raises(RottenFile, match="make it anew"):
+    with pytest.raises(CorruptedFile, match="make it again"):
         run_export(path, kind=kind, folder=None, json_target=None)
     assert not list(path.parent.glob(f"s.plain.results*.{kind}"))
 
 
-def test_archive_and_compare_refuse_rotten_results(
+def test_archive_and_compare_refuse_corrupted_results(
     make_session, tmp_path: Path
 ) -> None:
     """By themselves as bad data; among others they are named and left out."""
     paths = [made(make_session(f"{n}.h5", seed=n)) for n in (1, 2)]
     overwrite(paths[0])
-    with pytest.raises(BadData, match="rotten"):
+    with pytest.raises(BadData, match="corrupted"):
         run_archive([str(paths[0])], out=None, trend="torque", json_target=None)
-    with pytest.raises(BadData, match="rotten"):
+    with pytest.raises(BadData, match="corrupted"):
         run_compare(str(paths[0]), str(paths[0]), json_target=None)
     both = str(tmp_path / "*.results.h5")
     assert run_archive([both], out=None, trend="torque", json_target=None) == 1
     assert run_compare(both, both, json_target=None)[1] == 2
 
 
-def test_report_refuses_a_rotten_result(make_session) -> None:
+def test_report_refuses_a_corrupted_result(make_session) -> None:
     """The modes beside the session are not what the run wrote."""
     session = make_session("s.h5")
     run_modal([session])
     overwrite(results_path(session), "modes/natural_frequency")
-    with pytest.raises(RottenFile):
+    with pytest.raises(CorruptedFile):
         run_report(session, out=None, model=None, json_target=None)
 
 
@@ -302,4 +302,4 @@ def test_a_line_of_the_ledger_that_was_changed_is_passed_over(tmp_path: Path) ->
     path.write_text(path.read_text(encoding="utf-8").replace("a.h5", "b.h5"), "utf-8")
     with open_ledger(path, {}) as ledger:
         assert ledger.refused == {}
-    assert check_file(path).state is Seal.ROTTEN
+    assert check_file(path).state is Seal.CORRUPTED

@@ -7,7 +7,7 @@ from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.simulators.chassis.server import SimulatedChassis
 from jointbench.simulators.two_body.bench import TwoBodyBench
 from jointbench.station.sources.chassis_source import ChassisRun, ChassisSource
-from jointbench.station.sources.open_source import open_source, open_visit
+from jointbench.station.sources.open_source import open_runs, open_source
 from jointbench.station.sources.record_source import record
 
 COUNT = 5.0 / 2**23  # [V] of the chassis
@@ -36,7 +36,7 @@ def test_a_sensor_too_sensitive_for_the_input_is_replaced() -> None:
 
 def test_the_runs_of_a_campaign_come_through_the_chassis() -> None:
     """Each as long as it was, under its own preload."""
-    visit = open_visit("sim:two-body-campaign?seed=2&grid=small")
+    visit = open_runs("sim:two-body-campaign?seed=2&grid=small")
     run = visit.runs[3]
     assert isinstance(run, ChassisRun)
     recorded = record(run)

@@ -20,10 +20,10 @@ from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.commands.record_command import run_record
 from jointbench.station.commands.verify_command import run_recover, run_verify
-from jointbench.station.sources.open_source import Visit, open_visit
+from jointbench.station.sources.open_source import RunSequence, open_runs
 from jointbench.station.sources.record_live import record_live
-from jointbench.station.sources.record_source import record_visit
-from jointbench.station.sources.visit_file import write_visit
+from jointbench.station.sources.record_source import record_runs
+from jointbench.station.sources.recorded_session import record_session_file
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="signals: POSIX")
 LONG = "sim:two-body?seed=1&hits=120"
@@ -106,17 +106,17 @@ class Steps:
             yield np.full((2, 100), self.number + block / 10)
 
 
-def visit(*runs: Steps) -> Visit:
+def visit(*runs: Steps) -> RunSequence:
     """Return a visit of a few runs."""
-    return Visit("steps", True, runs)
+    return RunSequence("steps", True, runs)
 
 
 def test_what_is_recorded_live_is_what_a_visit_recorded_in_memory_is(
     tmp_path: Path,
 ) -> None:
     """Samples in single precision; names, times, preloads, points and hits alike."""
-    write_visit(CAMPAIGN, tmp_path / "s.h5")
-    live, whole = read_session(tmp_path / "s.h5"), record_visit(open_visit(CAMPAIGN))
+    record_session_file(CAMPAIGN, tmp_path / "s.h5")
+    live, whole = read_session(tmp_path / "s.h5"), record_runs(open_runs(CAMPAIGN))
     assert live.source == whole.source
     assert live.joint == whole.joint
     assert len(live.recordings) == len(whole.recordings)
@@ -146,7 +146,7 @@ def test_a_recording_that_is_killed_can_be_recovered_with_its_hits(
     )
     (recording,) = recovered.recordings
     assert recording.samples.shape[1] >= seen >= 300_000
-    first = next(iter(open_visit(LONG).runs[0].blocks()))
+    first = next(iter(open_runs(LONG).runs[0].blocks()))
     size = first.shape[1]
     np.testing.assert_array_equal(
         recording.samples[:, :size], first.astype(np.float32).astype(float)
@@ -230,11 +230,11 @@ def test_an_earlier_session_is_replaced_by_a_whole_one_alone(tmp_path: Path) -> 
     assert [p.name for p in tmp_path.iterdir()] == ["s.h5"]
 
 
-def test_a_model_of_ones_own_is_not_replaced_by_a_sheet(tmp_path: Path) -> None:
+def test_an_own_model_is_not_replaced(tmp_path: Path) -> None:
     """It is refused before anything is recorded."""
     mine = tmp_path / "s.toml"
     mine.write_text("# my plan\n", encoding="utf-8")
-    with pytest.raises(UsageError, match="no sheet"):
+    with pytest.raises(UsageError, match="no bench model"):
         run_record(CAMPAIGN, tmp_path / "s.h5", overwrite=True, json_target=None)
     assert mine.read_text(encoding="utf-8") == "# my plan\n"
     assert not (tmp_path / "s.h5").exists()
