@@ -5,9 +5,9 @@
 
 Every run is added to `continuity.json` beside this script, with the driver's counter
 against what was stored, the CPU of client and store, and the load of the computer;
-`docs/bench-continuity.md` is written from that file alone. The search takes more
-channels and samples a second until a run does not hold, and continues where an earlier
-search ended.
+`docs/bench-continuity.md` is written from that file alone. The search increases
+channels and samples per second until a rate is not sustained, and continues where an
+earlier search ended.
 """
 
 import argparse
@@ -36,8 +36,8 @@ LADDER = (
     *((48, 102_400.0), (64, 102_400.0), (64, 204_800.0)),
     *((96, 204_800.0), (128, 204_800.0), (128, 409_600.0), (128, 819_200.0)),
 )
-LATE = 1.0
-"""A run holds if the device is no further ahead than this at its end [s]."""
+LARGEST_LAG = 1.0
+"""A rate is sustained if the device is no further ahead than this at the end [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ class Run:
     def holds(self) -> bool:
         """Whether nothing was lost and the client kept up."""
         whole = self.lost == 0 and self.gaps == 0 and self.damaged == 0
-        return whole and self.unread <= LATE * self.rate
+        return whole and self.unread <= LARGEST_LAG * self.rate
 
 
 def serve(parent: Connection, modules: int, rate: float) -> None:
@@ -183,12 +183,13 @@ def page(runs: list[Run]) -> str:
     lines = [
         "# Streaming in real time",
         "`python benchmarks/acquisition/continuity.py --seconds 600` and `--search "
-        "--seconds 20`; this page is written by it.",
+        "--seconds 20`; these commands write this page.",
         "",
-        "The simulated chassis serves in another process, on the same two cores. Lost "
-        "is the device's counter, less what still waits in its buffer, less what is in "
-        "the file with a right checksum. Load is the five-minute load average at the "
-        "end of the run, all programs together: above 2 the two cores were shared.",
+        "The simulated chassis runs in another process on the same two cores. The lost "
+        "samples are the device's counter minus the samples in its buffer minus the "
+        "samples in the file with a valid checksum. Load is the five-minute load "
+        "average of all programs at the end of the run: above 2 the two cores were "
+        "shared.",
         "",
         "## Runs, longest first",
         "",
@@ -206,19 +207,21 @@ def page(runs: list[Run]) -> str:
         )
         lines += [
             "",
-            "## The most that holds",
+            "## Highest sustained rate",
             "",
-            f"Each point takes {found[0].seconds:g} s; it holds where nothing is lost "
-            f"and the device is at most {LATE:g} s ahead at the end.",
+            f"Each point takes {found[0].seconds:g} s; the rate is sustained if no "
+            f"sample is lost and the device is at most {LARGEST_LAG:g} s ahead "
+            "at the end.",
             "",
-            "| channels x rate | million samples a second | CPU of client and store [% "
-            "of a core] | late at the end [s] | lost | holds | load |",
+            "| channels x rate | million samples per second | CPU of client and store "
+            "[% of a core] | lag at the end [s] | lost | sustained | load |",
             "|---|---|---|---|---|---|---|",
             *(point(run) for run in found),
             "",
-            "None holds."
+            "No rate was sustained."
             if best is None
-            else f"The most that held: {best.channels} channels x {best.rate:g} Hz.",
+            else f"Highest sustained rate: {best.channels} channels "
+            f"x {best.rate:g} Hz.",
         ]
     return "\n".join([*lines, ""])
 
@@ -234,10 +237,10 @@ def row(run: Run) -> str:
 
 def point(run: Run) -> str:
     """Return a point of the search as a line of the table."""
-    share, late = 100 * run.cpu / run.seconds, run.unread / run.rate
+    share, lag = 100 * run.cpu / run.seconds, run.unread / run.rate
     return (
         f"| {run.channels} x {run.rate:g} Hz | {run.channels * run.rate / 1e6:.2f} | "
-        f"{share:.1f} | {late:.2f} | {run.lost} | "
+        f"{share:.1f} | {lag:.2f} | {run.lost} | "
         f"{'yes' if run.holds else 'no'} | {run.load} |"
     )
 

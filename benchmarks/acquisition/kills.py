@@ -1,10 +1,10 @@
-"""Kill a measurement at random moments and see what is left of it.
+"""Kill a measurement at random times and check the remaining file.
 
     python benchmarks/acquisition/kills.py --kills 60 > docs/bench-kills.md
 
 Each child measures the same seeded plan on the simulated chassis; samples depend on
-their index alone, so the session of a child that was not killed gives every sample that
-a killed one may hold. A quarter of the kills fall while the file is finished.
+their index only, so the session of a child that is not killed has every sample that a
+killed one may contain. A quarter of the kills occur while the file is finished.
 """
 
 import argparse
@@ -53,7 +53,7 @@ class Reporting(TextScreen):
         """Print nothing."""
 
     def block(self, samples: np.ndarray) -> None:
-        """Report how many samples were passed."""
+        """Report how many samples were passed on."""
         self.count += samples.shape[1]
         self.parent.send(self.count)
 
@@ -150,10 +150,12 @@ def main() -> None:
     print("# Killed while recording\n")
     print(f"- kills (`kill -9`): {options.kills}")
     print(f"- files that open: {opened}")
-    print(f"- of those, recordings that had already logged their end: {finished}")
-    print(f"- files with a sample that differs from the unkilled session: {wrong}")
+    print(f"- of these, recordings already logged as finished: {finished}")
     print(
-        f"- samples passed to the store and not found: at most {max(lost)}, "
+        f"- files with a sample that differs from the session without a kill: {wrong}"
+    )
+    print(
+        f"- samples passed to the store but not found: at most {max(lost)}, "
         f"that is {max(lost) / block:.2f} blocks of {block}"
     )
     print(f"- kills that lost nothing: {sum(n == 0 for n in lost)}")

@@ -119,8 +119,8 @@ def edges(session: Session) -> None:
             below += _fires(cut, next_level) == hit.trigger - hit.start
             count += 1
     print(
-        f"- level set to the very sample at the edge of each hit: {at} of {count} fire "
-        f"at that sample; one rounding step above it: {below} fire there"
+        f"- trigger level equal to the sample at the edge of each hit: {at} of {count} "
+        f"trigger at that sample; one rounding step above it: {below} trigger there"
     )
 
 
@@ -146,10 +146,11 @@ def drops(folder: Path) -> None:
     session = read_session(out)
     noted = [dict(s.detail) for s in session.provenance if s.name == "gap"]
     back = [gap for gap in noted if gap["what"] == "back"]
-    print(f"- plan measured to its end: {measured.whole}")
-    print(f"- losses noted in the file: {sum(g['what'] == 'lost' for g in noted)}")
+    print(f"- plan measured completely: {measured.whole}")
+    print(f"- losses recorded in the file: {sum(g['what'] == 'lost' for g in noted)}")
     print(
-        f"- returns noted: {len(back)}, after {min(g['seconds'] for g in back):.2f} to "
+        f"- reconnections recorded: {len(back)}, "
+        f"after {min(g['seconds'] for g in back):.2f} to "
         f"{max(g['seconds'] for g in back):.2f} s"
     )
 
@@ -163,7 +164,7 @@ def modes(folder: Path) -> None:
         f"- hits {len(measured.record.hits)}, conditions {measured.record.done}, lost "
         f"samples {measured.counters.lost}\n"
     )
-    print("| torque [N m] | own modes in band | found | largest error [%] |")
+    print("| torque [N m] | true modes in band | found | largest error [%] |")
     print("|---|---|---|---|")
     for preload, recordings in by_preload(read_session(out).recordings):
         torque = (preload or 0.0) * 0.2 * 0.016 / 4
@@ -188,7 +189,7 @@ def main() -> None:
         folder = Path(name)
         print("# Sessions on the simulated chassis\n\n## Two hundred hits\n")
         many_hits(folder, options.seed)
-        print("\n## A server that goes away ten times\n")
+        print("\n## A server that is lost ten times\n")
         drops(folder)
         print("\n## From measure to modes: 3 torques x 5 points x 3 hits\n")
         modes(folder)

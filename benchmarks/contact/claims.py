@@ -33,10 +33,10 @@ HEAD = """# Published claims on joint contact, computed again
 Made by `benchmarks/contact/claims.py`; every number is computed when it runs. Each
 claim is marked: it **reproduces**, it **reproduces with a correction** (which), it
 **does not** (why, by how much), or it **cannot be checked** (what is missing). Printed
-formulas are evaluated to the letter (`mode as-printed`) beside the same laws summed
-right (`corrected` where a model is named). K here is, as in the papers, the sum of the
-single contacts' stiffnesses at their present sizes, not the derivative of the load by
-the approach of the bodies; `jointbench contact --json` has that one too.
+formulas are evaluated to the letter (`mode as-printed`) and compared with the correct
+sum of the same laws (`corrected` where a model is named). K here is, as in the papers,
+the sum of the single contacts' stiffnesses at their present sizes, not the derivative
+of the load by the approach of the bodies; `jointbench contact --json` gives both.
 
 """
 
@@ -52,20 +52,21 @@ def table(paper: str, claims: list[Claim]) -> str:
 
 
 DAMPING = """
-# Energies of the loss factor
+## Energies of the loss factor
 
-The papers print eta = W_d/W_e and nothing else. Two forms are built: the two-regime
-form (elastic contacts store 2/5 P delta, all others lose H a delta/2), and the form
-that follows Kogut and Etsion's laws (work = integral of the load law; unloading as
-Etsion, Kligerman and Kadin 2005 have it). An earlier evaluation of the second was
-missed by 4 to 32 % where plasticity matters. Derived again: it took the work of full
-plasticity as 2 pi R delta H in both dimensions, while its load there was H a. The work
-must be the integral of the load that is borne. With a = pi R delta (surface), 2 pi R
-delta H is 2 H a, which is what `corrected` bears: there the two agree, and the earlier
-one was wrong in its load. With a = pi^2 R delta (profile) it is 0.64 H a: work without
-a load. With that choice our sums meet its W_e to 1e-14 and its W_d to 1.4e-4. That rest
-is its quadrature's: it runs over the kink where a contact begins to lose (s = 1.248),
-and it begins at 1e-12 of the fully plastic bound, which we allow for.
+The papers give only eta = W_d/W_e. Two forms are implemented: the two-regime form
+(elastic contacts store 2/5 P delta, all others dissipate H a delta/2), and the form
+that follows Kogut and Etsion's laws (work = integral of the load law; unloading as in
+Etsion, Kligerman and Kadin 2005). The result differs from an earlier evaluation of the
+second form by 4 to 32 % where plasticity matters. The derivation shows why: that one
+took the work of full plasticity as 2 pi R delta H in both dimensions, while its load
+was H a. The work must be the integral of the load. With a = pi R delta (surface),
+2 pi R delta H is 2 H a, the load of `corrected`: there the two agree, and the earlier
+one had a wrong load. With a = pi^2 R delta (profile) it is 0.64 H a: work without a
+load. With that choice the sums agree with its W_e to 1e-14 and with its W_d to 1.4e-4.
+The rest is the error of its quadrature, which integrates over the kink where a contact
+begins to dissipate (s = 1.248); its lower limit of 1e-12 of the fully plastic bound is
+taken into account.
 
 E = 69.3 GPa, HB 231, G = 1 nm, 1 kN, no interaction:
 
@@ -98,9 +99,9 @@ def damping() -> str:
             cells = " | ".join(f"{x:.4g}" for x in (*ratios, ratios[0] / ratios[1]))
             text += f"| {low + e:g} | {cells} |\n"
     return text + (
-        "\nAll of it is the loss of a first loading. A small vibration about the "
-        "preload loses less,\nby micro-slip and in the bodies: take it for an upper "
-        "bound.\n"
+        "\nAll values are losses of a first loading. A small vibration about the "
+        "preload dissipates\nless, by micro-slip and in the bodies: use the values as "
+        "an upper bound.\n"
     )
 
 

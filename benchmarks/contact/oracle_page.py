@@ -26,7 +26,7 @@ TABLE = HERE.with_name("oracle.json")
 PAGE = HERE.parents[2] / "docs" / "contact-oracle.md"
 Row = dict[str, Any]
 
-HEAD = """# Elastic rough contact by boundary elements, beside the sum of contacts
+HEAD = """# Elastic rough contact: boundary elements compared with the sum of contacts
 
 Made by `benchmarks/contact/oracle_page.py` from `benchmarks/contact/oracle.json`, which
 `benchmarks/contact/oracle.py` froze ({solver}, {points} x {points} points, {seeds} maps
@@ -36,13 +36,13 @@ plasticity anywhere. K is dp/d(mean gap), by a central difference of 2 % of p.
 
 ## What is compared
 
-- **oracle**: the boundary-element solution. Every contact feels all others.
-- **alone**: the same map, every summit a Hertz contact of its own height and radius
-  that feels no other, one rigid plane: contact without interaction.
+- **oracle**: the boundary-element solution. Every contact interacts with all others.
+- **alone**: the same map, every summit a Hertz contact with its height and radius
+  against one rigid plane: contact without interaction.
 - **sum**: the closed form's elastic law (`ke_3d`, and `ke_3d_modified` with
   interaction), D = 3 - H, G from the map's own structure function, contacts from the
   shortest wave's square (16 points squared) up to a_l. Without that lower cut-off the
-  elastic sum has no stiffness to speak of: K is made of the smallest contacts.
+  elastic sum has almost no stiffness, because the smallest contacts determine K.
 
 ## Exponents of K(p), over p = {low:g} to {high:g} E* (mean and scatter over maps)
 
@@ -222,11 +222,11 @@ oracle/alone, area | closed form |
 |---|---|---|---|---|---|
 """
 TAIL = """
-## What it says
+## Conclusions
 
-- **Exponent.** The oracle's K rises a little slower than p. The closed form comes near
-  it at D = 2.5 and falls behind at smaller D: there its load is borne by the largest
-  contacts, its stiffness by the smallest, as the law K ~ P^(q/p_el) states.
+- **Exponent.** The oracle's K rises slightly slower than p. The closed form is close to
+  it at D = 2.5 and smaller at lower D: there the largest contacts carry the load and
+  the smallest give the stiffness, as the law K ~ P^(q/p_el) states.
 - **Level.** The closed form gives {level} of the oracle's K. The main reason is what
   is summed: K of the papers is the sum of single-contact stiffnesses at their present
   sizes, the oracle's is the derivative of the load by the mean gap, new contacts
@@ -235,12 +235,13 @@ TAIL = """
   as large changes the closed form's K by up to 4^(q - 1/2), 1.15 at D = 2.2 and 1.41 at
   D = 2.5.
 - **Interaction at equal load.** By dp/d(gap) the oracle is stiffer than the same
-  summits alone, {whole} times, for its contacts cover more, {area} times:
-  the sign of "K rises at equal load" is right for this K. Summed contact by contact
-  it is {local} times: about nothing at light load, softer at higher. The closed form's
-  elastic sum gives {ours}: **it softens, and that disagrees with the oracle's
-  dp/d(gap).** Its law takes from each contact (x^(3/2) of the stiffness) but gives back
-  only a larger a_l, no new contacts. What `ke_3d_modified` gains over `ke_3d` where
+  summits alone, {whole} times, because its contacts cover more area,
+  {area} times: the sign of "K rises at equal load" is right for this
+  K. Summed contact by contact it is {local} times: almost no effect at
+  light load, softer at higher load. The closed form's elastic sum gives
+  {ours}: **it softens, and that disagrees with the oracle's
+  dp/d(gap).** Its law reduces each contact (x^(3/2) of the stiffness) but adds
+  only a larger a_l, no new contacts. The gain of `ke_3d_modified` over `ke_3d` where
   contacts yield ({gains} times at D = 2.4, 2.54, 2.7; E* = 29.3 GPa, H = 1.5 GPa,
   G = 0.1 nm, 1 kN) comes from the elastic-plastic contacts, whose law has no
   interaction and whose number grows with a_l: the oracle's sign, for another reason.
@@ -248,7 +249,7 @@ TAIL = """
   boundary-element solution does not.
 """
 GAINS = """
-## How much: `ke_3d_modified` over `ke_3d` at equal load, where contacts yield [%]
+## Gain of `ke_3d_modified` over `ke_3d` at equal load, where contacts yield [%]
 
 Marble (E* = 29.3 GPa), H = 1.5 GPa, by the surface's D:
 
@@ -256,12 +257,12 @@ Marble (E* = 29.3 GPa), H = 1.5 GPa, by the surface's D:
 |---|---|---|---|---|---|---|---|---|
 """
 READING = """
-An earlier calculation gives 17 to 27 % for this gain and names no state. Both are
-right: it is the range at D = 2.54, where it runs from {low:.0f} to {high:.0f} % over
-the states above (18 to 26 % from G = 1 nm, 0.1 kN to 0.1 nm, 1 kN). There is no one
-number: it depends on D most of all, because D sets the share of the stiffness carried
-    by elastic-plastic contacts. It is nothing where the largest contact itself has
-yielded (small D, large G), and a loss of 4 % at D = 2.8.
+An earlier table gives 17 to 27 % for this gain without the state. Both are right: this
+is the range at D = 2.54, where it runs from {low:.0f} to {high:.0f} % over the states
+above (18 to 26 % from G = 1 nm, 0.1 kN to 0.1 nm, 1 kN). There is no single number: it
+depends mostly on D, because D determines the share of the stiffness that comes from
+elastic-plastic contacts. It is zero where the largest contact itself has yielded
+(small D, large G), and negative (-4 %) at D = 2.8.
 """
 
 if __name__ == "__main__":

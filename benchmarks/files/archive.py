@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Make an archive of simulated sessions, some of them poisoned.
+"""Make an archive of simulated sessions, some of them damaged.
 
     python benchmarks/files/archive.py FOLDER --sessions 2000 --poisoned 40
 
-The first sessions are measurements of the simulated two-body bench, each with its own
-seed, one of four specimens (a folder each) and one of five torques; the others are the
-same measurements with fresh sensor noise added, so that no two files agree. A poisoned
-file is unusable in one of ten ways; `poison.json` lists them, for the check of the
-quarantine.
+The first sessions are measured on the simulated two-body bench, each with its own seed,
+one of four specimens (a folder each) and one of five torques; the others are the same
+sessions with additional sensor noise, so that no two files are equal. A damaged file is
+unusable in one of ten ways; `poison.json` lists them for the check of the quarantine.
 """
 
 import argparse
@@ -34,7 +33,7 @@ NOISE = 0.01
 """Standard deviation of the fresh noise, as of the sensors themselves [N, m/s^2]."""
 
 
-def measurement(number: int) -> Session:
+def simulated(number: int) -> Session:
     """Return one simulated session."""
     torque = TORQUES[number // SPECIMENS % len(TORQUES)]
     url = (
@@ -45,7 +44,7 @@ def measurement(number: int) -> Session:
 
 
 def noisier(session: Session, number: int) -> Session:
-    """Return a session with added noise, hits as judged before."""
+    """Return a session with additional noise and the same verdicts."""
     rng = np.random.default_rng(number)
 
     def louder(recording: Recording) -> Recording:
@@ -160,10 +159,10 @@ POISONS: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
 
 
 def make(task: tuple[Path, int, Path | None]) -> None:
-    """Write one session: a new one, or an earlier one with other noise."""
+    """Write one session: a new one, or an existing one with other noise."""
     path, number, base = task
     path.parent.mkdir(parents=True, exist_ok=True)
-    whole = measurement(number) if base is None else noisier(read_session(base), number)
+    whole = simulated(number) if base is None else noisier(read_session(base), number)
     write_session(whole, path, overwrite=True)
 
 
@@ -172,7 +171,7 @@ def make_archive(
     *,
     sessions: int,
     poisoned: int,
-    measurements: int = 250,
+    distinct: int = 250,
     jobs: int = 2,
     seed: int = 1,
 ) -> dict[str, str]:
@@ -182,10 +181,8 @@ def make_archive(
     paths = [
         folder / f"plate-{i % SPECIMENS}" / f"visit-{i:04d}.h5" for i in range(sessions)
     ]
-    first = [(path, i, None) for i, path in enumerate(paths[:measurements])]
-    rest = [
-        (paths[i], i, paths[i % measurements]) for i in range(measurements, sessions)
-    ]
+    first = [(path, i, None) for i, path in enumerate(paths[:distinct])]
+    rest = [(paths[i], i, paths[i % distinct]) for i in range(distinct, sessions)]
     with multiprocessing.get_context("forkserver").Pool(jobs) as pool:
         for tasks in (first, rest):
             for _ in pool.imap_unordered(make, tasks, chunksize=4):
@@ -211,7 +208,7 @@ def main() -> None:
         options.folder,
         sessions=options.sessions,
         poisoned=options.poisoned,
-        measurements=options.visits,
+        distinct=options.visits,
     )
     print(f"{options.sessions} sessions, {len(named)} of them poisoned")
 

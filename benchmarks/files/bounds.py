@@ -1,4 +1,4 @@
-"""CPU time and memory of every reader of foreign bytes, on files made to cost both.
+"""CPU time and memory of every reader of foreign bytes, on costly files.
 
     python benchmarks/files/bounds.py > docs/files-bounds.md
 
@@ -46,7 +46,7 @@ def read_one(reader: str, path: Path) -> dict[str, object]:
     used = int(status.partition("VmHWM:")[2].split()[0]) * 1024
     below = resource.getrusage(resource.RUSAGE_CHILDREN)
     return {
-        "outcome": outcome,
+        "told": outcome,
         "cpu": time.process_time() - begun + below.ru_utime + below.ru_stime,
         "memory": used + below.ru_maxrss * 1024,
     }
@@ -67,7 +67,7 @@ def measure(reader: str, path: Path) -> dict[str, object]:
 
 
 def is_kept(found: dict[str, object], size: int) -> bool:
-    """Return whether a reader kept to the bounds."""
+    """Return whether a reader met the bounds."""
     return (
         found["outcome"] in {"read", "refused"}
         and float(str(found["cpu"])) <= CPU
@@ -87,7 +87,7 @@ def main() -> int:
         return 0
     print("# CPU time and memory of every reader\n")
     print(f"Bounds: {CPU:g} s of CPU, and 500 MB + 4 x the file, interpreter and")
-    print("libraries included. Files are made to cost as much as they can.\n")
+    print("libraries included. The files are made as costly as possible.\n")
     print("| reader | file | MB | CPU s | memory MB | allowed MB | |")
     print("|---|---|---|---|---|---|---|")
     broken = 0
@@ -108,7 +108,7 @@ def main() -> int:
             f"{'' if kept else ' **NOT KEPT**'} |",
             flush=True,
         )
-    print(f"\n{broken} of these readings broke a bound.")
+    print(f"\n{broken} of these readings exceeded a bound.")
     return int(broken > 0)
 
 

@@ -55,7 +55,7 @@ def multiplied(folder: Path, archive: Path, results: Path, times: int) -> Path:
 
 
 def idle_words(folder: Path, archive: Path, recipe: Path, way: list[str]) -> str:
-    """Report the cost of a file and of a start without work, for pool and cluster."""
+    """Return the cost of a file and of a start with nothing to do, pool and cluster."""
     many = multiplied(folder, archive, folder / "pool", TIMES)
     few = min(many.iterdir())
     counts = [len(list(place.rglob("*.h5"))) for place in (few, many)]
@@ -67,11 +67,11 @@ def idle_words(folder: Path, archive: Path, recipe: Path, way: list[str]) -> str
     span = 1e-3 * (counts[1] - counts[0])
     pool, cluster = ((times[i + 1] - times[i]) / span for i in (0, 2))
     return (
-        f"- where there is nothing to do, {counts[0]} and {counts[1]} files: pool\n"
+        f"- with nothing to do, {counts[0]} and {counts[1]} files: pool\n"
         f"  {times[0]:.1f} and {times[1]:.1f} s, cluster {times[2]:.1f} and "
         f"{times[3]:.1f} s: a file costs {pool:.1f} ms\n  in the pool and "
-        f"{cluster:.1f} ms on the cluster; the rest is start, of which\n"
-        f"  {timed_import():.1f} s are the import of Dask"
+        f"{cluster:.1f} ms on the cluster; the rest is start-up, of which\n"
+        f"  the import of Dask takes {timed_import():.1f} s"
     )
 
 
@@ -117,20 +117,22 @@ def main() -> None:
         sys.stderr.write(f"{len(first)} {len(second)}\n")
     same = sum(second.get(path) == digest for path, digest in first.items())
     print("# Reprocessing on a cluster\n")
-    print(f"{total} simulated sessions, 8 poisoned; two workers of one thread each,")
+    print(f"{total} simulated sessions, 8 damaged; two workers of one thread each,")
     print(f"batches of {options.batch}, LocalCluster over TCP; {load_words()}.\n")
     print(f"- pool: {pool:.0f} s, exit {code}")
-    print(f"- cluster, a worker killed midway ({len(killed)} kill): {dask:.0f} s,")
+    print(f"- cluster, one worker killed midway ({len(killed)} kill): {dask:.0f} s,")
     print(f"  exit {dask_code}")
-    print(f"- cluster unharmed, after that: {calm:.0f} s,")
-    print(f"  {1e3 * (calm - pool) / total:+.0f} ms a file beside the pool")
+    print(f"- cluster without kills, afterwards: {calm:.0f} s,")
+    print(f"  {1e3 * (calm - pool) / total:+.0f} ms per file compared with the pool")
     print(idle)
     print(f"- results equal to the pool's: {same} of {len(first)};")
-    print(f"  only one of the two has: {len(set(first) ^ set(second))}\n")
-    print("A start is Python, the imports of the command and of every fresh worker")
-    print("(scipy, numba, h5py), and the way to the scheduler: once a run or once a")
+    print(f"  present in only one of the two: {len(set(first) ^ set(second))}\n")
+    print("Start-up is Python, the imports of the command and of every new worker")
     print(
-        "worker, not once a file. The killed run has the start of three workers in it."
+        "(scipy, numba, h5py), and the connection to the scheduler: once per run or per"
+    )
+    print(
+        "worker, not per file. The killed run includes the start-up of three workers."
     )
 
 

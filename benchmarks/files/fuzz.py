@@ -175,7 +175,7 @@ def mutate(data: bytes, draw: random.Random) -> bytes:
 
 
 def read_all(pipe: Connection) -> None:
-    """Read files under a memory limit until stopped; report the outcome of each."""
+    """Read files under a memory limit until stopped; send the outcome of each."""
     warnings.simplefilter("ignore")
     with Path("/proc/self/statm").open(encoding="ascii") as file:
         now = int(file.read().split()[0]) * resource.getpagesize()
@@ -250,10 +250,10 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         found, wrong, slowest = fuzz(options.files, options.seed, Path(name))
-    print("# Mutated files over all readers\n")
-    print(f"{options.files} files, seed {options.seed}; each child may take 3 GiB of")
-    print(f"memory beyond its start and {CLOCK:g} s a file.\n")
-    print("| reader | read | refused in one line | anything else |")
+    print("# Mutated files and all readers\n")
+    print(f"{options.files} files, seed {options.seed}; each child process may use")
+    print(f"3 GiB of additional memory and {CLOCK:g} s per file.\n")
+    print("| reader | read | refused in one line | other outcome |")
     print("|---|---|---|---|")
     for reader in READERS:
         row = {kind: n for (who, kind), n in found.items() if who == reader}

@@ -92,7 +92,7 @@ def main() -> None:
     parser.add_argument("--kills", type=int, default=5)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--archive", type=Path, help="made before; else made again")
+    parser.add_argument("--archive", type=Path, help="made before; else a new one")
     options = parser.parse_args()
     draw = random.Random(options.seed)
     with tempfile.TemporaryDirectory() as name:
@@ -120,23 +120,27 @@ def main() -> None:
         done = Counter(str(x["file"]) for x in lines if x["state"] == "done")
         again, again_code = timed(args)
         left = list(broken.rglob("*.part"))
-    print("# Reprocessing, killed and called again\n")
-    print(f"{total} simulated sessions, {len(named)} of them poisoned in ten ways;")
+    print("# Reprocessing killed and continued\n")
+    print(f"{total} simulated sessions, {len(named)} of them damaged in ten ways;")
     print(f"{options.jobs} workers; {load_words()}.\n")
     print(
-        f"- unbroken run: {seconds:.0f} s, {total / seconds:.2f} files/s, exit {code}"
+        f"- uninterrupted run: {seconds:.0f} s, {total / seconds:.2f} files/s, "
+        f"exit {code}"
     )
-    print(f"- poisoned files refused for their true reason: {right} of {len(named)}")
+    print(f"- damaged files refused for the right reason: {right} of {len(named)}")
     for line in wrong:
         print(f"  - NOT: {line}")
     print(f"- kills (SIGKILL to the parent): {kills}, after {stops} files")
-    print(f"- finished by calling again: exit {last_code}, {together:.0f} s in all,")
+    print(
+        f"- finished by repeating the command: exit {last_code}, "
+        f"{together:.0f} s in total,"
+    )
     print(f"  {rest:.0f} s of them after the last kill")
-    print(f"- results equal to the unbroken run's: {same} of {len(first)}")
-    print(f"- results that only one of the two has: {len(set(first) ^ set(second))}")
-    print(f"- files done more than once: {sum(n > 1 for n in done.values())}")
-    print(f"- half written files left: {len(left)}")
-    print(f"- called once more with all done: {again:.1f} s, exit {again_code}")
+    print(f"- results equal to those of the uninterrupted run: {same} of {len(first)}")
+    print(f"- results present in only one of the two: {len(set(first) ^ set(second))}")
+    print(f"- files processed more than once: {sum(n > 1 for n in done.values())}")
+    print(f"- incomplete files left: {len(left)}")
+    print(f"- repeated with nothing to do: {again:.1f} s, exit {again_code}")
 
 
 if __name__ == "__main__":

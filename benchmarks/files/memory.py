@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Does a worker grow? One process, many files, its memory on the way.
+"""Memory of one process over many files.
 
     python benchmarks/files/memory.py --files 2000 > docs/reprocessing-memory.md
 
@@ -52,14 +52,14 @@ def main() -> None:
     count = np.arange(late.size)
     slope = np.polyfit(count, late, 1)[0] if late.size > 1 else float("nan")
     print("# Memory of a worker\n")
-    print(f"{options.files} files in one process that never retires; {load_words()}.\n")
+    print(f"{options.files} files in one process without restart; {load_words()}.\n")
     print(f"- files done: {sum(state is State.DONE for state in states)}")
     places = [0, WARM, len(sizes) // 2, len(sizes) - 1]
     shown = ", ".join(f"{sizes[i]:.0f} MB after {i + 1}" for i in places)
     print(f"- resident: {shown}")
-    print(f"- after the first {WARM}: {1e3 * slope:+.1f} kB a file (straight line),")
+    print(f"- after the first {WARM}: {1e3 * slope:+.1f} kB per file (straight line),")
     print(f"  largest {late.max():.0f} MB, smallest {late.min():.0f} MB")
-    print("- in `reprocess` a worker retires after 500 files all the same")
+    print("- `reprocess` nevertheless replaces a worker after 500 files")
 
 
 if __name__ == "__main__":

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Two workers beside one on the same archive, in turn, more than once.
+"""Time of two workers and of one on the same archive, in alternating runs.
 
     python benchmarks/files/speedup.py --archive FOLDER --files 200 --rounds 3
 
-On a machine that does other work besides, the ratio of two runs is unreliable, so pairs
-of runs alternate, and the load is reported.
+On a machine that also does other work, the ratio of two runs is uncertain, so pairs of
+runs alternate, and the load is reported.
 """
 
 import argparse
@@ -38,8 +38,10 @@ def main() -> None:
                 taken, _ = timed(arguments(folder / "in", recipe, out, jobs))
                 seconds[jobs].append(taken)
     ratios = [a / b for a, b in zip(seconds[1], seconds[2], strict=True)]
-    print("# Two workers beside one\n")
-    print(f"{len(some)} sessions, rounds in turn: {options.rounds}; {load_words()}.\n")
+    print("# Two workers compared with one\n")
+    print(
+        f"{len(some)} sessions, alternating rounds: {options.rounds}; {load_words()}.\n"
+    )
     for jobs in (1, 2):
         times = ", ".join(f"{t:.1f}" for t in seconds[jobs])
         print(f"- {jobs} worker(s): {times} s")

@@ -34,8 +34,8 @@ INTRODUCTION = """# Two hundred thousand degrees of freedom
 
 Made by `benchmarks/structures/large.py`: a free marble plate of 500 x 300 x 50 mm,
 {cells} hex20 elements, {size} degrees of freedom; ten elastic modes (and six rigid
-ones). One thread of a two-core machine, every solver in a process of its own; time is
-CPU seconds of the whole process, assembly or reading included, memory its largest.
+ones). One thread of a two-core machine, every solver in a separate process; time is
+CPU seconds of the whole process, including assembly or reading; memory is the peak.
 
 | solver | CPU s | memory [GB] | largest difference from the first, relative |
 |---|---|---|---|
@@ -43,7 +43,7 @@ CPU seconds of the whole process, assembly or reading included, memory its large
 
 
 def solve(cells: Sequence[int], solver: str) -> list[float]:
-    """Return the elastic frequencies [Hz] with a solver of the station."""
+    """Return the elastic frequencies [Hz] with a solver of jointbench."""
     stiffness, mass = assemble(box_mesh(PLATE, cells), MARBLE)
     found = lowest_modes(stiffness, mass, RIGID + ELASTIC, Solver(solver))
     frequencies: list[float] = found.natural_frequency[RIGID:].tolist()
@@ -118,7 +118,7 @@ def run(cells: Sequence[int], solver: str) -> tuple[list[float], float, float]:
 
 
 def main() -> None:
-    """Run every installed solver and tabulate the results."""
+    """Run every available solver and compare the numbers."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--cells", type=int, nargs=3, default=(56, 34, 8))
     parser.add_argument("--one", choices=[str(s) for s in Solver])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Compare a genetic algorithm on full solves with the station's search, same data.
+"""Compare the papers' genetic algorithm on full solutions with jointbench's search.
 
 python benchmarks/structures/search_comparison.py [--cells 16 10 2] [--members 50]
     [--generations 10]
@@ -55,7 +55,7 @@ def main() -> None:
     count = RIGID + ELASTIC
     target = solve_full(structure, TRUTH.stiffness, count).natural_frequency[RIGID:]
     print(f"{structure.size} degrees of freedom, {ELASTIC} frequencies as data")
-    ours = search_station(structure, target)
+    ours = reduced_search(structure, target)
     objective = squared_frequency_errors(
         lambda logs: solve_full(structure, np.exp(logs), count).natural_frequency[
             RIGID:
@@ -91,7 +91,7 @@ def worst_log(logs: FloatArray) -> float:
     return float(np.abs(logs - np.log(TRUTH.stiffness)).max())
 
 
-def search_station(structure: Structure, target: FloatArray) -> tuple[float, float]:
+def reduced_search(structure: Structure, target: FloatArray) -> tuple[float, float]:
     """Reduce, search by least squares and two populations; return CPU seconds."""
     begin = cpu()
     model = reduce_structure(structure, modes=RIGID + ELASTIC)

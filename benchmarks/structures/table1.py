@@ -36,7 +36,13 @@ from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import DataTable, Plot, Report, Section
 
 COLUMN, CELLS, ON_TOP = (0.694, 0.191, 0.415), (6, 2, 4), 96.0
-HEADS = ("measured", "printed, joint", "ours, joint", "printed, glued", "ours, glued")
+HEADS = (
+    "measured",
+    "printed, joint",
+    "computed, joint",
+    "printed, glued",
+    "computed, glued",
+)
 # Normal and two tangential stiffnesses of the paper [N/m].
 JOINT = np.array([1.68e10, 2.46e7, 6.16e8])
 MEASURED, PRINTED, PRINTED_GLUED = (

@@ -67,25 +67,26 @@ CONTACT = {
     "nut_factor": 0.2,
     "nut_factor_sd": 0.03,
 }
-INTRODUCTION = """# The identified joint beside the contact law
+INTRODUCTION = """# Identified joints compared with the contact law
 
-Made by `benchmarks/structures/theory.py`. Values with 95 % intervals; "x" is predicted
-over identified. The comparison is that of Fig. 9 of Appl. Sci. 2025, 15, 9040.
+Made by `benchmarks/structures/theory.py`. Values have 95 % intervals; "x" is
+predicted over identified. The comparison follows Fig. 9 of Appl. Sci. 2025, 15, 9040.
 
 ## The simulated plates, end to end
 
 `jointbench measure examples/plates.toml` on `sim:plates?seed=1`, then `jointbench
 identify MODEL plates.h5 --surface face-a.csv --surface face-b.csv`. The simulator's
-joint is four springs at the bolts that grow as torque^0.4, so the truth is known; its
-plates bend, but neither slide nor stretch in their own plane, and the model (hex20
-plates of {size} degrees of freedom together, matrices of its own) holds their middle
-planes likewise. Frequencies are trusted to 0.5 %, damping ratios to 5 % (mesh and
-plate theory differ by about so much). Verdict: {verdict}.
-The faces are synthetic (D = 1.54, G = 1 nm each) and have nothing to do with the
-simulator's springs: that law and joint disagree is what this table should show.
-Tangential stiffness comes out too large, and rising with torque: a mesh is compliant
-around the bolt spots (8 G r/(2 - nu) a side, about 4e9 N/m in all, in series), the
-simulator's point springs on plates do not. In the normal direction it is 2 to 5 %.
+joint has four springs at the bolts whose stiffness grows as torque^0.4, so the true
+value is known. Its plates bend but do not move or stretch in their own plane; the model
+(hex20 plates with {size} degrees of freedom together, separate matrices) constrains
+their middle planes in the same way. The assumed errors are 0.5 % for frequencies and
+5 % for damping ratios (about the difference between mesh and plate theory).
+Verdict: {verdict}.
+The surfaces are synthetic (D = 1.54, G = 1 nm each) and unrelated to the simulator's
+springs, so this table should show that law and joint disagree. The tangential stiffness
+is too large, increasingly with torque: the mesh is compliant around the bolt patches
+(8 G r/(2 - nu) per side, about 4e9 N/m in total, in series), whereas the simulator's
+point springs on plates are not. In the normal direction the difference is 2 to 5 %.
 
 """
 HEAD = (
@@ -252,12 +253,12 @@ def simulated(session: Path | None) -> str:
         for m, p in zip(state["measured_hz"], state["predicted_hz"], strict=False)
     ]
     text += f"\nIdentified against the truth: {'; '.join(errors)}. "
-    text += f"Of {len(modes)} frequencies the model misses the worst by "
+    text += f"The largest error of {len(modes)} frequencies is "
     return text + f"{100 * max(modes):.2f} %.\n"
 
 
 def _error(row: Mapping[str, object]) -> str:
-    """Return the deviation of a row's identified value from the simulator's."""
+    """Return the error of a row's identified value as text."""
     quantity, torque, value = row["quantity"], row["torque_n_m"], row["identified"]
     assert isinstance(quantity, str)
     assert isinstance(torque, float)
@@ -283,13 +284,13 @@ def printed() -> str:
         frequency = float(np.sqrt(PRINTED_STIFFNESS / mass) / (2 * np.pi))
         states.append(IdentifiedState("printed", preload, frequency, values))
     text = """
-## The printed numbers of 2025
+## The published numbers of 2025
 
 D = 1.5404, G = 9.497e-12 m, four M16 bolts, K = 2.8667e7 N/m and C = 1.2713e7 N s/m,
-printed for 20 N m without an uncertainty; at 50 and 80 N m no test value is printed,
-and the rows stand beside the one at 20 N m. Hardness (1.5 GPa, 30 %) and nut factor
-(0.2 +- 0.03) are assumed.
-C is at 193 Hz, where one plate would swing on K.
+published for 20 N m without an uncertainty. No test values are published for 50 and
+80 N m; these rows are compared with the value at 20 N m. Hardness (1.5 GPa, 30 %) and
+nut factor (0.2 +- 0.03) are assumed.
+C is at 193 Hz, the natural frequency of one plate on K.
 
 """
     rows = theory_json(against_theory(states, surface, table))

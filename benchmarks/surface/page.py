@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Puts the printed tables of the surface benchmarks into one page of the docs.
+"""Put the printed tables of the surface benchmarks into one page of the docs.
 
-python -m benchmarks.surface.page --tables FOLDER reads there what each benchmark that
-was run has printed, as NAME.md, and writes docs/surface-benchmark.md. Each heading says
-what to type.
+python -m benchmarks.surface.page --tables FOLDER reads the output of each benchmark
+from NAME.md and writes docs/surface-benchmark.md. Each heading gives the command.
 """
 
 import argparse
@@ -26,21 +25,21 @@ HEADINGS = {
     "weierstrass": "Weierstrass-Mandelbrot profiles: "
     "`python -m benchmarks.surface.weierstrass --profiles 100`",
     "figure9": "The 2023 paper's Fig. 9: `python -m benchmarks.surface.figure_9`",
-    "speed": "Time, memory and precision beside others: "
+    "speed": "Time, memory and precision compared with other programs: "
     "`python -m benchmarks.surface.speed`",
     "hostile": "Mutated files: `python -m benchmarks.surface.hostile --files 2000`",
 }
 
 
 def main() -> None:
-    """Write the page of the tables that are there."""
+    """Write the page from the available tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tables", type=Path, required=True)
     folder = parser.parse_args().tables
     parts = [
-        "# Surfaces: what the benchmarks print\n",
-        "Made by `python -m benchmarks.surface.page`; what it means stands in "
-        "[surface.md](surface.md).\n",
+        "# Surfaces: results of the benchmarks\n",
+        "Made by `python -m benchmarks.surface.page`; "
+        "[surface.md](surface.md) discusses the results.\n",
     ]
     for name, heading in HEADINGS.items():
         table = folder / f"{name}.md"
