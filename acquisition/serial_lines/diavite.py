@@ -26,6 +26,10 @@ from jointbench.acquisition.serial_lines.line_faults import (
     ProfileSilent,
     Unreadable,
 )
+from jointbench.acquisition.serial_lines.serial_instrument import (
+    ProfileOptions,
+    SerialInstrument,
+)
 
 BAUD = 115_200
 TRAVERSES = (0.48e-3, 1.5e-3, 4.8e-3, 15e-3)
@@ -183,3 +187,24 @@ def _end(line: Line) -> None:
             f"the DH-8 ended its answer with {last!r} instead of EOT; the profile was "
             "not taken, ask again"
         )
+
+
+def _fetch(line: Line, options: ProfileOptions) -> Profile:
+    if options.traverse is None:
+        raise UsageError("a DH-8 does not state the length of its traverse; give it")
+    return read_profile(
+        line,
+        name=options.name,
+        traverse=options.traverse,
+        filtered=options.filtered,
+        signed=options.signed,
+    )
+
+
+INSTRUMENT = SerialInstrument(
+    name="diavite",
+    title="DH-8",
+    baud=BAUD,
+    read_profile=_fetch,
+    needs_traverse=True,
+)

@@ -8,31 +8,19 @@ Source:
 """
 
 import re
-from dataclasses import dataclass
 
 from jointbench.acquisition.basics.errors import InstrumentError
 from jointbench.acquisition.basics.units import is_unit, to_si
 from jointbench.acquisition.serial_lines.line import Line, ask_again, plain_text
 from jointbench.acquisition.serial_lines.line_faults import Unreadable
+from jointbench.acquisition.serial_lines.serial_instrument import (
+    Reading,
+    SerialInstrument,
+)
 
 BAUD = 115_200
 _MOST = 64
 _READING = re.compile(r"\s*([+-]?[0-9]{1,9}\.?[0-9]{0,9})\s*(\S.*?)\s*")
-
-
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """One reading.
-
-    Attributes:
-        value: in SI [N m or N].
-        kind: ``"torque"`` or ``"force"``.
-        raw: as the instrument sent it.
-    """
-
-    value: float
-    kind: str
-    raw: str
 
 
 def read_gauge(line: Line) -> Reading:
@@ -61,3 +49,8 @@ def _reading(line: Line) -> Reading:
         f"the Mark-10 answered {raw!r}; a number with a unit of torque or force is "
         "expected"
     )
+
+
+INSTRUMENT = SerialInstrument(
+    name="mark10", title="Mark-10", baud=BAUD, read_torque=read_gauge
+)

@@ -25,6 +25,10 @@ from jointbench.acquisition.serial_lines.line_faults import (
     ProfileBroken,
     Unreadable,
 )
+from jointbench.acquisition.serial_lines.serial_instrument import (
+    ProfileOptions,
+    SerialInstrument,
+)
 
 BAUD = 9600
 _CR = b"\r"
@@ -213,3 +217,12 @@ def _number_of_files(text: str) -> int:
             "are expected"
         )
     return count
+
+
+def _fetch(line: Line, options: ProfileOptions) -> Profile:
+    return read_profile(line, name=options.name)
+
+
+INSTRUMENT = SerialInstrument(
+    name="mitutoyo", title="Mitutoyo Surftest", baud=BAUD, read_profile=_fetch
+)

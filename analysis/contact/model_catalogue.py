@@ -1,19 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""The contact models of the papers by name, corrected or as printed."""
+"""The contact models by name: those of the papers, and those of other packages.
 
-import difflib
+A package adds a model by one entry point of the group ``jointbench.contact_laws`` that
+names a `ContactLaw`; the name of the entry point is that of the model.
+"""
+
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.basics.registry import Registry
 from jointbench.analysis.contact.asperity_laws import (
     FullyPlastic,
     PowerLaw,
 )
 from jointbench.analysis.contact.material import YieldCriterion
-from jointbench.analysis.contact.models import ContactModel, Interaction, Mode
+from jointbench.analysis.contact.models import (
+    ContactLaw,
+    ContactModel,
+    Interaction,
+    Mode,
+)
 from jointbench.analysis.contact.topography import PROFILE, SURFACE, Topography
 
 HERTZ = PowerLaw(1.0, 1.5)
@@ -79,13 +89,16 @@ CONTACT_MODELS: Mapping[str, ContactModel] = MappingProxyType(
         )
     }
 )
+"""The built-in models, corrected."""
+CONTACT_LAWS_GROUP = "jointbench.contact_laws"
+_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
 def contact_model(name: str, mode: str = Mode.CORRECTED) -> ContactModel:
     """Return the contact model called `name`.
 
     Args:
-        name: one of `CONTACT_MODELS`.
+        name: one of `CONTACT_LAWS`.
         mode: ``corrected``: lost notation restored, misprints corrected;
             ``as-printed``: with the laws and factors that the papers chose.
 
@@ -93,19 +106,68 @@ def contact_model(name: str, mode: str = Mode.CORRECTED) -> ContactModel:
         The model; the papers' own joint sums are in `printed_2023`.
 
     Raises:
-        UsageError: there is no such model, or no such mode.
+        UsageError: there is no such model, or no such mode, or the package that adds
+            the model cannot be used.
     """
     known = {str(m) for m in Mode}
     if mode not in known:
         raise UsageError(f"no mode {mode!r}; known: {', '.join(sorted(known))}")
-    if name in CONTACT_MODELS:
-        model = CONTACT_MODELS[name]
-        return model if mode == Mode.CORRECTED else _as_printed(model)
-    near = difflib.get_close_matches(name, CONTACT_MODELS, n=1)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    raise UsageError(
-        f"no contact model {name!r}; {hint}known: {', '.join(CONTACT_MODELS)}"
-    )
+    return CONTACT_LAWS.entry(name).value.model(Mode(mode))
+
+
+def contact_law_package(name: str) -> str:
+    """Return the package, and its version where it is another, of a model."""
+    return CONTACT_LAWS.entry(name).package
+
+
+def contact_law_code(name: str) -> tuple[str, ...]:
+    """Return what the key of a prediction holds of a model of another package.
+
+    Args:
+        name: of the model.
+
+    Returns:
+        Nothing for a built-in model, whose code the stage's own version holds; else
+        package, version and digest of its module, see `Entry.code`.
+    """
+    entry = CONTACT_LAWS.entry(name)
+    return () if entry.built_in else (entry.code,)
+
+
+def _law_fault(law: ContactLaw) -> str:
+    """Return what is wrong with the law of another package, or an empty text."""
+    if not _NAME.fullmatch(law.name):
+        return "the name must be words in small letters joined by _"
+    for model in (law.corrected, law.printed):
+        if model is not None and (fault := _model_fault(model)):
+            return fault
+    if law.corrected.mode is not Mode.CORRECTED:
+        return "the mode of its corrected model must be Mode.CORRECTED"
+    if law.printed is not None and law.printed.mode is not Mode.AS_PRINTED:
+        return "the mode of its printed model must be Mode.AS_PRINTED"
+    return ""
+
+
+def _model_fault(model: ContactModel) -> str:
+    """Return what no joint can be computed with, or an empty text."""
+    if not model.source.strip():
+        return "its source is empty; give paper and equation"
+    if not (math.isfinite(model.population) and model.population > 0):
+        return f"its population is {model.population:g}; it must be above 0"
+    for word in ("elastic", "first", "second", "plastic"):
+        law = getattr(model, word)
+        if not isinstance(law, PowerLaw | FullyPlastic):
+            return f"its {word} law must be a PowerLaw or FullyPlastic"
+        if isinstance(law, PowerLaw):
+            numbers = (law.coefficient, law.exponent)
+        else:
+            numbers = (law.pressure_factor, 1.0)
+        if not (math.isfinite(sum(numbers)) and numbers[0] >= 0 < numbers[1]):
+            return (
+                f"its {word} law is {law}; a coefficient must be finite and not "
+                "negative, an exponent above 0"
+            )
+    return ""
 
 
 def _as_printed(model: ContactModel) -> ContactModel:
@@ -128,3 +190,14 @@ def _as_printed(model: ContactModel) -> ContactModel:
         population=0.5 if of_2025_3d else 1.0,
         mode=Mode.AS_PRINTED,
     )
+
+
+_BUILT_IN = tuple(ContactLaw(m, _as_printed(m)) for m in CONTACT_MODELS.values())
+CONTACT_LAWS = Registry(
+    CONTACT_LAWS_GROUP,
+    "contact model",
+    ContactLaw,
+    lambda: _BUILT_IN,
+    fault=_law_fault,
+)
+"""All contact models, corrected and as printed."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.contact.asperity_laws import (
     AsperityLaw,
     FullyPlastic,
@@ -65,6 +66,40 @@ class ContactModel:
     population: float
     source: str
     mode: Mode = Mode.CORRECTED
+
+
+@dataclass(frozen=True, slots=True)
+class ContactLaw:
+    """One entry of the contact models: corrected, and as its paper prints it.
+
+    Attributes:
+        corrected: the model that is used.
+        printed: the same with the choices of its paper; None where no paper prints
+            other ones.
+    """
+
+    corrected: ContactModel
+    printed: ContactModel | None = None
+
+    @property
+    def name(self) -> str:
+        """Name by which the model is asked for."""
+        return self.corrected.name
+
+    def model(self, mode: Mode) -> ContactModel:
+        """Return the model in a mode.
+
+        Raises:
+            UsageError: the law has no printed form.
+        """
+        if mode is Mode.CORRECTED:
+            return self.corrected
+        if self.printed is None:
+            raise UsageError(
+                f"contact model {self.name!r} has no form as printed; leave "
+                "--mode as-printed out"
+            )
+        return self.printed
 
 
 # The papers' share of the interference that an interacting asperity keeps.

@@ -29,7 +29,11 @@ from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates import PlatesDesign, natural_frequencies
 from jointbench.simulators.plates.plates_bench import PlatesBench
 from jointbench.station.measure.bench_session import Measured, measure
-from jointbench.station.measure.chassis import OpenChassis, SimulatedHand, open_chassis
+from jointbench.station.measure.chassis import (
+    OpenChassis,
+    OperatorOfSimulation,
+    open_chassis,
+)
 from jointbench.station.measure.plan import read_plan
 from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.pipeline.chain import run_chain
@@ -83,7 +87,7 @@ def many_hits(folder: Path, seed: int) -> None:
     )
     with SimulatedChassis(ChassisSetup(bench=bench, speed=math.inf)) as server:
         chassis = Chassis(server.address)
-        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        opened = OpenChassis(chassis, "sim:", True, OperatorOfSimulation(chassis))
         out = folder / "hits.h5"
         measured = measure(read_plan(path), opened, out, Quiet())
         chassis.close()

@@ -24,8 +24,8 @@ import numpy as np
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 from jointbench.acquisition.records.session import Session, new_session
 from jointbench.acquisition.session_file.store import read_session, write_session
-from jointbench.station.sources.open_source import open_visit
-from jointbench.station.sources.record_source import record_visit
+from jointbench.station.sources.open_source import open_runs
+from jointbench.station.sources.record_source import record_runs
 
 SPECIMENS = 4
 TORQUES = (20, 35, 50, 65, 80)
@@ -41,7 +41,7 @@ def measurement(number: int) -> Session:
         f"sim:two-body?seed={number + 1}&hits=4&interval=0.7&sample_rate={RATE:g}"
         f"&double_rate=0.05&overload_rate=0.05&torque={torque}"
     )
-    return record_visit(open_visit(url))
+    return record_runs(open_runs(url))
 
 
 def noisier(session: Session, number: int) -> Session:

@@ -13,6 +13,7 @@ import multiprocessing
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,8 @@ from typing import Any
 import numpy as np
 from judge import judge_one
 from outcomes import NAMEABLE, Run, word_of
+
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 
 ONE_TEST = 7.88
 """99.5 % of chi2 with one degree of freedom: what a single test would ask for."""
@@ -30,11 +33,8 @@ def no_coarse_stages() -> None:
     """Fit whole records from the first step on."""
     from jointbench.analysis.gap.diagnosis import base_fit
     from jointbench.analysis.gap.residuals.evaluation_stages import FULL
-    from jointbench.analysis.gap.search import selection_round as race
 
     base_fit.BASE_STAGES = ((FULL, 19), (FULL, 20))
-    race.EVERYDAY = np.inf
-    _everywhere("far_off", lambda *_: False)
 
 
 def no_bootstrap() -> None:
@@ -46,20 +46,16 @@ def no_bootstrap() -> None:
 
 def no_pulls() -> None:
     """Let the base go where it likes at no price, and ask nothing of it."""
-    from jointbench.analysis.gap.judgement import naming
     from jointbench.analysis.gap.residuals import joint_fit as fit
 
     free = fit.make_problem
 
     def unpriced(bench: Any, candidates: Any) -> Any:
-        from dataclasses import replace
-
         problem = free(bench, candidates)
         prior = problem.prior.copy()
         prior[: problem.n_base] *= 1e-4
         return replace(problem, prior=prior)
 
-    naming.PULL_LIMIT = np.inf
     _everywhere("make_problem", unpriced)
 
 
@@ -71,13 +67,6 @@ def one_start() -> None:
     race.STARTS = 1
     race_starts.SHARES = (1.0,)
     race.HUGE = np.inf
-
-
-def no_groups() -> None:
-    """Ask no part of the records whether it wants parameters of its own."""
-    from jointbench.analysis.gap.judgement import naming
-
-    naming.UNLIKE_CHANCE = naming.UNLIKE_BASE_CHANCE = -1.0
 
 
 def _everywhere(name: str, value: Any) -> None:
@@ -94,8 +83,16 @@ VARIANTS: Mapping[str, Callable[[], None]] = {
     "without bootstrap null": no_bootstrap,
     "without prior pulls": no_pulls,
     "without multi-start": one_start,
-    "without group scoring": no_groups,
+    "without group scoring": lambda: None,
 }
+POLICIES: Mapping[str, Policy] = {
+    "without coarse-to-fine": replace(STANDARD, far_chi2=np.inf),
+    "without prior pulls": replace(STANDARD, prior_limit=np.inf),
+    "without group scoring": replace(
+        STANDARD, parts_chance=-1.0, parts_chance_base=-1.0
+    ),
+}
+"""Thresholds of the variants that a policy alone makes, or helps to make."""
 
 
 def switch_off(variant: str) -> None:
@@ -130,7 +127,8 @@ def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
                 if (variant, *_key(path)) not in done
             ]
             with multiprocessing.Pool(jobs, switch_off, (variant,)) as pool:
-                judge = partial(judge_one, whole=False)
+                policy = POLICIES.get(variant, STANDARD)
+                judge = partial(judge_one, whole=False, policy=policy)
                 for k, run in enumerate(pool.imap_unordered(judge, waiting)):
                     out.write(json.dumps(run | {"variant": variant}) + "\n")
                     out.flush()

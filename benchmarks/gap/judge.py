@@ -19,6 +19,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
+
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 
@@ -27,8 +29,10 @@ def judged_as(name: str, whole: bool) -> str:
     return name.replace("hidden", "single") if whole else name
 
 
-def judge_one(truth_path: Path, *, whole: bool) -> dict[str, Any]:
-    """Return the truth and the diagnosis of one campaign."""
+def judge_one(
+    truth_path: Path, *, whole: bool, policy: Policy = STANDARD
+) -> dict[str, Any]:
+    """Return the truth and the diagnosis of one campaign, under a policy."""
     from jointbench.analysis.gap.diagnosis.diagnose import diagnose
     from jointbench.analysis.gap.intake.read_campaign import read_campaign
     from jointbench.analysis.gap.model.diagnosis_record import diagnosis_json
@@ -39,7 +43,8 @@ def judge_one(truth_path: Path, *, whole: bool) -> dict[str, Any]:
     campaign = read_campaign(truth_path.with_suffix(".h5"))
     start = time.process_time()
     try:
-        found: dict[str, Any] = diagnosis_json(diagnose(campaign, without=without))
+        told = diagnose(campaign, without=without, policy=policy)
+        found: dict[str, Any] = diagnosis_json(told)
     except Exception as error:  # noqa: BLE001 - a crash is an outcome to be counted
         found = {"verdict": "crash", "reason": f"{type(error).__name__}: {error}"}
     return truth | {"found": found, "seconds": time.process_time() - start}

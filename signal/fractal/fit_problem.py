@@ -2,11 +2,11 @@
 """The fit of a model to a structure function: data, lags and covariance."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, read_only
 from jointbench.signal.fractal.levelling_loss import levelling_loss
 from jointbench.signal.fractal.self_affine import TIP_TOLERANCE, SeenSurface, rolled_off
 from jointbench.signal.fractal.structure_covariance import Seen, structure_covariance
@@ -28,17 +28,18 @@ class FractalProblem:
         covariance_of: relative covariance of the values for any model.
         tolerance: relative model error allowed at each lag in addition to its scatter
             [-].
+        lag: lags of the estimate [samples], shape (n_lags,).
     """
 
     estimate: StructureFunction
     covariance_of: Callable[[Seen], FloatArray]
     tolerance: float = 0.0
+    lag: FloatArray = field(init=False)
 
-    @property
-    def lag(self) -> FloatArray:
-        """Lags [samples]."""
-        lag: FloatArray = self.estimate.lag / self.estimate.spacing
-        return lag
+    def __post_init__(self) -> None:
+        """Work out the lags once: a search looks at them thousands of times."""
+        lag = self.estimate.lag / self.estimate.spacing
+        object.__setattr__(self, "lag", read_only(lag))
 
     @property
     def pivot(self) -> float:

@@ -27,7 +27,7 @@ _FRACTION_TERMS = 60
 
 
 def blurred_power(
-    lag: FloatArray, exponent: float, width: float, axes: int
+    lag: FloatArray, exponent: float, width: float | FloatArray, axes: int
 ) -> FloatArray:
     """Return the structure function lag^s after a Gaussian blur of the heights.
 
@@ -37,28 +37,27 @@ def blurred_power(
     Args:
         lag: [samples], not negative.
         exponent: s [-].
-        width: standard deviation of the blur [samples], above 0.
+        width: standard deviation of the blur [samples], above 0; an array broadcasts
+            with `lag`.
         axes: 1 or 2 directions of blur; 2 assumes an isotropic surface.
 
     Source:
         Abramowitz and Stegun, 13.1.2 and 13.5.1 (far from the origin).
     """
     half = axes / 2
-    at_zero = (2 * width) ** exponent * float(
-        gamma_function(half + exponent / 2) / gamma_function(half)
-    )
-    argument = (lag / (2 * width)) ** 2
+    at_zero = float(gamma_function(half + exponent / 2) / gamma_function(half))
+    reach = lag / (2 * width)
+    argument = reach**2
     near = argument < _ASYMPTOTIC_FROM
-    mean = np.empty_like(lag)
+    mean = np.empty_like(argument)
     mean[near] = at_zero * hyp1f1(-exponent / 2, half, -argument[near])
-    term = np.ones(int(np.count_nonzero(~near)))
-    total = term.copy()
-    for k in range(_ASYMPTOTIC_TERMS):
+    inverse = 1 / argument[~near]
+    total = np.ones_like(inverse)
+    for k in range(_ASYMPTOTIC_TERMS - 1, -1, -1):
         factor = (k - exponent / 2) * (k + 1 - half - exponent / 2) / (k + 1)
-        term = term * factor / argument[~near]
-        total += term
-    mean[~near] = lag[~near] ** exponent * total
-    blurred: FloatArray = mean - at_zero
+        total = 1 + factor * inverse * total
+    mean[~near] = reach[~near] ** exponent * total
+    blurred: FloatArray = (2 * width) ** exponent * (mean - at_zero)
     return blurred
 
 
@@ -97,9 +96,9 @@ def traced_power(lag: FloatArray, exponent: float, width: float) -> FloatArray:
     ends = np.log(gammaincinv(fall, _TIP_TAILS))
     time = np.exp(np.linspace(ends[0], ends[1], _TIP_BLURS))
     weight = np.exp(fall * np.log(time / fall) - (time - fall))
-    shape = np.zeros_like(lag)
-    for share, t in zip(weight / weight.sum(), time / fall, strict=True):
-        shape += share * blurred_power(lag, exponent, width * float(np.sqrt(t)), 1)
+    widths = width * np.sqrt(time / fall)
+    blurred = blurred_power(lag, exponent, widths[(...,) + (None,) * lag.ndim], 1)
+    shape: FloatArray = np.tensordot(weight / weight.sum(), blurred, axes=1)
     return shape
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError, cholesky
+from scipy.linalg.lapack import dtrtrs
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.fractal.fit_problem import FractalProblem
@@ -31,6 +32,24 @@ class Weights:
         """Logarithm of the determinant of the covariance of S."""
         size = np.diag(self.root) * self.reference
         return 2 * float(np.sum(np.log(size)))
+
+    def whitened(self, gap: FloatArray) -> FloatArray:
+        """Return relative gaps in units of their own scatter, shape unchanged [-].
+
+        By LAPACK itself: scipy's `solve_triangular` takes longer to prepare the call
+        than the few lags of a fit take to be solved.
+
+        Args:
+            gap: over `reference` [-], shape (n_lags,) or (n_lags, n_columns).
+
+        Raises:
+            LinAlgError: a gap is no number, or the root is singular.
+        """
+        white: FloatArray
+        white, info = dtrtrs(self.root, gap, lower=True)
+        if info or not np.isfinite(gap).all():
+            raise LinAlgError("gaps of a fit are no numbers, or its root is singular")
+        return white
 
 
 def weigh(

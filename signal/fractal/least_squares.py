@@ -9,7 +9,6 @@ depends on the surface, so it is recalculated with the fitted one.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_triangular
 from scipy.stats import chi2 as chi2_distribution
 
 from jointbench.acquisition.basics.arrays import FloatArray
@@ -135,8 +134,7 @@ def fit_model(
         """Return the whitened relative residuals."""
         expected = problem.predicted(_unpack(problem, model, parameters))
         gap = (problem.estimate.value - expected) / weights.reference
-        white: FloatArray = solve_triangular(weights.root, gap, lower=True)
-        return white
+        return weights.whitened(gap)
 
     starts = _starts(problem, model) if start is None else [start]
     found = [search(residual, begin, lower, upper) for begin in starts]
@@ -162,7 +160,7 @@ def by_own_weights(problem: FractalProblem, fit: GlsFit) -> GlsFit:
     """Return a fit with chi2 and determinant of its own covariance."""
     own = weigh(problem, fit.seen)
     gap = (problem.estimate.value - fit.predicted) / own.reference
-    white = solve_triangular(own.root, gap, lower=True)
+    white = own.whitened(gap)
     return replace(fit, chi2=float(white @ white), log_determinant=own.log_determinant)
 
 
@@ -174,7 +172,7 @@ def _result(
     predicted = problem.predicted(seen)
     covariance = _inverse(best.jacobian)
     share = np.diag(predicted / weights.reference)
-    whitening = solve_triangular(weights.root, share, lower=True)
+    whitening = weights.whitened(share)
     return GlsFit(
         model=model,
         seen=seen,

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.compiled import compiled
 from jointbench.signal.surface.structure_function import Sampling, StructureFunction
 
 EXACT_STEPS = 20
@@ -105,18 +106,27 @@ def _evaluate(plan: _Plan, spacing: float, seen: Seen) -> FloatArray:
     sums = np.zeros(plan.starts.size)
     for across, weight in zip(plan.row_distance, plan.row_weight, strict=True):
         values = seen(np.hypot(plan.distance, across) * spacing)
-        terms = 0.5 * (
-            values[plan.places[0]]
-            + values[plan.places[1]]
-            - values[plan.places[2]]
-            - values[plan.places[3]]
-        )
-        sums += weight * np.add.reduceat(plan.weight * terms * terms, plan.starts)
+        sums += weight * _squares(values, plan.places, plan.weight, plan.starts)
     size = int(plan.second.max()) + 1
     covariance = np.empty((size, size))
     covariance[plan.first, plan.second] = sums
     covariance[plan.second, plan.first] = sums
     return covariance
+
+
+@compiled()
+def _squares(
+    values: FloatArray, places: IntArray, weight: FloatArray, starts: IntArray
+) -> FloatArray:
+    """Return the weighted squares of c added up for each pair of lags, (n_sums,)."""
+    sums = np.zeros(starts.size)
+    for k in range(starts.size):
+        end = starts[k + 1] if k + 1 < starts.size else weight.size
+        for i in range(starts[k], end):
+            near = values[places[2, i]] + values[places[3, i]]
+            twice = values[places[0, i]] + values[places[1, i]] - near
+            sums[k] += 0.25 * weight[i] * twice * twice
+    return sums
 
 
 def _plan(lag: FloatArray, sampling: Sampling) -> _Plan:

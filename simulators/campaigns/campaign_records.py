@@ -23,6 +23,7 @@ from jointbench.simulators.hidden.effect_draws import (
     FAMILIES,
     OUTSIDE_CATALOGUE,
     draw_effect,
+    require_effect,
     resize_effect,
     specimen_scales,
 )
@@ -105,6 +106,8 @@ def make_campaign(
     names = [each if isinstance(each, str) else each.name for each in effects]
     if len(set(names)) < len(names):
         raise UsageError(f"effects {names} name one twice; hide each of them once")
+    for name in names:
+        require_effect(name)
     design = draw_design(seed, grid=grid, noise=noise, hit_scatter=hit_scatter)
     hidden: tuple[HiddenEffect, ...] = ()
     margins: tuple[Margin, ...] = ()

@@ -101,11 +101,20 @@ def draw_effect(name: str, scales: Scales, rng: np.random.Generator) -> HiddenEf
     Raises:
         UsageError: there is no such effect.
     """
+    require_effect(name)
+    return HiddenEffect(name, FAMILIES[name].draw(scales, rng))
+
+
+def require_effect(name: str) -> None:
+    """Raise unless there is an effect of that name.
+
+    Raises:
+        UsageError: there is none.
+    """
     if name not in FAMILIES:
         raise UsageError(
             f"unknown effect {name!r}; there are {', '.join(sorted(FAMILIES))}"
         )
-    return HiddenEffect(name, FAMILIES[name].draw(scales, rng))
 
 
 def resize_effect(effect: HiddenEffect, share: float) -> HiddenEffect:

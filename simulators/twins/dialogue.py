@@ -2,12 +2,9 @@
 """What the serial instruments answer, byte for byte; no line is needed to ask them."""
 
 import struct
-from collections.abc import Callable
 from dataclasses import dataclass
 
-Answer = Callable[[bytes], tuple[int, bytes] | None]
-"""From bytes received to how many of them were used and what is sent back; None while
-the request is not whole."""
+from jointbench.acquisition.serial_lines.serial_instrument import Answer
 
 _ESC, _ETX, _EOT, _ACK, _CR = b"\x1b", b"\x03", b"\x04", b"\x06", b"\r"
 _PARAMETER = (b"P", b"Q")

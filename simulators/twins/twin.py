@@ -14,7 +14,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from types import TracebackType
 
-from jointbench.simulators.twins.dialogue import Answer, answer_all
+from jointbench.acquisition.serial_lines.serial_instrument import Answer
+from jointbench.simulators.twins.dialogue import answer_all
 
 _POLL = 0.05  # [s]
 _LONGEST_DRAIN = 2.0  # [s]

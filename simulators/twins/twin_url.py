@@ -8,9 +8,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.serial_lines.instruments import SERIAL_INSTRUMENTS
+from jointbench.acquisition.serial_lines.serial_instrument import Answer
 from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
 from jointbench.simulators.twins.dialogue import (
-    Answer,
     DiaviteTwin,
     MitutoyoTwin,
     WrenchTwin,
@@ -25,12 +26,6 @@ _DIMENSION, _ROUGHNESS = 1.45, 5e-11  # [-], [m] of the measured ground surface
 _KEYS = "seed, torques, bolts, points, unplug"
 
 
-def is_twin_url(url: str) -> bool:
-    """Return whether a URL names a simulated serial instrument."""
-    parts = urlsplit(url)
-    return parts.scheme == "sim" and parts.path in INSTRUMENTS
-
-
 def twin_from_url(url: str) -> Twin:
     """Connect the instrument of a URL.
 
@@ -38,23 +33,24 @@ def twin_from_url(url: str) -> Twin:
         url: ``sim:diavite``, ``sim:mitutoyo`` or ``sim:mark10`` and, as a query, any
             of: ``seed``; ``points`` of the profile; ``torques`` [N m] of a wrench that
             tightens ``bolts`` to each of them; ``unplug``, bytes sent after which the
-            line breaks.
+            line breaks. Or an instrument of a package, with keys of its own.
 
     Raises:
         UsageError: an unknown instrument or key, or an invalid value.
     """
-    if not is_twin_url(url):
-        known = ", ".join(f"sim:{name}" for name in INSTRUMENTS)
-        raise UsageError(f"{url!r} is no serial instrument; there are {known}")
     parts = urlsplit(url)
     values = dict(parse_qsl(parts.query, keep_blank_values=True))
+    instrument = parts.path if parts.scheme == "sim" else ""
+    if instrument in INSTRUMENTS:
+        return _built_in(url, instrument, values)
+    return _of_package(url, instrument, values)
+
+
+def _built_in(url: str, instrument: str, values: dict[str, str]) -> Twin:
+    """Plug in one of jointbench's own."""
 
     def take(key: str, default: str) -> tuple[float, ...]:
-        text = values.pop(key, default)
-        try:
-            return tuple(float(word) for word in text.split(",") if word)
-        except ValueError:
-            raise UsageError(f"{key} is {text!r} in {url!r}; give a number") from None
+        return _numbers(url, key, values.pop(key, default))
 
     seed, points = int(take("seed", "1")[0]), int(take("points", "4800")[0])
     torques, bolts = take("torques", "20"), int(take("bolts", "4")[0])
@@ -73,7 +69,32 @@ def twin_from_url(url: str) -> Twin:
         "mitutoyo": lambda: _mitutoyo(seed, points),
         "mark10": lambda: _wrench(seed, torques, bolts),
     }
-    return Twin(made[parts.path](), unplug_after=int(unplug[0]) if unplug else None)
+    return Twin(made[instrument](), unplug_after=int(unplug[0]) if unplug else None)
+
+
+def _of_package(url: str, instrument: str, values: dict[str, str]) -> Twin:
+    """Plug in the simulator that a package brings along with its instrument."""
+    unplug = _numbers(url, "unplug", values.pop("unplug", ""))
+    entries = {
+        entry.value.name: entry
+        for entry in SERIAL_INSTRUMENTS.entries()
+        if entry.value.simulate is not None
+    }
+    if instrument not in entries:
+        known = ", ".join(f"sim:{name}" for name in (*INSTRUMENTS, *entries))
+        raise UsageError(f"{url!r} is no serial instrument; there are {known}")
+    entry = entries[instrument]
+    assert entry.value.simulate is not None, "chosen for it"
+    with entry.running(UsageError):
+        answer = entry.value.simulate(values)
+    return Twin(answer, unplug_after=int(unplug[0]) if unplug else None)
+
+
+def _numbers(url: str, key: str, text: str) -> tuple[float, ...]:
+    try:
+        return tuple(float(word) for word in text.split(",") if word)
+    except ValueError:
+        raise UsageError(f"{key} is {text!r} in {url!r}; give a number") from None
 
 
 def _heights(seed: int, points: int) -> FloatArray:

@@ -52,7 +52,7 @@ class ClusterSettings:
 
 
 def require_safe(settings: ClusterSettings) -> None:
-    """Refuse a scheduler that a stranger could speak for.
+    """Refuse a scheduler that another host could impersonate.
 
     Raises:
         UsageError: it is beyond this machine without TLS, TLS lacks a file, or the
@@ -106,7 +106,7 @@ def run_cluster(
     """Process files on a cluster; yield what became of each.
 
     All machines must see the files under the same names. A worker that dies costs the
-    batch in its hands, which another one takes over; of a batch that fails as often as
+    batch in progress, which another one takes over; of a batch that fails as often as
     it may be tried, every file is given up.
 
     Args:
@@ -224,7 +224,7 @@ class _Cluster:
     def _lost(self, what: str, way_out: str) -> InstrumentError:
         return InstrumentError(
             f"scheduler {self.settings.scheduler!r} {what}; results until then are "
-            f"whole: {way_out}, then type the same command to go on"
+            f"whole: {way_out}, then repeat the same command to continue"
         )
 
 
@@ -267,7 +267,7 @@ def _result(
 
 
 def _may_pass(outcome: Outcome) -> bool:
-    """Tell a failure that another try may mend."""
+    """Return whether another attempt may succeed after a failure."""
     lasting = outcome.lasting or outcome.unwritable
     return outcome.state is State.FAILED and not lasting
 

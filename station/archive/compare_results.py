@@ -22,14 +22,14 @@ from jointbench.station.results.results_read import StoredResult, without_copies
 
 MOVED = 2.0
 """Standard deviations beyond which a quantity has moved."""
-BEHIND = {
+STAGES_OF_PART = {
     "modes": ("hits", "frf", "modes", "fill"),
     "surface": ("structure", "surface"),
     "contact": ("structure", "surface", "contact"),
     "joint": ("hits", "frf", "modes", "fill", "joint"),
     "gap": ("hits", "gap"),
 }
-"""Stages behind each part of a result, in the order in which they are run."""
+"""Stages that each part of a result depends on, in order of execution."""
 _CHOSEN, _ABSENT = "chosen by the data", "-"
 SAME_MODE = 0.1
 """Relative distance of two frequencies that may be one mode [-]."""
@@ -51,7 +51,7 @@ class Difference:
         moved: by how many standard deviations; infinite for a verdict that changed or
             a quantity that only one has; NaN where it changed and
             no deviation is known.
-        since: first stage behind it that is not the same in both; empty for none.
+        since: first stage it depends on that differs; empty for none.
     """
 
     file: str
@@ -140,9 +140,9 @@ def compare_results(
 
 
 def _since(found: Difference, apart: Sequence[str]) -> str:
-    """Return the first stage behind a quantity that is among those that differ."""
+    """Return the first differing stage that a quantity depends on."""
     part = found.quantity.split(maxsplit=1)[0]
-    for stage in BEHIND.get(part, ()):
+    for stage in STAGES_OF_PART.get(part, ()):
         if any(name == stage or name.startswith(f"{stage} ") for name in apart):
             return stage
     return ""

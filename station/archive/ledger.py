@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The ledger of a reprocessing run: one JSON line a file, and the quarantine list.
 
-What counts for resuming are the result files themselves. The ledger tells people what
+Resuming relies on the result files themselves. The ledger shows people what
 happened, and remembers what each file was when it was last met, so that it is not read
 again while size and time stay the same. Each line ends with a digest of itself; one
 that does not match, or that a crash cut short, is passed over.
@@ -82,7 +82,7 @@ def now() -> str:
 
 @contextmanager
 def open_ledger(path: Path, run: Mapping[str, object]) -> Iterator[Ledger]:
-    """Open a ledger to append to; nobody else writes to it meanwhile.
+    """Open a ledger to append to; no other process writes to it meanwhile.
 
     Args:
         path: of the file; made where it is not there.
@@ -136,20 +136,20 @@ def read_ledger(path: Path) -> list[dict[str, Any]]:
 
 
 def _is_whole(line: Mapping[str, Any]) -> bool:
-    """Tell whether a line is what its digest says; one without is taken as it is."""
+    """Return whether a line matches its digest; one without a digest is accepted."""
     return _CHECK not in line or line[_CHECK] == _check(line)
 
 
 def ledger_seal(path: Path) -> tuple[Seal, int]:
-    """Return what the digests of a ledger say, and how many lines are rotten.
+    """Return the entries of a ledger that match their digest, and the corrupted lines.
 
     Raises:
         UsageError: the file is no ledger.
     """
     lines = _lines(path)
-    rotten = sum(not _is_whole(line) for line in lines)
-    if rotten:
-        return Seal.CORRUPTED, rotten
+    corrupted = sum(not _is_whole(line) for line in lines)
+    if corrupted:
+        return Seal.CORRUPTED, corrupted
     signed = all(_CHECK in line for line in lines)
     return (Seal.WHOLE if signed else Seal.UNSIGNED), 0
 
@@ -204,7 +204,7 @@ def _refused(last: Mapping[str, Mapping[str, Any]]) -> dict[str, tuple[str, str]
 
 
 def _cut_short(path: Path) -> bool:
-    """Tell whether a crash cut the last line."""
+    """Return whether a crash cut the last line."""
     with path.open("rb") as file:
         if file.seek(0, os.SEEK_END) == 0:
             return False

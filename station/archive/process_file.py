@@ -38,7 +38,7 @@ from jointbench.station.schemas.recipe import Recipe, recipe_digest
 _MOST_BYTES = 64 * 2**30
 """A larger file is no session; reading it for its digest would take an hour [bytes]."""
 _Mark = tuple[int, ...]
-"""What tells that a file was touched: inode, size [bytes], time [ns]; empty: none."""
+"""Mark of a file's state: inode, size [bytes], time [ns]; empty for no file."""
 
 
 class State(StrEnum):
@@ -101,7 +101,7 @@ class Outcome:
         changes: hits whose verdict changed.
         computed: stages that were run.
         reused: stages that were taken as kept.
-        rotten: what was wrong with the result that was there and was made anew; empty
+        corrupted: what was wrong with the earlier result that was replaced; empty
             where nothing was.
         traces: by which a later run knows the files again without reading them.
     """
@@ -117,7 +117,7 @@ class Outcome:
     changes: int = 0
     computed: tuple[str, ...] = ()
     reused: tuple[str, ...] = ()
-    rotten: str = ""
+    corrupted: str = ""
     traces: Traces = Traces()
 
 
@@ -133,7 +133,7 @@ def result_key(digest: str, recipe: str) -> str:
 
 
 def _has_key(path: Path, key: str) -> bool:
-    """Tell whether a result of this very key is there, whole or unsigned.
+    """Return whether a result of this key exists, whole or unsigned.
 
     Raises:
         CorruptedFile: a result is there, and its content is not what its digest says.
@@ -180,7 +180,7 @@ def process_task(task: Task, recipe: Recipe) -> Outcome:
 
 def _met(task: Task, recipe: Recipe, key: str, traces: Traces, begun: float) -> Outcome:
     """Skip a file, refuse it as before, or make its result."""
-    mark, rotten = _there(task, key)
+    mark, corrupted = _there(task, key)
     if mark:
         own = Traces(result=mark)
         return Outcome(task.path, task.result, State.SKIPPED, key, traces=own)
@@ -191,7 +191,7 @@ def _met(task: Task, recipe: Recipe, key: str, traces: Traces, begun: float) -> 
         origin = Origin(task.path, traces.input_sha256, key)
         outcome = _done(task, session, recipe, origin, begun)
     own = Traces(result=mark_of(task.result))
-    return replace(outcome, rotten=rotten, traces=own)
+    return replace(outcome, corrupted=corrupted, traces=own)
 
 
 def _there(task: Task, key: str) -> tuple[_Mark, str]:
@@ -217,7 +217,7 @@ def _digest(path: Path) -> str:
 
 
 def mark_of(path: Path) -> _Mark:
-    """Return what tells whether a file was touched; empty where there is none."""
+    """Return the mark of a file's state; empty where there is none."""
     try:
         info = path.stat()
     except (OSError, ValueError):

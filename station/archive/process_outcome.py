@@ -31,7 +31,7 @@ def quantity_cells(one: ResultQuantity) -> tuple[str, str, str, str]:
 
 
 def stage_words(outcome: Outcome) -> str:
-    """Say which stages were run and which were kept."""
+    """Name the stages that were run and those that were kept."""
     if outcome.state is State.SKIPPED:
         return "none, the result was there (--again runs all)"
     run = ", ".join(outcome.computed) or "none"
@@ -53,7 +53,7 @@ def outcome_json(outcome: Outcome) -> dict[str, object]:
         "verdicts_changed": outcome.changes,
         "computed": list(outcome.computed),
         "reused": list(outcome.reused),
-        "rotten": outcome.rotten,
+        "rotten": outcome.corrupted,
         "input_sha256": traces.input_sha256,
         "input_mark": list(traces.session),
         "result_mark": list(traces.result),

@@ -2,7 +2,7 @@
 """``jointbench reprocess``: an archive under a recipe, resumable, in a pool or beyond.
 
 What is done is known by the results that are there, so that Ctrl-C, a kill or a power
-loss cost at most the files in hand; call again and it goes on.
+loss cost at most the files in progress; call again to continue.
 """
 
 import os

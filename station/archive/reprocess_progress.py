@@ -24,7 +24,7 @@ Tell = Callable[[Counts], None]
 
 @contextmanager
 def run_progress(total: int) -> Iterator[Tell]:
-    """Show progress with rate and time left; yield what is told the counts so far.
+    """Show progress with rate and time left; yield the callback for the counts.
 
     Args:
         total: number of files.
@@ -68,7 +68,7 @@ def _lines(screen: Console, total: int) -> Tell:
 
 
 def progress_line(counts: Counts, total: int, seconds: float) -> str:
-    """Return one line that says how far a run has come.
+    """Return one line with the progress of a run.
 
     Args:
         counts: files by what became of them.
@@ -97,7 +97,7 @@ def rate_words(counts: Counts, seconds: float) -> str:
 
 
 def _worked(counts: Counts) -> int:
-    """Return the files that took time: skipping thousands tells nothing of the rest."""
+    """Return the files that took time: skipped files predict nothing of the rest."""
     return sum(counts.values()) - counts[State.SKIPPED] or sum(counts.values())
 
 

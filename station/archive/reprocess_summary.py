@@ -71,9 +71,9 @@ class RunSummary:
         return [one for one in self.outcomes if one.state is State.FAILED]
 
     @property
-    def rotten(self) -> list[Outcome]:
-        """Those whose result was rotten and was made anew."""
-        return [one for one in self.outcomes if one.rotten]
+    def corrupted(self) -> list[Outcome]:
+        """Those whose result was corrupted and was made again."""
+        return [one for one in self.outcomes if one.corrupted]
 
 
 def show_summary(
@@ -86,7 +86,7 @@ def show_summary(
     changes = sum(outcome.changes for outcome in summary.outcomes)
     rows.append(("verdicts changed", str(changes)))
     screen.print(table("Reprocessed", ("files", "number"), rows))
-    _show_rotten(screen, summary.rotten)
+    _show_corrupted(screen, summary.corrupted)
     failed = summary.failed
     for outcome in failed[:MOST_SHOWN]:
         screen.print(f"quarantined: {_reason(outcome)}", soft_wrap=True)
@@ -96,14 +96,14 @@ def show_summary(
     if failed:
         screen.print(f"quarantine: {places.quarantine}", soft_wrap=True)
     if summary.interrupted:
-        screen.print("interrupted; the same command goes on where it stopped")
+        screen.print("interrupted; the same command continues where it stopped")
 
 
-def _show_rotten(screen: Console, rotten: Sequence[Outcome]) -> None:
-    for outcome in rotten[:MOST_SHOWN]:
-        screen.print(f"made anew: {outcome.rotten}", soft_wrap=True)
-    if len(rotten) > MOST_SHOWN:
-        screen.print(f"and {len(rotten) - MOST_SHOWN} more, see the ledger")
+def _show_corrupted(screen: Console, corrupted: Sequence[Outcome]) -> None:
+    for outcome in corrupted[:MOST_SHOWN]:
+        screen.print(f"made again: {outcome.corrupted}", soft_wrap=True)
+    if len(corrupted) > MOST_SHOWN:
+        screen.print(f"and {len(corrupted) - MOST_SHOWN} more, see the ledger")
 
 
 def _reason(outcome: Outcome) -> str:
@@ -123,7 +123,7 @@ def summary_json(
         **{state.value: count for state, count in summary.counts.items()},
         "interrupted": summary.interrupted,
         "lost": summary.lost,
-        "rotten": [str(outcome.result) for outcome in summary.rotten],
+        "rotten": [str(outcome.result) for outcome in summary.corrupted],
         "seconds": summary.seconds,
         "ledger": [outcome_json(outcome) for outcome in summary.outcomes],
         "ledger_file": str(places.ledger),

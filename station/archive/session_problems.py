@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is wrong with a session file, as far as it tells of itself."""
+"""Problems of a session file that its own content shows."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from jointbench.acquisition.session_file.store import (
 
 
 def is_live(file: Path) -> bool:
-    """Tell whether a file is a recording that was not finished."""
+    """Return whether a file is a recording that was not finished."""
     with open_guarded(file) as opened, damage_named(file):
         return read_attribute(opened, "schema") == LIVE_SCHEMA
 

@@ -41,7 +41,7 @@ def _unit(unit: str) -> str:
 
 
 def _verdict(trend: Trend) -> str:
-    """Say whether a quantity changes."""
+    """State whether a quantity changes."""
     if math.isnan(trend.significance):
         return "one place only"
     sure = trend.significance > _SURE

@@ -59,7 +59,7 @@ class Trend:
     Attributes:
         quantity: part, item and name.
         unit: of its values.
-        count: values behind it.
+        count: number of values.
         mean: of them [unit].
         scatter: between sessions, the values' own sd taken out [unit].
         slope: [unit per unit of the axis], NaN over specimens.

@@ -103,7 +103,7 @@ class _Pool:
             worker.task, worker.since = task, time.monotonic()
             try:
                 worker.pipe.send(task)
-            except OSError:  # it died while idle: the file was never in its hands
+            except OSError:  # it died while idle: it never received the file
                 self.waiting.appendleft(task)
                 self.drop(worker)
 
@@ -123,7 +123,7 @@ class _Pool:
         worker.process.join()
 
     def outcome_of(self, worker: _Worker) -> Outcome | None:
-        """Take what a worker has to tell; None where its file is tried again."""
+        """Receive a worker's report; None where its file is tried again."""
         task = worker.task
         try:
             outcome: Outcome = worker.pipe.recv()
@@ -168,7 +168,7 @@ def run_pool(
 ) -> Iterator[Outcome]:
     """Process files in a pool; yield what became of each, in the order of finishing.
 
-    Close the generator to stop: files in hand are finished and yielded no more. Where
+    Close the generator to stop: files in progress are finished but not yielded. Where
     Ctrl-C meets it, they are finished and yielded; a second Ctrl-C ends them, too.
 
     Args:
@@ -185,7 +185,7 @@ def run_pool(
     try:
         yield from _work_off(pool)
     except KeyboardInterrupt:
-        logger.warning("finishing the files in hand; Ctrl-C again ends them, too")
+        logger.warning("finishing the files in progress; Ctrl-C again aborts them, too")
         yield from _in_hand(pool)
         raise
     finally:
@@ -198,20 +198,20 @@ def _work_off(pool: _Pool) -> Iterator[Outcome]:
     pool.hand_out()
     while pool.workers:
         ready = wait([worker.pipe for worker in pool.workers], timeout=_LOOK)
-        told = [
+        reports = [
             pool.outcome_of(worker)
             for worker in list(pool.workers)
             if worker.pipe in ready
         ]
-        told += pool.overdue()
+        reports += pool.overdue()
         pool.hand_out()
-        yield from (outcome for outcome in told if outcome is not None)
+        yield from (outcome for outcome in reports if outcome is not None)
         for worker in [w for w in pool.workers if w.task is None]:
             pool.retire(worker)
 
 
 def _in_hand(pool: _Pool) -> Iterator[Outcome]:
-    """Yield what becomes of the files in hand; interrupted, end their workers."""
+    """Yield the outcomes of the files in progress; end their workers if interrupted."""
     pool.waiting.clear()
     try:
         for worker in [w for w in pool.workers if w.task is not None]:
@@ -226,7 +226,7 @@ def _in_hand(pool: _Pool) -> Iterator[Outcome]:
 
 
 def _finish(pool: _Pool) -> None:
-    """Let workers finish the files in hand, then leave."""
+    """Let workers finish the files in progress, then leave."""
     pool.waiting.clear()
     try:
         for worker in pool.workers:

@@ -28,7 +28,7 @@ from jointbench.station.screen.terminal import console, table, working, write_js
 def run_archive(
     patterns: Sequence[str], *, out: Path | None, trend: str, json_target: str | None
 ) -> int:
-    """Collect results into one table, and show how each quantity goes with `trend`.
+    """Collect results in one table and show the trend of each quantity over `trend`.
 
     Args:
         patterns: results files, folders or patterns.
@@ -50,7 +50,7 @@ def run_archive(
     rows = table_rows(results)
     if not rows:
         raise BadData(
-            f"none of {len(paths)} results files holds a number"
+            f"none of {len(paths)} results files contains a quantity"
             + (f"; {refused[0][1]}" if refused else "")
         )
     if out is not None:
@@ -59,7 +59,7 @@ def run_archive(
     _show(results, rows, trends, trend, out, console(json_target))
     screen = console(json_target)
     for copy in copies:
-        words = f"left out: {visible(str(copy.path))} says the same of the same content"
+        words = f"excluded: {visible(str(copy.path))} is a copy of another result"
         screen.print(words, soft_wrap=True)
     for path, reason in refused:
         screen.print(left_out_words(path, reason), soft_wrap=True)
@@ -79,7 +79,7 @@ def run_archive(
 
 
 def _trends(rows: Sequence[Row], over: str) -> tuple[Trend, ...]:
-    """Return the trends of each way of making results by itself."""
+    """Return the trends, separately for each recipe and software version."""
     ways = ways_of(rows)
     points = [
         Trend.point(row, over, ways[row.recipe, row.recipe_sha256, row.software])
@@ -98,13 +98,12 @@ def _show(
     screen: Console,
 ) -> None:
     if out is not None:
-        words = f"{out}: {len(rows)} rows of {len(results)} results"
+        words = f"{out}: {len(rows)} rows from {len(results)} results"
         screen.print(words, soft_wrap=True)
     if not trends:
         screen.print(
-            f"no trend over {over}: no quantity is known at two or more results that "
-            f"say their {over}; --trend goes over {', '.join(OVER)}",
-            soft_wrap=True,
+            f"no trend over {over}: no quantity has two or more results with a known "
+            f"{over}; --trend takes {', '.join(OVER)}",
         )
         return
     title = f"Trends over {over} ({len(results)} results)"
@@ -113,15 +112,15 @@ def _show(
 
 
 def ways_of(rows: Sequence[Row]) -> dict[tuple[str, str, str], str]:
-    """Return a name for each way in which results were made, if there are several.
+    """Return a name for each recipe and software version, if there are several.
 
     Args:
         rows: of the table.
 
     Returns:
-        By recipe, its digest and the software: the recipe's name, with the digest's
-        first characters or the version where recipes of one name differ; empty names
-        where all results were made in one way.
+        Names by recipe, digest and software: the name of the recipe, with the first
+        characters of the digest or the version where recipes of one name differ;
+        empty names where all results have the same.
     """
     ways = sorted({(row.recipe, row.recipe_sha256, row.software) for row in rows})
     if len(ways) == 1:

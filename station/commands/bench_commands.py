@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Commands of a day at the bench: measure, calibrate, serve a simulated chassis."""
+"""Commands at the bench: their names and options; other modules do the work."""
 
 import os
 from pathlib import Path
@@ -7,27 +7,44 @@ from typing import Annotated
 
 import typer
 
-from jointbench.station.commands.shared_options.output_options import Debug, Force, Json
+from jointbench.station.commands.shared_options.output_options import (
+    Debug,
+    Force,
+    Json,
+    SessionOut,
+)
 from jointbench.station.screen.exit_codes import EXIT_QUALITY
 
 
 def measure_command(
-    plan: Annotated[Path, typer.Argument(help="Plan of the measurement, TOML.")],
-    out: Annotated[Path, typer.Option(help="Session file to write.")],
+    plan: Annotated[
+        Path, typer.Argument(metavar="PLAN", help="Measurement plan (TOML).")
+    ],
+    out: SessionOut,
     source: Annotated[
         str | None,
-        typer.Option(help="ni:, ni+grpc://host:port or sim:plates; else the plan's."),
+        typer.Option(
+            metavar="URL",
+            help="Instrument: 'ni:', 'ni+grpc://HOST:PORT' or 'sim:plates'; from the "
+            "plan by default.",
+        ),
     ] = None,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Measure hammer hits by a plan: points x levels x torques, each repeated.
+    """Measure hammer hits by a plan of points, levels and torques.
 
-    Example: jointbench measure plan.toml --out session.h5 --source
-    'sim:plates?seed=1'
+    The command proposes trigger level and windows, judges each hit, and names the
+    next point, level and torque. The session file survives a crash, a lost cable and
+    a full disk.
+
+    Examples:
+        jointbench measure plan.toml --out session.h5 --source ni:
+        jointbench measure examples/plates.toml --out plates.h5 --source
+        'sim:plates?seed=1'
     """
-    # gRPC writes of every lost connection to standard error; the session says it.
+    # gRPC reports lost connections on standard error; the session reports them itself.
     os.environ.setdefault("GRPC_VERBOSITY", "NONE")
     from jointbench.station.measure.bench_session import run_measure
 
@@ -35,18 +52,57 @@ def measure_command(
     return 0 if measured.whole else EXIT_QUALITY
 
 
-def calibrate_command(
-    session: Annotated[Path, typer.Argument(help="Session of hits on the mass.")],
-    mass: Annotated[
-        str, typer.Option(help="All that moves, sensors included, '4 kg'.")
+def record_command(
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="URL", help="Bench: 'sim:two-body-campaign' with parameters."
+        ),
     ],
-    mass_sd: Annotated[str, typer.Option(help="Its standard uncertainty.")] = "0 g",
+    out: SessionOut,
+    force: Force = False,
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Compare every accelerometer with the hammer on a mass that is known.
+    """Record a whole campaign of a bench into a session file.
 
-    Example: jointbench calibrate mass.h5 --mass '4.512 kg' --mass-sd '0.5 g'
+    All hits are judged after the recording.
+
+    Examples:
+        jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out session.h5
+    """
+    from jointbench.station.commands.record_command import run_record
+
+    written = run_record(source, out, overwrite=force, json_target=json)
+    return 0 if written.whole else EXIT_QUALITY
+
+
+def calibrate_command(
+    session: Annotated[
+        Path,
+        typer.Argument(metavar="SESSION", help="Session of hits on the known mass."),
+    ],
+    mass: Annotated[
+        str,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Moving mass, sensors included, for example '4.512 kg'.",
+        ),
+    ],
+    mass_sd: Annotated[
+        str,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Standard uncertainty of the mass, for example '0.5 g'.",
+        ),
+    ] = "0 g",
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Calibrate accelerometers against the hammer on a known mass.
+
+    Examples:
+        jointbench calibrate mass.h5 --mass '4.512 kg' --mass-sd '0.5 g'
     """
     from jointbench.station.commands.calibrate_command import run_calibrate
 
@@ -56,13 +112,19 @@ def calibrate_command(
 
 def simulate_command(
     bench: Annotated[
-        str, typer.Argument(help="What stands on the bench.", metavar="URL")
+        str,
+        typer.Argument(metavar="URL", help="Simulated bench, its speed and its port."),
     ] = "sim:plates?speed=1&interval=2&port=31763",
     debug: Debug = False,
 ) -> None:
-    """Serve a simulated NI chassis for any program that uses nidaqmx over gRPC.
+    """Serve a simulated NI chassis over gRPC.
 
-    Example: jointbench simulate 'sim:plates?speed=1&interval=2&port=31763'
+    Any program that uses nidaqmx over gRPC can connect to it. The parameter
+    'interval' is the time between hits [s], 'speed' the simulated time per real time
+    [-], 'port' the TCP port. Stop the server with Ctrl-C.
+
+    Examples:
+        jointbench simulate 'sim:plates?interval=2&port=31763'
     """
     from jointbench.station.commands.simulate import run_simulate
 

@@ -19,24 +19,24 @@ from jointbench.station.screen.terminal import console, table, write_json
 def run_calibrate(
     session: Path, *, mass: str, mass_sd: str, json_target: str | None
 ) -> tuple[RatioCalibration, ...]:
-    """Show what the sensors of a session indicate over what they should.
+    """Show the ratio of indicated to true sensitivity of the sensors of a session.
 
     Args:
         session: of hits on a freely hung mass.
-        mass: of everything that moves, with its unit.
+        mass: moving mass, sensors included, with its unit.
         mass_sd: its standard uncertainty, with its unit.
         json_target: where the JSON goes.
 
     Raises:
-        UsageError: the mass is not above zero, or its uncertainty below.
-        NoHitFound: there are fewer than three good hits.
+        UsageError: the mass is not above zero, or its uncertainty is negative.
+        NoHitFound: there are fewer than three accepted hits.
     """
     check_outputs([session], [json_target])
     kilograms, sd = parse_value(mass, "mass"), parse_value(mass_sd, "mass")
     if not kilograms > 0 or sd < 0:
         raise UsageError(
-            f"mass is {mass!r} with {mass_sd!r}; give a mass above zero and an "
-            "uncertainty not below it"
+            f"mass is {mass!r} with uncertainty {mass_sd!r}; give a mass above zero "
+            "and an uncertainty of zero or more"
         )
     recordings = read_session(session).recordings
     found = calibrate_ratio(recordings, mass=kilograms, mass_sd=sd)
@@ -55,25 +55,30 @@ def _show(
             f"{100 * each.repeatability:.3f} %",
             f"{100 * each.mass_part:.3f} %",
             f"{100 * each.flatness:+.2f} %",
-            "good" if each.passed else "LOOK AT IT",
+            "passed" if each.passed else "FAILED",
         )
         for each in found
     ]
-    heads = ("channel", "indicated / true (95 %)", "scatter", "mass", "over the band")
+    heads = (
+        "channel",
+        "indicated / true (95 %)",
+        "repeatability",
+        "mass uncertainty",
+        "drift over the band",
+    )
     screen = console(json_target)
     screen.print(table(f"{session}", (*heads, "verdict"), rows))
     low, high = found[0].band
     screen.print(
-        f"{found[0].hits} hits, {low:.0f} to {high:.0f} Hz. Divide FRFs by the ratio; "
-        "or multiply the accelerometer's sensitivity by it, if the hammer's is right; "
-        "or divide the hammer's by it, if the accelerometer's is.",
-        soft_wrap=True,
+        f"{found[0].hits} hits, {low:.0f} to {high:.0f} Hz. To correct FRFs, divide "
+        "them by the ratio. To correct the accelerometer, multiply its sensitivity by "
+        "the ratio. To correct the hammer instead, divide its sensitivity by the "
+        "ratio.",
     )
     if not all(each.passed for each in found):
         screen.print(
-            f"the ratio changes by more than {100 * FLATNESS_LIMIT:g} % over the band: "
-            "the mass bends, a mount is loose, or the hits missed its centre",
-            soft_wrap=True,
+            f"The ratio changes by more than {100 * FLATNESS_LIMIT:g} % over the band: "
+            "the mass bends, a sensor mount is loose, or hits missed the centre.",
         )
 
 

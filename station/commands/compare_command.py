@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench compare``: two recipes or versions side by side, shown."""
+"""``jointbench compare``: differences between two recipes or versions."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,7 @@ FEW_SHOWN = 5
 def run_compare(
     before: str, after: str, *, json_target: str | None
 ) -> tuple[ResultComparison, int]:
-    """Compare two results files, folders or patterns, and show what moved.
+    """Compare two results files, folders or patterns and show what changed.
 
     Returns:
         The comparison, and how many results files could not be read.
@@ -37,48 +37,50 @@ def run_compare(
     with working("reading results"):
         (first, refused), (second, also) = (read_results(group) for group in paths)
     left_out = [*refused, *also]
-    if left_out and not (first and second):  # nothing is left to compare
+    if left_out and not (first and second):  # one side is empty
         raise BadData(left_out_words(*left_out[0]))
     found = compare_results(first, second)
     screen = console(json_target)
     for line in _head(found):
-        screen.print(line, soft_wrap=True)
+        screen.print(line)
     for path, reason in left_out:
         screen.print(left_out_words(path, reason), soft_wrap=True)
-    title = f"Moved by more than {MOVED:g} standard deviations, came or went"
+    title = f"Changed by more than {MOVED:g} standard deviations, added or removed"
     _list(screen, title, found.moved, MOST_SHOWN)
     if found.unjudged:
-        title = "Changed, no standard deviation known"
+        title = "Changed, standard deviation unknown"
         _list(screen, title, found.unjudged, FEW_SHOWN)
     write_json(json_target, _json(found, left_out))
     return found, len(left_out)
 
 
 def _list(screen: Console, title: str, found: Sequence[Difference], most: int) -> None:
-    columns = ("session", "quantity", "before", "after", "unit", "sd", "since")
+    columns = ("session", "quantity", "before", "after", "unit", "change [sd]", "cause")
     rows = [_row(one) for one in found[:most]]
     screen.print(table(f"{title}: {len(found)}", columns if rows else (), rows))
     if len(found) > most:
-        screen.print(f"and {len(found) - most} more, see --json")
+        screen.print(f"and {len(found) - most} more; use --json for all")
 
 
 def _head(found: ResultComparison) -> Iterator[str]:
-    """Yield what was compared, what is not the same, and which stages that concerns."""
+    """Yield the extent of the comparison, differing settings and affected stages."""
     yield f"sessions in both: {found.pairs}, quantities: {len(found.differences)}"
     for words, names in (
-        ("only in the first", found.only_before),
-        ("only in the second", found.only_after),
+        ("only in BEFORE", found.only_before),
+        ("only in AFTER", found.only_after),
     ):
         if names:
             more = ", ..." if len(names) > FEW_SHOWN else ""
             shown = ", ".join(names[:FEW_SHOWN])
             yield f"{words}: {len(names)} sessions ({shown}{more})"
-    yield "what is not the same:" if found.causes else "settings and version: the same"
+    yield "differences:" if found.causes else "settings and version: identical"
     for cause, count in found.causes.items():
-        some = "" if count == found.pairs else f" (in {count} of {found.pairs})"
+        some = (
+            "" if count == found.pairs else f" (in {count} of {found.pairs} sessions)"
+        )
         yield f"  {cause}{some}"
     counts = ", ".join(f"{name} ({n})" for name, n in list(found.stages.items())[:12])
-    yield f"stages concerned: {counts or 'none'}"
+    yield f"affected stages: {counts or 'none'}"
 
 
 def _row(one: Difference) -> tuple[str, ...]:
@@ -94,7 +96,7 @@ def _row(one: Difference) -> tuple[str, ...]:
 
 
 def _value(value: float, sd: float) -> str:
-    return "not there" if math.isnan(value) else with_sd(value, sd)
+    return "absent" if math.isnan(value) else with_sd(value, sd)
 
 
 def _json(

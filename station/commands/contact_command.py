@@ -7,10 +7,22 @@ from jointbench.station.pipeline.contact_options import ContactOptions
 
 @options_of(ContactOptions)
 def contact_command(given: ContactOptions) -> None:
-    """Predict a rough joint's stiffness and damping from D, G, material and preload.
+    """Predict stiffness and damping of a rough joint.
 
-    Example: jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus
-    '29.3 GPa' --hardness '1.5 GPa' --load '1 kN' --load '25 kN'
+    The prediction follows a fractal contact law. The surface is given by D and G, or
+    by measured surfaces. The preload is given by a force, by a bolt torque, or by the
+    stiffness or real area to reach. Results are the normal and tangential stiffness
+    [N/m], the real area [m^2] and the damping coefficient [N s/m].
+
+    Examples:
+        jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus '29.3 GPa'
+        --hardness '1.5 GPa' --load '1 kN' --load '25 kN'
+        jointbench contact --surface surface-a.csv --surface surface-b.csv --modulus
+        '29.3 GPa' --hardness '231 HB' --torque '20 N m' --bolt-diameter '16 mm'
+        --bolts 4 --mass '19.5 kg'
+        jointbench contact --dimension 1.54 --roughness '1e-9 m' --modulus '29.3 GPa'
+        --hardness '1.5 GPa' --load '1 kN' --sweep 'load:1 kN:50 kN:20' --plot
+        contact.html
     """
     from jointbench.station.pipeline.contact_request import parse_request
     from jointbench.station.report.contact_report import run_contact

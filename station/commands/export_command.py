@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """``jointbench export``: sessions and results as CSV, MAT or universal files.
 
-Universal files of others go out as tables, too: FRFs and shapes have no place in a
-session.
+Universal files of other programs are exported as tables as well, since a session
+cannot hold FRFs and mode shapes.
 
-Sessions give their samples and surfaces, results their FRFs, modes, shapes, structure
-functions and quantities, and the pages of contact, joint and gap as JSON. Units are in
-the heads of the columns, in variables called ``*_unit``, or in fields of the format.
+A session gives samples and surfaces. Results give FRFs, modes, mode shapes, structure
+functions and quantities, and the results of contact, joint and gap as JSON. Units are
+in the column heads, in variables called ``*_unit``, or in fields of the format.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -49,33 +49,33 @@ from jointbench.station.screen.terminal import console, write_json
 
 KINDS = ("csv", "mat", "uff")
 UNIVERSAL_MARK = b"jointbench"
-"""What the first lines of a universal file of ours hold."""
+"""Text in the first lines of a universal file that jointbench wrote."""
 
 
 def run_export(
     file: Path, *, kind: str, folder: Path | None, json_target: str | None
 ) -> tuple[Path, ...]:
-    """Write what is in a session or results file in another format.
+    """Write the content of a session or results file in another format.
 
     Args:
-        file: session or results, or a universal file of others.
+        file: session or results, or a universal file of another program.
         kind: ``csv``, ``mat`` or ``uff``.
-        folder: where to; beside the file by default.
+        folder: to write to; next to the file by default.
         json_target: where the JSON goes.
 
     Returns:
         The files written.
 
     Raises:
-        UsageError: another kind, nothing in the file that the format takes, or a file
-            in the way that no export made.
+        UsageError: an unknown format, a file without content for the format, or an
+            existing file that is not an export.
         BadData: the file cannot be read.
     """
     if kind not in KINDS:
-        raise UsageError(f"--to is {kind!r}; write {', '.join(KINDS)}")
+        raise UsageError(f"--to is {kind!r}; write one of {', '.join(KINDS)}")
     check_outputs([file], [json_target])
     target = (folder or file.parent) / file.name.removesuffix(file.suffix)
-    write = _way_out(file, kind)
+    write = _writer(file, kind)
     make_folder(target.parent)
     written = tuple(write(file, target))
     for path in written:
@@ -84,11 +84,13 @@ def run_export(
     return written
 
 
-def _way_out(file: Path, kind: str) -> Callable[[Path, Path], Iterator[Path]]:
-    """Return what writes a file of its sort in the format."""
+def _writer(file: Path, kind: str) -> Callable[[Path, Path], Iterator[Path]]:
+    """Return the function that writes this sort of file in the format."""
     if file.suffix.lower() in SUFFIXES:
         if kind == "uff":
-            raise UsageError(f"'{file}' is a universal file; write --to csv or mat")
+            raise UsageError(
+                f"'{file}' is a universal file already; use --to csv or --to mat"
+            )
         return lambda path, target: _write_tables(universal_tables(path), target, kind)
     if is_results(file):
         return _universal_results if kind == "uff" else partial(_write_results, kind)
@@ -121,7 +123,9 @@ def _write_results(kind: str, file: Path, target: Path) -> Iterator[Path]:
 def _universal_session(file: Path, target: Path) -> Iterator[Path]:
     session = read_session(file)
     if not session.recordings:
-        raise UsageError(f"'{file}' holds no samples for a universal file; use csv")
+        raise UsageError(
+            f"'{file}' contains no samples for a universal file; use --to csv"
+        )
     path = target.with_name(f"{target.name}.uff")
     require_mark(path, UNIVERSAL_MARK, "export")
     write_universal_samples(path, session)
@@ -129,10 +133,12 @@ def _universal_session(file: Path, target: Path) -> Iterator[Path]:
 
 
 def _universal_results(file: Path, target: Path) -> Iterator[Path]:
-    """Write FRFs and shapes, a file for each preload."""
+    """Write FRFs and mode shapes, one file for each preload."""
     found = result_modes(file)
     if not found:
-        raise UsageError(f"'{file}' holds no modes for a universal file; use csv")
+        raise UsageError(
+            f"'{file}' contains no modes for a universal file; use --to csv"
+        )
     for name, frf, modes in found:
         own = f".{plain_name(name)}" if len(found) > 1 else ""
         path = target.with_name(f"{target.name}{own}.uff")

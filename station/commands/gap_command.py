@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench gap``: where model and measurement disagree, and what is missing."""
+"""``jointbench gap``: the effect that a model lacks to explain a measurement."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.catalogue.installed_effects import (
+    effect_packages,
+    installed_catalogue,
+)
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
 from jointbench.analysis.gap.response.threads import side_by_side
 from jointbench.station.files.input_files import parse_preload
@@ -14,6 +17,7 @@ from jointbench.station.gap.gap_inputs import Examined, GapRequest, examine
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.gap.gap_scores import score_section, score_table, scores_json
 from jointbench.station.report.gap_report import gap_report
+from jointbench.station.report.packages_section import packages_section
 from jointbench.station.schemas.effects_file import read_effects, with_own
 from jointbench.station.screen.escaping_console import Screen, seen
 from jointbench.station.screen.page import write_report
@@ -34,16 +38,16 @@ def run_gap(
     report: Path | None,
     json_target: str | None,
 ) -> Diagnosis:
-    """Diagnose a source, show verdict and evidence, and write the page if asked.
+    """Diagnose a source, show verdict and evidence, and write the report if asked.
 
     Args:
         source: campaign file, session, MAT file, model file that names data, or URL.
         more: further sessions of the same bench.
-        model: bench model, where the source brings none.
-        preload: on the joint with unit, where the session does not say.
+        model: bench model, where the source has none.
+        preload: on the joint with unit, where the session gives none.
         without: names of effects to leave out of the catalogue, joined by commas.
         effects: files of the user's own effects, run as Python.
-        report: HTML page to write, or None.
+        report: HTML report to write, or None.
         json_target: where the JSON goes.
     """
     sources = [str(source), *map(str, more)]
@@ -55,19 +59,23 @@ def run_gap(
         model, _names(without), parse_preload(preload) if preload else None
     )
     own = [entry for path in effects for entry in read_effects(path)]
-    wanted = replace(wanted, entries=with_own(CATALOGUE, own))
+    wanted = replace(wanted, entries=with_own(installed_catalogue(), own))
+    packages = effect_packages(wanted.entries)
     screen = Screen(stderr=True)
     with side_by_side(), screen.status(seen(f"reading {sources[0]}")) as status:
         done = examine(sources, wanted, progress=lambda line: status.update(seen(line)))
-    _show(done, json_target)
+    _show(done, packages, json_target)
     if report is not None:
-        page = gap_report(done.found, title=done.title)
+        content = gap_report(done.found, title=done.title)
         if done.scores:
             section = score_section(done.scores, done.unit)
-            page = replace(page, sections=(*page.sections, section))
-        write_report(page, report)
-        console(json_target).print(f"\nreport: {report}")
-    write_json(json_target, _json(sources, done))
+            content = replace(content, sections=(*content.sections, section))
+        if packages:
+            section = packages_section(packages)
+            content = replace(content, sections=(*content.sections, section))
+        write_report(content, report)
+        console(json_target).print(f"\nreport: {report}", soft_wrap=True)
+    write_json(json_target, _json(sources, done, packages))
     return done.found
 
 
@@ -77,23 +85,30 @@ def _names(without: str | None) -> frozenset[str]:
     )
 
 
-def _show(done: Examined, json_target: str | None) -> None:
+def _show(done: Examined, packages: Mapping[str, str], json_target: str | None) -> None:
     show_diagnosis(done.found, json_target)
     screen = console(json_target)
     if done.scores:
         content = score_table(done.scores, done.unit)
         screen.print(table(content.caption, content.columns, content.rows))
+    for name, package in packages.items():
+        screen.print(f"note: effect {name} is from package {package}")
     for remark in done.remarks[:MOST_REMARKS]:
         screen.print(f"note: {remark}")
     if len(done.remarks) > MOST_REMARKS:
-        screen.print(f"note: {len(done.remarks) - MOST_REMARKS} more like these")
+        screen.print(
+            f"note: {len(done.remarks) - MOST_REMARKS} more notes; use --json for all"
+        )
 
 
-def _json(sources: Sequence[str], done: Examined) -> dict[str, object]:
+def _json(
+    sources: Sequence[str], done: Examined, packages: Mapping[str, str]
+) -> dict[str, object]:
     return {
         "campaign": sources[0],
         "sources": list(sources),
         **diagnosis_json(done.found),
         "scored": scores_json(done.scores, done.unit),
         "remarks": list(done.remarks),
+        "packages": dict(packages),
     }

@@ -18,7 +18,7 @@ from jointbench.station.pipeline.chain import ChainSettings, run_chain
 from jointbench.station.pipeline.link_stage import fits, identify_joint
 from jointbench.station.pipeline.modal_options import parse_band
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.screen.joint_text import WHAT_IS_SHOWN, parameter_text
+from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
 from jointbench.station.screen.terminal import console, table, working, write_json
 
 
@@ -52,13 +52,13 @@ def identify_any(
     json_target: str | None,
     surfaces: Sequence[Path] = (),
 ) -> bool:
-    """Identify the joints of whatever the model file describes.
+    """Identify the joints of a lumped bench or of a meshed structure.
 
     Returns:
-        Whether the model can have what was measured.
+        Whether the model is consistent with the measurement.
 
     Raises:
-        UsageError: a lumped bench without a session, or with a page of its own.
+        UsageError: a lumped bench without a session, or with --report or --surface.
     """
     if describes_structure(model):
         from jointbench.station.commands.identify_structure_command import (
@@ -76,27 +76,28 @@ def identify_any(
         )
     if not sessions:
         raise UsageError(
-            f"'{model}' is a lumped bench; give the sessions it was hit in"
+            f"'{model}' is a lumped bench and needs measured sessions; add them, "
+            f"'jointbench identify {model} SESSION'"
         )
     if report is not None or surfaces:
         raise UsageError(
-            "--report and --surface are for structures [joints]; of a lumped bench "
-            "write 'jointbench report SESSION --model MODEL --out PAGE'"
+            "--report and --surface apply to structures with [joints]; for a lumped "
+            "bench use 'jointbench report SESSION --model MODEL --out PATH'"
         )
     return fits(run_identify(model, sessions, band=band, json_target=json_target))
 
 
 def describes_structure(model: Path) -> bool:
-    """Tell whether a model file has meshed bodies; what cannot be read has none."""
+    """Return whether a model file has meshed bodies; False if it cannot be read."""
     try:
         content = load_toml(model)
     except (BadData, OSError, ValueError, RecursionError):
-        return False  # the reader of lumped benches says what is wrong
+        return False  # the reader of lumped benches reports the error
     return "joints" in content
 
 
 def show_joint(result: Identification, json_target: str | None) -> None:
-    """Print the identified parameters and how far they are determined."""
+    """Print the identified parameters with their uncertainty."""
     screen = console(json_target)
     rows = [
         (
@@ -107,7 +108,7 @@ def show_joint(result: Identification, json_target: str | None) -> None:
         )
         for one in result.parameters
     ]
-    title = f"Links from the modes: {result.verdict.value} {WHAT_IS_SHOWN}"
+    title = f"Links identified from modes: {result.verdict.value} {VALUE_LEGEND}"
     screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
     reasons = [*result.reasons, *(p.reason for p in result.parameters if p.reason)]
     for reason in dict.fromkeys(reasons):

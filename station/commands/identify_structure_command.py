@@ -46,7 +46,7 @@ from jointbench.station.joints.structure_states import (
 )
 from jointbench.station.joints.theory_records import TheoryRow
 from jointbench.station.report.theory_section import show_theory, theory_section
-from jointbench.station.screen.joint_text import WHAT_IS_SHOWN, parameter_text
+from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
 from jointbench.station.screen.terminal import console, table, working, write_json
 
 RIGID_MODES = 6
@@ -65,10 +65,10 @@ def run_identify_structure(
 ) -> bool:
     """Identify the joints of a structure, show and write them.
 
-    With a table [contact] they are laid beside the contact law.
+    With a table [contact] they are compared with the contact law.
 
     Returns:
-        Whether the structure can have what was measured, and the full mesh agrees.
+        Whether the structure is consistent with the measurement and with the full mesh.
     """
     check_outputs([model, *sessions, *surfaces], [json_target, report])
     settings = read_toml(model, StructureModel)
@@ -107,27 +107,27 @@ def run_identify_structure(
 def _surface(
     settings: StructureModel,
     model: Path,
-    faces: Sequence[Path],
+    surfaces: Sequence[Path],
     sessions: Sequence[Path],
 ) -> ContactSurface | None:
-    """Return the joint's surface where the model asks for a contact law."""
+    """Return the contact surface where the model has a table [contact]."""
     if settings.contact is None:
-        if faces:
+        if surfaces:
             raise UsageError(
                 "--surface needs a table [contact] in the model: modulus, hardness and "
-                "the joint that has these faces"
+                "the joint with these surfaces"
             )
         return None
     with working("fitting surfaces"):
         return theory_surface(
-            settings.contact, model.parent, list(faces), list(sessions)
+            settings.contact, model.parent, list(surfaces), list(sessions)
         )
 
 
 def _preloads(
     settings: StructureModel, measured: dict[str, MeasuredState]
 ) -> dict[str, float]:
-    """Return the preload of every state where the model asks for a contact law [N]."""
+    """Return the preload of each state [N] where the model has a table [contact]."""
     if settings.contact is None:
         return {}
     found = {label: state.preload for label, state in measured.items()}
@@ -162,7 +162,9 @@ def _reduced(
     if settings.measured is not None:
         counts.append(len(settings.measured.frequencies))
     if not counts:
-        raise UsageError("nothing was measured: give a session, or [measured] in TOML")
+        raise UsageError(
+            "no measurement: give a session, or a table [measured] in the model"
+        )
     modes = settings.identify.modes or RIGID_MODES + max(counts) + SPARE_MODES
     box = settings.identify.stiffness_box
     loads = sensor_rows(structure, list(sensors.values())) if sensors else None
@@ -186,7 +188,7 @@ def show_structure(result: StructureIdentification, json_target: str | None) -> 
         )
         for one in result.parameters
     ]
-    title = f"Joints: {result.verdict.value} {WHAT_IS_SHOWN}"
+    title = f"Joints: {result.verdict.value} {VALUE_LEGEND}"
     screen.print(table(title, ("parameter", "value", "unit", "identifiable"), rows))
     for reason in result.reasons:
         screen.print(f"  {reason}", markup=False)
@@ -199,9 +201,9 @@ def show_structure(result: StructureIdentification, json_target: str | None) -> 
             columns = ("measured [Hz]", "predicted [Hz]", "error")
             screen.print(table(f"Modes of {state.label}", columns, pairs))
     for check in result.full_check:
-        word = "agrees with" if check.agrees else "DISAGREES with"
+        word = "agrees" if check.agrees else "DISAGREES"
         worst = (np.abs(check.reduced - check.full) / check.full).max(initial=0.0)
         screen.print(
-            f"{check.label}: one full solve {word} the reduced model "
-            f"(largest difference {worst:.1e} of the frequency)"
+            f"{check.label}: the full model {word} with the reduced model "
+            f"(largest relative frequency difference {worst:.1e})"
         )

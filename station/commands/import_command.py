@@ -30,23 +30,23 @@ def run_import(
     overwrite: bool,
     json_target: str | None,
 ) -> Session:
-    """Import `files` into the session file `out` and say what came in.
+    """Import `files` into the session file `out` and list the records.
 
     Args:
         files: hits and surfaces.
         out: session file.
-        columns: what the columns of plain tables hold.
-        point: where the hammer struck.
-        preload: on the joint while all of this was recorded, with unit.
-        full_scale: what the largest number of a WAV file stands for, in the unit of
+        columns: roles and units of the columns of plain tables.
+        point: hit point.
+        preload: on the joint during the recording, with unit.
+        full_scale: value of the largest number of a WAV file, in the unit of
             `columns`.
-        overwrite: replace a session that is there.
+        overwrite: replace an existing session.
         json_target: where the JSON goes.
 
     Raises:
-        UsageError: the session is there already, is being recorded, or what is there
-            is no session.
-        BadData: a file cannot be read; nothing is written then.
+        UsageError: the session exists, is being recorded, or the existing file is not
+            a session.
+        BadData: a file cannot be read; then nothing is written.
     """
     check_outputs([*files, out], [json_target])
     if out.exists() and overwrite:
@@ -54,7 +54,7 @@ def run_import(
     else:
         check_outputs(files, [] if out.exists() else [out])
     if out.resolve() in {path.resolve() for path in files}:
-        raise UsageError(f"'{out}' is an input; write the session to another file")
+        raise UsageError(f"'{out}' is an input file; write the session to another file")
     joint = None if preload is None else JointSetup(preload=parse_preload(preload))
     recordings: list[Recording] = []
     surfaces: list[Surface] = []
@@ -83,7 +83,7 @@ def run_import(
 
 
 def _free(name: str, taken: list[str]) -> str:
-    """Return `name`, numbered where it is taken: files of two folders may agree."""
+    """Return `name`, numbered where it is taken by a file of another folder."""
     wanted, number = name, 2
     while name in taken:
         name, number = f"{wanted}-{number}", number + 1
@@ -95,7 +95,7 @@ def _show(
 ) -> None:
     records = _records(session)
     screen = console(json_target)
-    screen.print(table(f"{out}", ("record", "holds"), list(records.items())))
+    screen.print(table(f"{out}", ("record", "content"), list(records.items())))
     for words in warnings:
         screen.print(f"warning: {words}")
     channels = [
@@ -103,12 +103,12 @@ def _show(
         for recording in session.recordings
         for channel in recording.channels
     ]
-    said = {s.name: list(cautions(s.provenance)) for s in session.surfaces}
-    for name, texts in said.items():
+    noted = {s.name: list(cautions(s.provenance)) for s in session.surfaces}
+    for name, texts in noted.items():
         for line in caution_lines(name, texts):
             screen.print(f"  {line}", markup=False)
     content = {"session": str(out), "channels": channels, "records": records}
-    write_json(json_target, content | {"cautions": said, "warnings": list(warnings)})
+    write_json(json_target, content | {"cautions": noted, "warnings": list(warnings)})
 
 
 def _channel(recording: str, channel: Channel) -> dict[str, object]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench inspect``: what is in a session or results file."""
+"""``jointbench inspect``: the content of a session or results file."""
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -34,7 +34,7 @@ def _lines(content: Mapping[str, object], indent: str) -> Iterator[str]:
 
 
 def _item(item: Mapping[str, object], indent: str) -> Iterator[str]:
-    """Give one entry of a list a line; what is nested goes below it."""
+    """Yield one line for an entry of a list, and its nested content below."""
     flat = {k: v for k, v in item.items() if not _nested(v)}
     yield f"{indent}- {_one_line(flat)}"
     rest = {k: v for k, v in item.items() if _nested(v)}

@@ -38,34 +38,34 @@ def run_modal(
     json_target: str | None = None,
     run: StageRun | None = None,
 ) -> ModalChain:
-    """Identify the modes in `files`, show them and keep them beside the session.
+    """Identify the modes in `files`, show them and store them next to the session.
 
-    Recordings under different preloads are never averaged: each preload has modes, a
-    table and a results file of its own.
+    Recordings at different preloads are never averaged: each preload has its own
+    modes, table and results file.
 
     Args:
         files: sessions, or files of hits.
         settings: None for the defaults.
         columns: of files of hits.
-        point: that was struck, in files that do not say.
-        out: results file; None for beside the session.
+        point: hit point, for files that do not name one.
+        out: results file; None for next to the session.
         universal: universal file to write, or None.
         json_target: where the JSON goes.
-        run: store and source of the stages; None to keep none.
+        run: store and source of the stages; None to store none.
 
     Returns:
-        What was found at the first preload.
+        The result at the first preload.
     """
-    target = out or _beside(files)
+    target = out or _next_to_session(files)
     check_outputs(files, [target, universal, json_target])
     settings = settings or ChainSettings()
     stored = read_recordings(files, columns=columns, point=point)
-    # A hit's level is that of the campaign, whatever the preload.
+    # Levels of hits are judged over the whole campaign, across preloads.
     run = run or StageRun()
     groups = by_preload(judge_hits(stored, settings, run))
-    chains, pages = [], []
+    chains, contents = [], []
     for preload, group in groups:
-        with progress_bar("judging hits, estimating FRFs") as progress:
+        with progress_bar("estimating FRFs") as progress:
             own_run = replace(run, progress=progress)
             chain = judged_modes(group, settings, own_run, preload)
         own, shared = target, universal
@@ -80,12 +80,12 @@ def run_modal(
         notes = modal_notes(chain)
         show_modal(chain, notes, json_target)
         chains.append(chain)
-        pages.append(modal_json(chain, notes))
-    content = join_pages([preload for preload, _ in groups], pages)
+        contents.append(modal_json(chain, notes))
+    content = join_pages([preload for preload, _ in groups], contents)
     write_json(json_target, content | {"results": str(target or "")})
     return chains[0]
 
 
-def _beside(files: Sequence[Path]) -> Path | None:
+def _next_to_session(files: Sequence[Path]) -> Path | None:
     sessions = [path for path in files if is_session_name(path)]
     return results_path(sessions[0]) if len(sessions) == len(files) == 1 else None

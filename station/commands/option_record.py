@@ -18,9 +18,9 @@ def options_of(
 ) -> Callable[[Callable[[Options], Result]], Callable[..., Result]]:
     """Return a decorator that shows Typer the fields of a record as options.
 
-    Typer reads the signature of a callback. The decorated callback takes the record
-    alone; Typer sees a keyword for each field, with its annotation and default, and
-    what it parsed is handed on as one record.
+    Typer reads the signature of a callback. The decorated function takes one record.
+    Typer sees a keyword for each field, with its annotation and default, and the
+    callback collects the parsed values in a record.
 
     Args:
         record: dataclass whose fields are annotated for Typer, in the order of the

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench modal --output-only``: modes from responses without a force channel."""
+"""``jointbench modal --output-only``: operational modal analysis."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -25,30 +25,30 @@ def run_output_only(
     order: int | None,
     json_target: str | None,
 ) -> OutputOnlyModes:
-    """Identify the modes in the responses of `files` and show them."""
+    """Identify modes from the responses in `files` and show them."""
     check_outputs(files, [json_target])
-    recording = longest(read_recordings(files, columns=columns, point=""))
+    recording = only_recording(read_recordings(files, columns=columns, point=""))
     settings = OutputOnlySettings(band=band)
     if order is not None:
         settings = OutputOnlySettings(band=band, highest_order=order)
-    with working("correlating responses, fitting modes"):
+    with working("estimating correlations, fitting modes"):
         modes = identify_output_only(recording, settings)
     show_output_only(recording, modes, json_target)
     write_json(json_target, output_only_json(recording, modes))
     return modes
 
 
-def longest(recordings: Sequence[Recording]) -> Recording:
-    """Return the one recording to look at.
+def only_recording(recordings: Sequence[Recording]) -> Recording:
+    """Return the only recording.
 
     Raises:
-        BadData: there are several: correlations do not reach across recordings.
+        BadData: there are several; correlations cannot be joined across recordings.
     """
     if len(recordings) > 1:
         names = ", ".join(repr(r.name) for r in recordings)
         raise BadData(
-            f"{len(recordings)} recordings ({names}); modes from responses alone need "
-            "one long one: give a single file"
+            f"{len(recordings)} recordings ({names}), but operational modal analysis "
+            "needs a single long recording; give one file"
         )
     return recordings[0]
 
@@ -64,12 +64,12 @@ def show_output_only(
             str(i + 1),
             with_sd(modes.natural_frequency[i], modes.frequency_sd[i]),
             with_sd(100 * modes.damping_ratio[i], 100 * modes.damping_ratio_sd[i]),
-            "steady sine, no resonance" if modes.sine_like[i] else "",
+            "harmonic excitation, no mode" if modes.sine_like[i] else "",
         )
         for i in range(modes.natural_frequency.size)
     ]
     title = (
-        f"Modes from responses alone, {low:.0f} to {high:.0f} Hz, {seconds:.4g} s "
+        f"Operational modes, {low:.0f} to {high:.0f} Hz, {seconds:.4g} s of data "
         "(± one standard deviation)"
     )
     columns = ("mode", "natural frequency [Hz]", "damping ratio [%]", "remark")
@@ -77,7 +77,7 @@ def show_output_only(
 
 
 def output_only_json(recording: Recording, modes: OutputOnlyModes) -> dict[str, object]:
-    """Return the modes for programs; there are no residues and no modal masses."""
+    """Return the modes as JSON; there are no residues and no modal masses."""
     return {
         "output_only": True,
         "recording": recording.name,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench process``: one recorded session under a recipe, and what changed."""
+"""``jointbench process``: one session processed with a recipe."""
 
 from pathlib import Path
 
@@ -31,14 +31,14 @@ def run_process(
     again: bool,
     json_target: str | None,
 ) -> StoredResult:
-    """Process a session, write the result beside it and show it.
+    """Process a session, write the result next to it and show it.
 
     Args:
-        file: session; it is only read.
+        file: session, which is only read.
         recipe: TOML, or None for the defaults.
-        out: results file, or None for beside the session.
-        stages: folder of kept stages, or None for beside the result.
-        again: run all stages whatever is kept.
+        out: results file, or None for next to the session.
+        stages: folder of stored stages, or None for next to the result.
+        again: run all stages, stored ones included.
         json_target: where the JSON goes.
 
     Raises:
@@ -46,12 +46,12 @@ def run_process(
         UsageError: the result cannot be written.
     """
     require_folder(stages, "--stages")
-    made = recipe_or_default(recipe)
-    target = out or processed_path(file, made)
+    settings = recipe_or_default(recipe)
+    target = out or processed_path(file, settings)
     check_outputs([file, *([recipe] if recipe else [])], [target, json_target])
     task = Task(file, target, stages or stages_folder(target), again=again)
     with working(f"processing {file.name}"):
-        outcome = process_task(task, made)
+        outcome = process_task(task, settings)
     if outcome.unwritable:
         raise UsageError(outcome.reason)
     if outcome.state is State.FAILED:
@@ -65,25 +65,24 @@ def run_process(
 def _show(result: StoredResult, outcome: Outcome, json_target: str | None) -> None:
     screen = console(json_target)
     title = f"{visible(result.path.name)}: recipe {result.facts['recipe_name']!r}"
-    columns = ("of", "quantity", "value ± sd", "unit")
+    columns = ("part", "quantity", "value ± sd", "unit")
     rows = [quantity_cells(one) for one in result.quantities]
     screen.print(table(title, columns, rows))
     changes = result.changes
     if changes:
-        screen.print(f"\n{len(changes)} verdicts changed:")
+        screen.print(f"\n{len(changes)} hit verdicts changed:")
     for change in changes[:MOST_CHANGES]:
         screen.print(
             f"  {change.recording} at {change.time:.3f} s: {change.before} -> "
             f"{change.after}: {change.reason}",
-            soft_wrap=True,
         )
     if len(changes) > MOST_CHANGES:
-        screen.print(f"  and {len(changes) - MOST_CHANGES} more, see --json")
+        screen.print(f"  and {len(changes) - MOST_CHANGES} more; use --json for all")
     for remark in result.remarks:
-        screen.print(remark, soft_wrap=True)
-    if outcome.rotten:
-        screen.print(f"\nmade anew: {outcome.rotten}", soft_wrap=True)
-    screen.print(f"\nstages: {stage_words(outcome)}", soft_wrap=True)
+        screen.print(remark)
+    if outcome.corrupted:
+        screen.print(f"\ncomputed again: {outcome.corrupted}", soft_wrap=True)
+    screen.print(f"\nstages: {stage_words(outcome)}")
     screen.print(f"result: {visible(str(result.path))}", soft_wrap=True)
 
 

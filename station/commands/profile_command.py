@@ -6,51 +6,72 @@ from typing import Annotated
 
 import typer
 
-from jointbench.acquisition.basics.errors import UsageError
 from jointbench.station.commands.shared_options.output_options import Debug, Force, Json
-
-INSTRUMENTS = ("diavite", "mitutoyo")
 
 
 def profile_command(
-    instrument: Annotated[str, typer.Argument(help="diavite or mitutoyo.")],
+    instrument: Annotated[
+        str,
+        typer.Argument(
+            metavar="INSTRUMENT",
+            help="diavite, mitutoyo, or a tester that a package adds.",
+        ),
+    ],
     line: Annotated[
-        str, typer.Argument(help="COM3, /dev/ttyUSB0, socket://host:port, sim:diavite.")
+        str,
+        typer.Argument(
+            metavar="LINE",
+            help="Serial line: COM3, /dev/ttyUSB0, socket://HOST:PORT or sim:diavite.",
+        ),
     ],
     out: Annotated[
-        Path | None, typer.Option(help="Table of x and z (.csv) to write.")
+        Path | None,
+        typer.Option(metavar="PATH", help="Table of x and z to write (.csv)."),
     ] = None,
     session: Annotated[
-        Path | None, typer.Option(help="Session that the profile is added to.")
+        Path | None,
+        typer.Option(metavar="PATH", help="Session to add the profile to (.h5)."),
     ] = None,
-    name: Annotated[str, typer.Option(help="Of the profile.")] = "profile",
+    name: Annotated[
+        str, typer.Option(metavar="NAME", help="Name of the profile.")
+    ] = "profile",
     traverse: Annotated[
-        str | None, typer.Option(help="DH-8: length that was traced, '4.8 mm'.")
+        str | None,
+        typer.Option(
+            metavar="QUANTITY",
+            help="Diavite DH-8: traverse length, for example '4.8 mm'.",
+        ),
     ] = None,
     baud: Annotated[
-        int | None, typer.Option(help="Bits per second; the instrument's usual.")
+        int | None,
+        typer.Option(
+            metavar="N",
+            help="Baud rate [bit/s], for example 9600; 115200 for diavite "
+            "and 9600 for mitutoyo by default.",
+        ),
     ] = None,
     filtered: Annotated[
-        bool, typer.Option("--filtered", help="DH-8: the roughness profile.")
+        bool,
+        typer.Option(
+            "--filtered", help="Diavite DH-8: read the filtered roughness profile."
+        ),
     ] = False,
     unsigned: Annotated[
-        bool, typer.Option("--unsigned", help="DH-8: heights have no sign.")
+        bool,
+        typer.Option("--unsigned", help="Diavite DH-8: heights are unsigned numbers."),
     ] = False,
     force: Force = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
-    """Fetch the profile that a roughness tester measured last.
+    """Read the last profile of a roughness tester.
 
-    Example: jointbench profile diavite COM3 --traverse '4.8 mm' --name face-a --out
-    face-a.csv --session visit.h5
+    Examples:
+        jointbench profile diavite COM3 --traverse '4.8 mm' --out surface-a.csv
+        jointbench profile mitutoyo /dev/ttyUSB0 --name surface-b --session session.h5
     """
     from jointbench.station.sources.read_profile import ProfileRequest, run_profile
 
-    if instrument not in INSTRUMENTS:
-        raise UsageError(
-            f"{instrument!r} is no roughness tester; there are {', '.join(INSTRUMENTS)}"
-        )
     wanted = ProfileRequest(
         instrument, line, name, traverse, baud, filtered, not unsigned
     )

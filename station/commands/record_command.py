@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench record``: a visit to a bench into a session file, with its sheet."""
+"""``jointbench record``: a whole campaign into a session file, with its model."""
 
 from pathlib import Path
 
@@ -12,49 +12,58 @@ from jointbench.station.screen.terminal import (
     working,
     write_json,
 )
-from jointbench.station.sources.visit_file import WrittenVisit, write_visit
+from jointbench.station.sources.recorded_session import (
+    RecordedSession,
+    record_session_file,
+)
 
 
 def run_record(
     url: str, out: Path, *, overwrite: bool, json_target: str | None
-) -> WrittenVisit:
-    """Record a bench and say what was recorded.
+) -> RecordedSession:
+    """Record a campaign and list its content.
 
     Args:
         url: of the bench.
         out: session file to write.
-        overwrite: replace an earlier session and its sheets, once all is recorded.
+        overwrite: replace an earlier session and its model, after the recording.
         json_target: where the JSON goes.
     """
     check_session_name(out)
     check_outputs([out], [json_target])
     with working(f"recording {url}"):
-        written = write_visit(url, out, overwrite=overwrite)
+        written = record_session_file(url, out, overwrite=overwrite)
     _show(written, json_target)
     return written
 
 
-def _show(written: WrittenVisit, json_target: str | None) -> None:
+def _show(written: RecordedSession, json_target: str | None) -> None:
     session = written.session
     hits = [hit for recording in session.recordings for hit in recording.hits]
-    good = sum(hit.verdict is Verdict.OK for hit in hits)
+    accepted = sum(hit.verdict is Verdict.OK for hit in hits)
     preloads = sorted({r.preload for r in session.recordings if r.preload is not None})
     rows = [
         ("recordings", f"{len(session.recordings)}"),
-        ("hits", f"{len(hits)}, {good} accepted"),
+        ("hits", f"{len(hits)}, {accepted} accepted"),
         ("hit points", ", ".join(sorted({hit.point for hit in hits})) or "-"),
         ("preloads", ", ".join(f"{p:g} N" for p in preloads) or "-"),
     ]
     screen = lasting_console(json_target)
-    screen.print(table(f"{written.path}", ("visit", "holds"), rows))
+    screen.print(table(f"{written.path}", ("session", "content"), rows))
     for words, path in (("model", written.model), ("truth", written.truth)):
         if path is not None:
-            screen.print(f"{words}: {path}")
-    for words in (written.stays, "" if written.whole else "stopped before its end"):
+            screen.print(f"{words}: {path}", soft_wrap=True)
+    for words in (
+        written.stays,
+        "" if written.whole else "the recording was interrupted",
+    ):
         if words:
-            screen.print(words, soft_wrap=True)
+            screen.print(words)
     if written.model is not None:
-        screen.print(f"\nnext: jointbench gap {written.path} --model {written.model}")
+        screen.print(
+            f"\nnext: jointbench gap {written.path} --model {written.model}",
+            soft_wrap=True,
+        )
     write_json(
         json_target,
         {
@@ -64,7 +73,7 @@ def _show(written: WrittenVisit, json_target: str | None) -> None:
             "truth": None if written.truth is None else str(written.truth),
             "recordings": len(session.recordings),
             "hits": len(hits),
-            "accepted_hits": good,
+            "accepted_hits": accepted,
             "preloads_n": preloads,
         },
     )

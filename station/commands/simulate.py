@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench simulate``: a chassis without hardware for any program of NI's."""
+"""``jointbench simulate``: a simulated NI chassis served over gRPC."""
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.chassis.chassis_url import chassis_from_url, is_plates_url
@@ -11,19 +11,21 @@ def run_simulate(url: str) -> None:
     """Serve a simulated chassis until interrupted.
 
     Args:
-        url: what stands on the bench, for example ``sim:plates?interval=2&port=31763``.
+        url: simulated bench, for example ``sim:plates?interval=2&port=31763``.
 
     Raises:
-        UsageError: the URL names no simulated chassis.
+        UsageError: the URL is not that of a simulated chassis.
         InstrumentError: the port is taken.
     """
     if not is_plates_url(url):
-        raise UsageError(f"{url!r} is no simulated chassis; type sim:plates?port=31763")
+        raise UsageError(
+            f"{url!r} is not a simulated chassis; write 'sim:plates?port=31763'"
+        )
     screen = console()
     with SimulatedChassis(chassis_from_url(url)) as server:
         screen.print(f"serving NI-DAQmx at {server.address}; stop with Ctrl-C")
         screen.print(
-            f"try: jointbench measure plan.toml --out s.h5 --source "
+            f"example: jointbench measure plan.toml --out session.h5 --source "
             f"ni+grpc://{server.address}",
             soft_wrap=True,
         )

@@ -43,7 +43,7 @@ def run_surface(
     """Fit every surface in `files` and show the verdicts.
 
     Raises:
-        UsageError: an option does not suit a surface.
+        UsageError: an option does not apply to a surface.
         BadData: a file cannot be read, or a surface is too small.
     """
     check_outputs(files, [json_target])
@@ -71,7 +71,7 @@ def show_surfaces(
     json_target: str | None,
     pooled: Pooled | None = None,
 ) -> None:
-    """Print verdict, D, G and the reason of each surface, and what else was asked."""
+    """Print verdict, D, G and reason of each surface, and optional results."""
     screen = console(json_target)
     rows = [(chain.surface.name, *_numbers(chain.fit)) for chain in chains]
     if pooled is not None:
@@ -79,8 +79,8 @@ def show_surfaces(
     columns = ("surface", "verdict", "D [-]", HEADING, "fit band")
     screen.print(table("Surfaces (D ± one standard deviation)", columns, rows))
     for chain in chains:
-        for said in chain_cautions(chain):
-            screen.print(f"  {said}", markup=False)
+        for caution in chain_cautions(chain):
+            screen.print(f"  {caution}", markup=False)
         screen.print(f"  {chain.surface.name}: {chain.fit.reason}", markup=False)
         screen.print(f"  {chain.surface.name}: {_origin(chain)}", markup=False)
         for line in chain.beside.lines:
@@ -91,8 +91,8 @@ def show_surfaces(
 
 
 def _pooled(given: Sequence[Surface], chains: Sequence[SurfaceChain]) -> Pooled:
-    """Fit all profiles as one."""
-    with working("fitting all profiles as one"):
+    """Fit all profiles together."""
+    with working("fitting the pooled profiles"):
         structure = pooled_structure(given, [chain.surface for chain in chains])
         fit = fit_fractal(structure)
     dimensions = [chain.fit.dimension for chain in chains]
@@ -100,10 +100,10 @@ def _pooled(given: Sequence[Surface], chains: Sequence[SurfaceChain]) -> Pooled:
 
 
 def _pooled_json(pooled: Pooled, chains: Sequence[SurfaceChain]) -> dict[str, object]:
-    """Return what is told of all profiles as one."""
-    said = dict.fromkeys(s for c in chains for s in cautions(c.surface.provenance))
+    """Return the result of the pooled profiles as JSON."""
+    notes = dict.fromkeys(s for c in chains for s in cautions(c.surface.provenance))
     return {
-        **fit_json(pooled.structure.name, pooled.fit, tuple(said)),
+        **fit_json(pooled.structure.name, pooled.fit, tuple(notes)),
         "profiles": [chain.surface.name for chain in chains],
         **dict(pooled.beside.keys),
     }
@@ -122,14 +122,14 @@ def _numbers(fit: FractalFit) -> tuple[str, str, str, str]:
 
 
 def _origin(chain: SurfaceChain) -> str:
-    """Say in one line what the file was taken for."""
+    """Return the format in which a file was read, and why."""
     known = [s for s in chain.surface.provenance if s.name == "recognise"]
     if not known:
-        return "made in memory"
+        return "not read from a file"
     detail = dict(known[0].detail)
     return f"read as {detail.get('format', 'a table')} ({_why(known[0])})"
 
 
 def _why(recognised: Step) -> str:
     detail = dict(recognised.detail)
-    return str(detail.get("reason", "no reason kept"))
+    return str(detail.get("reason", "reason unknown"))

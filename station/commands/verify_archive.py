@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """``jointbench verify`` over many files: sessions, results, tables and ledgers.
 
-A results file is 'whole' if its content is what its own digest says, 'unsigned' if it
-was written before there were digests, 'rotten' if it is not. Digests find accidents.
-Whoever changes a number on purpose can write the digest anew, too.
+A results file is intact if its content matches its digest, corrupted if it does not. A
+file of an early version has no digest. Digests detect accidental changes; a deliberate
+change can replace the digest as well.
 """
 
 from collections import Counter
@@ -30,21 +30,23 @@ from jointbench.station.screen.terminal import console, table, working, write_js
 LEDGER, TABLE = ".ledger.jsonl", ".nc"
 DAMAGED = "damaged"
 MOST_SHOWN = 20
-ROTTEN = (
-    "its content is not what its digest says; make it anew by `jointbench process`, "
-    "`reprocess` or `modal`, or use another copy"
+CORRUPTED = (
+    "the content does not match its digest; compute it again with `jointbench "
+    "process`, `reprocess` or `modal`, or use another copy"
 )
+STATE_WORDS = {"whole": "intact", "unsigned": "no digest", "rotten": "corrupted"}
+"""The states of files as the terminal shows them; JSON has the stored words."""
 
 
 @dataclass(frozen=True, slots=True)
 class Checked:
-    """What verifying a file came to.
+    """The result of the check of one file.
 
     Attributes:
         path: of the file.
         kind: session, results, table or ledger.
-        state: whole, unsigned, rotten or damaged.
-        problems: what is wrong, a line each; empty where nothing is.
+        state: as in JSON, one of `whole`, `unsigned`, `rotten`, `damaged`.
+        problems: one line each; empty for a file without fault.
     """
 
     path: Path
@@ -54,18 +56,18 @@ class Checked:
 
 
 def verify_all(patterns: Sequence[str], *, json_target: str | None) -> bool:
-    """Verify what patterns name; a single session is shown in detail.
+    """Check all files of the patterns; a single session is shown in detail.
 
     Args:
-        patterns: files, folders (all below is meant) or quoted patterns.
+        patterns: files, folders (with all subfolders) or quoted patterns.
         json_target: where the JSON goes.
 
     Returns:
-        True where nothing is wrong; files without a digest are no fault.
+        True if no file has a fault; a missing digest is no fault.
 
     Raises:
-        UsageError: a pattern names nothing.
-        BadData: the only file named is a session that cannot be read at all.
+        UsageError: a pattern matches no file.
+        BadData: the only file is a session that cannot be read at all.
     """
     paths = archive_files(patterns, (TABLE, LEDGER))
     if len(paths) == 1 and _kind(paths[0]) == "session":
@@ -98,7 +100,7 @@ def verify_all(patterns: Sequence[str], *, json_target: str | None) -> bool:
 
 
 def check_file(path: Path) -> Checked:
-    """Read a file of an archive through; never raise for its sake."""
+    """Read a file of an archive completely; errors become problems."""
     kind = _kind(path)
     checks: dict[str, Callable[[Path], Checked]] = {
         "results": _results,
@@ -112,7 +114,7 @@ def check_file(path: Path) -> Checked:
 
 
 def _kind(path: Path) -> str:
-    """Tell what a file is by what it says; by its name where it says nothing."""
+    """Return the kind of a file from its content, else from its name."""
     if path.name.endswith(LEDGER):
         return "ledger"
     try:
@@ -133,7 +135,7 @@ def _session(path: Path) -> Checked:
 def _results(path: Path) -> Checked:
     seal = _seal(path)
     if seal is Seal.CORRUPTED:
-        return Checked(path, "results", seal, (ROTTEN,))
+        return Checked(path, "results", seal, (CORRUPTED,))
     read_result(path)
     result_tables(path)
     return Checked(path, "results", seal)
@@ -142,9 +144,11 @@ def _results(path: Path) -> Checked:
 def _table(path: Path) -> Checked:
     with open_guarded(path) as file, damage_named(path):
         if read_attribute(file, "schema") != TABLE_SCHEMA:
-            raise UsageError(f"{shown(path.name)} is no table of an archive of ours")
+            raise UsageError(
+                f"{shown(path.name)} is not a table of `jointbench archive`"
+            )
     seal = _seal(path)
-    problems = (ROTTEN.replace("process`, `reprocess` or `modal", "archive"),)
+    problems = (CORRUPTED.replace("process`, `reprocess` or `modal", "archive"),)
     return Checked(path, "table", seal, problems if seal is Seal.CORRUPTED else ())
 
 
@@ -155,7 +159,7 @@ def _seal(path: Path) -> Seal:
 
 def _ledger(path: Path) -> Checked:
     seal, count = ledger_seal(path)
-    words = f"{count} lines are not what their digests say; they are passed over"
+    words = f"{count} lines do not match their digests; they are ignored"
     return Checked(path, "ledger", seal, (words,) if count else ())
 
 
@@ -165,18 +169,19 @@ def _show(found: Sequence[Checked], json_target: str | None) -> None:
     kinds = list(dict.fromkeys(one.kind for one in found))
     counts = Counter((one.kind, str(one.state)) for one in found)
     rows = [(kind, *(str(counts[kind, state]) for state in states)) for kind in kinds]
-    screen.print(table("Verified", ("files", *states), rows))
+    heads = [STATE_WORDS.get(state, state) for state in states]
+    screen.print(table("Checked files", ("kind", *heads), rows))
     faults = [one for one in found if one.problems]
     for one in faults[:MOST_SHOWN]:
         for word in one.problems:
             name = visible(str(one.path))
             line = word if name in word else f"{name}: {word}"
-            screen.print(f"{one.state}: {line}", soft_wrap=True)
+            screen.print(
+                f"{STATE_WORDS.get(one.state, one.state)}: {line}", soft_wrap=True
+            )
     if len(faults) > MOST_SHOWN:
-        screen.print(f"and {len(faults) - MOST_SHOWN} more, see --json")
+        screen.print(f"and {len(faults) - MOST_SHOWN} more; use --json for all")
     if any(one.state == Seal.UNSIGNED for one in found):
         screen.print(
-            "unsigned: written before there were digests; nothing tells whether they "
-            "changed",
-            soft_wrap=True,
+            "no digest: the files are of an early version; changes cannot be detected",
         )

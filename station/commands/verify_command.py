@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench verify`` and ``jointbench recover``: is a session whole, and if not."""
+"""``jointbench verify`` and ``jointbench recover`` for one session."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -24,17 +24,17 @@ from jointbench.station.sources.record_live import HITS_LATER, with_hits
 
 
 def run_verify(file: Path, *, json_target: str | None) -> bool:
-    """Read every sample of a session, checksums included, and say what is wrong.
+    """Read every sample of a session, checksums included, and list the problems.
 
     Args:
         file: a session, finished or not.
         json_target: where the JSON goes.
 
     Returns:
-        True where nothing is.
+        True if there is no problem.
 
     Raises:
-        BadData: it cannot be read at all.
+        BadData: the file cannot be read at all.
     """
     check_outputs([file], [json_target])
     problems = problems_of(file)
@@ -48,9 +48,9 @@ def run_verify(file: Path, *, json_target: str | None) -> bool:
         ),
         ("hits", f"{sum(len(r.hits) for r in session.recordings)}"),
         ("surfaces", f"{len(session.surfaces)}"),
-        ("verdict", "whole" if not problems else "LOOK AT IT"),
+        ("verdict", "intact" if not problems else "DAMAGED"),
     ]
-    screen.print(table(f"{file}", ("session", "holds"), rows))
+    screen.print(table(f"{file}", ("session", "content"), rows))
     for problem in problems:
         screen.print(problem, soft_wrap=True)
     write_json(json_target, {"whole": not problems, "problems": problems})
@@ -60,35 +60,37 @@ def run_verify(file: Path, *, json_target: str | None) -> bool:
 def run_recover(
     file: Path, *, out: Path | None, overwrite: bool, json_target: str | None
 ) -> Path:
-    """Save what is left of a recording that did not come to its end.
+    """Recover a session from an interrupted recording.
 
     Args:
-        file: of the recording; it is left as it is.
-        out: where to; beside it as ``*.recovered.h5`` by default.
-        overwrite: replace a file that is there.
+        file: of the recording; it is not changed.
+        out: session file; ``*.recovered.h5`` next to the recording by default.
+        overwrite: replace an existing file.
         json_target: where the JSON goes.
 
     Raises:
-        UsageError: it is being recorded right now, or is a finished session.
-        BadData: nothing of it can be read.
+        UsageError: the recording is still running, or is a finished session.
+        BadData: no part of it can be read.
     """
     if is_held(file):
-        raise UsageError(f"'{file}' is being recorded right now; wait until it is done")
+        raise UsageError(
+            f"'{file}' is still being recorded; wait until the recording ends"
+        )
     if not is_live(file):
         raise UsageError(
-            f"'{file}' is a finished session, there is nothing to recover; "
-            "`jointbench verify` reads it through"
+            f"'{file}' is a finished session and needs no recovery; "
+            "check it with `jointbench verify`"
         )
     target = out or recovered_path(file)
     check_outputs([file, target], [json_target])
     if target.resolve() == file.resolve():
-        raise UsageError(f"'{target}' is an input; recover to another file")
+        raise UsageError(f"'{target}' is the input file; choose another --out")
     if target.exists() and overwrite:
         require_replaceable(target)
     done = _recover(file, target, overwrite=overwrite)
     console(json_target).print(
         f"{target}: {done.samples} samples per channel, {done.hits} hits, "
-        f"{done.damaged} damaged blocks left out",
+        f"{done.damaged} damaged blocks excluded",
         soft_wrap=True,
     )
     write_json(
@@ -105,7 +107,7 @@ def run_recover(
 
 
 def _recover(file: Path, target: Path, *, overwrite: bool) -> Finished:
-    """Finish a recording beside it; hits that were to be judged later are judged."""
+    """Write the recovered session; judge hits that the recording left unjudged."""
     done = finish_live(file, target, overwrite=overwrite)
     content = live_content(file)
     if content is None or not content.meta.items() >= HITS_LATER.items():

@@ -13,14 +13,14 @@ from jointbench.analysis.lumped.identified import identification_json
 from jointbench.simulators.rough_surfaces.surface_files import DATE
 from jointbench.station.commands.identify_links_command import show_joint
 from jointbench.station.commands.surface_command import show_surfaces
-from jointbench.station.demo.demo_bench import DemoVisit, visit_bench
+from jointbench.station.demo.demo_bench import DemoSession, record_demo_session
 from jointbench.station.demo.demo_gap import FILES as GAP_FILES
 from jointbench.station.demo.demo_gap import (
     DemoGap,
     gap_json,
     gap_sections,
+    session_for_gap,
     show_gap,
-    visit_for_gap,
 )
 from jointbench.station.demo.demo_truth import compare_with_truth
 from jointbench.station.files.output_paths import (
@@ -88,7 +88,7 @@ poisson = 0.25
 def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     """Measure, identify and report a joint on the simulated bench.
 
-    A second visit, to a bench with a hidden effect, asks what the model misses.
+    A second session, on a bench with a hidden effect, shows what the model lacks.
 
     Args:
         out: folder for session, results, model, report and summary.
@@ -103,17 +103,17 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     check_outputs([], [json_target])
     out.mkdir(parents=True, exist_ok=True)
     screen = console(json_target)
-    with working("measuring two faces and a dozen hits on the simulated bench"):
-        visit = visit_bench(out, seed=seed)
+    with working("measuring two surfaces and twelve hits on the simulated bench"):
+        recorded = record_demo_session(out, seed=seed)
     session_file = out / "session.h5"
-    write_session(visit.session, session_file, overwrite=True)
-    model_file = _write_model(out / "bench.toml", visit)
+    write_session(recorded.session, session_file, overwrite=True)
+    model_file = _write_model(out / "bench.toml", recorded)
     # From here on everything comes from the files, as it would for any user's own.
     bench = read_toml(model_file, BenchModel)
     analysis = analyse_session(read_session(session_file), bench)
-    with working("a second visit: looking for what the model misses"):
-        gap = visit_for_gap(out, seed=seed)
-    comparisons = (*compare_with_truth(visit.truth, analysis), *gap.comparisons)
+    with working("second session: diagnosing the gap between model and measurement"):
+        gap = session_for_gap(out, seed=seed)
+    comparisons = (*compare_with_truth(recorded.truth, analysis), *gap.comparisons)
     _show(analysis, bench, json_target)
     show_gap(gap, json_target)
     content = truth_table(comparisons)
@@ -141,13 +141,13 @@ def require_demo(out: Path) -> None:
             raise UsageError(f"'{path}' was made by no demo; name another folder")
 
 
-def _write_model(path: Path, visit: DemoVisit) -> Path:
+def _write_model(path: Path, recorded: DemoSession) -> Path:
     text = MODEL_FILE.format(
-        base=visit.masses["base"],
-        top=visit.masses["top"],
-        base_sd=visit.mass_sds["base"],
-        top_sd=visit.mass_sds["top"],
-        preload=visit.truth.bench.preload,
+        base=recorded.masses["base"],
+        top=recorded.masses["top"],
+        base_sd=recorded.mass_sds["base"],
+        top_sd=recorded.mass_sds["top"],
+        preload=recorded.truth.bench.preload,
     )
     write_text(path, text)
     return path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The demo's visit to the simulated bench: hits, two faces, a scale, and the truth."""
+"""The demo's session on the simulated bench: hits, two surfaces, masses, truth."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,9 +28,9 @@ HITS = 12
 _TORQUE = 20.0
 """Of each bolt [N m]."""
 _DIMENSION = 1.48
-"""Of a line on the faces [-]; the station has to find it."""
+"""Of a profile of the surfaces [-]; the station has to find it."""
 _ROUGHNESS = 4e-11
-"""Fractal roughness of a line on the faces [m]."""
+"""Fractal roughness of a profile of the surfaces [m]."""
 _MAP_ROWS, _MAP_COLUMNS, _MAP_SPACING = 192, 1024, 0.271217e-6
 _SCALE_ERROR = 1e-3
 """Relative standard deviation of the simulated scale [-]."""
@@ -42,8 +42,8 @@ class DemoTruth:
 
     Attributes:
         bench: bodies, links, modes and hits.
-        dimension: of a line on either face [-].
-        roughness: of a line on either face [m].
+        dimension: of a profile of either surface [-].
+        roughness: of a profile of either surface [m].
     """
 
     bench: BenchTruth
@@ -52,11 +52,11 @@ class DemoTruth:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DemoVisit:
-    """What the visit brings home; only the truth comes from behind the curtain.
+class DemoSession:
+    """Result of the session; only the truth comes from the simulation itself.
 
     Attributes:
-        session: hits and faces, as a real visit would record them.
+        session: hits and surfaces, as a real session would record them.
         masses: weighed mass of each body [kg], by name.
         mass_sds: standard deviation of the scale for each [kg].
         truth: for the comparison at the end, never for an estimate.
@@ -68,8 +68,8 @@ class DemoVisit:
     truth: DemoTruth
 
 
-def visit_bench(folder: Path, *, seed: int) -> DemoVisit:
-    """Record hits and two faces on the simulated bench.
+def record_demo_session(folder: Path, *, seed: int) -> DemoSession:
+    """Record hits and two surfaces on the simulated bench.
 
     Args:
         folder: where the profilometer leaves its CSV files.
@@ -90,7 +90,7 @@ def visit_bench(folder: Path, *, seed: int) -> DemoVisit:
         notes="Two bodies on a bolted joint, struck on the top.",
     )
     masses = _weigh(truth, seed)
-    return DemoVisit(
+    return DemoSession(
         session,
         masses,
         {name: _SCALE_ERROR * mass for name, mass in masses.items()},
@@ -111,7 +111,7 @@ def _record_hits(bench: TwoBodyBench) -> Recording:
 
 
 def _measure_face(folder: Path, face: str, seed: int) -> Surface:
-    """Measure a face, export it as the instrument does, and import that file."""
+    """Measure a surface, export it as the instrument does, and import that file."""
     number = 2 * seed + ("a", "b").index(face)
     truth = rough_map(
         _MAP_ROWS,

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The demo's second visit: levels, points and preloads, and a hidden effect.
+"""The demo's second session: levels, points, preloads, and a hidden effect.
 
-The records go the way of any bench's own: session file, model file, gap engine. What
-is hidden comes from the file beside them, after the verdict.
+The records take the usual path: session file, model file, gap engine. The truth is
+read from its own file after the verdict.
 """
 
 import json
@@ -23,7 +23,7 @@ from jointbench.station.report.gap_report import gap_report
 from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.truth_table import TruthComparison, compare_value
-from jointbench.station.sources.visit_file import write_visit
+from jointbench.station.sources.recorded_session import record_session_file
 
 _HIDDEN = "cubic_stiffness"
 _GRID = "small"
@@ -31,16 +31,16 @@ _GRID = "small"
 _PARAMETER_LIMIT = 0.03
 _SECTIONS_SHOWN = 3
 FILES = ("gap-session.h5", "gap-session.toml", "gap-session.truth.json")
-"""All that this step leaves in the demo's folder."""
+"""Files that this step writes into the demo's folder."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DemoGap:
-    """What the gap engine made of the second visit, beside the truth.
+    """Diagnosis of the second session, compared with the truth.
 
     Attributes:
         found: verdict and evidence.
-        truth: what was hidden, as its file has it.
+        truth: the hidden effect, as in its file.
         comparisons: parameters of the hidden effect, and whether it was named.
     """
 
@@ -49,15 +49,15 @@ class DemoGap:
     comparisons: tuple[TruthComparison, ...]
 
 
-def visit_for_gap(folder: Path, *, seed: int) -> DemoGap:
-    """Record the second visit, find what its model misses, and compare.
+def session_for_gap(folder: Path, *, seed: int) -> DemoGap:
+    """Record the second session, diagnose its gap, and compare with the truth.
 
     Args:
-        folder: where session, model, truth and page go.
+        folder: where session, model, truth and report go.
         seed: of the bench.
     """
     url = f"sim:two-body-campaign?seed={seed}&hide={_HIDDEN}&grid={_GRID}"
-    written = write_visit(url, folder / FILES[0], overwrite=True)
+    written = record_session_file(url, folder / FILES[0], overwrite=True)
     wanted = GapRequest(model=written.model)
     with side_by_side():
         done = examine([str(written.path)], wanted, progress=lambda line: None)
@@ -92,36 +92,38 @@ def _compare(found: Diagnosis, truth: Mapping[str, Any]) -> tuple[TruthCompariso
 
 
 def show_gap(gap: DemoGap, json_target: str | None) -> None:
-    """Print the verdict on the second visit and what was hidden in it."""
+    """Print the verdict on the second session and the hidden effect."""
     screen = console(json_target)
-    screen.print("\nSecond visit: what does the model miss?", style="bold")
+    screen.print("\nSecond session: gap between model and measurement", style="bold")
     show_diagnosis(gap.found, json_target)
     content = _hidden_table(gap)
     screen.print(table(content.caption, content.columns, content.rows))
 
 
 def _hidden_table(gap: DemoGap) -> DataTable:
-    """Return what was hidden beside what was named."""
+    """Return the hidden effects and the named ones."""
     named = ", ".join(f"{e.name} at {e.site}" for e in gap.found.effects) or "-"
     rows = tuple(
         (f"{name} at {gap.truth['sites'][name]}", gap.found.verdict.value, named)
         for name in gap.truth["effects"]
     )
-    return DataTable("Hidden and found", ("hidden", "verdict", "named"), rows)
+    return DataTable(
+        "Hidden effect and verdict", ("hidden effect", "verdict", "named"), rows
+    )
 
 
 def gap_sections(gap: DemoGap) -> tuple[Section, ...]:
-    """Return the step's sections for the demo's page."""
-    page = gap_report(gap.found, title="the second visit")
-    evidence = [section for section in page.sections if section.items][:_SECTIONS_SHOWN]
+    """Return the step's sections for the demo's report."""
+    report = gap_report(gap.found, title="the second session")
+    evidence = [one for one in report.sections if one.items][:_SECTIONS_SHOWN]
     return (
-        Section("gap", "What the model misses", (_hidden_table(gap),)),
+        Section("gap", "Gap between model and measurement", (_hidden_table(gap),)),
         *(replace(section, anchor=f"gap-{section.anchor}") for section in evidence),
     )
 
 
 def gap_json(gap: DemoGap) -> dict[str, object]:
-    """Return verdict and truth as the summary has them."""
+    """Return verdict and truth as in the summary."""
     return {
         **diagnosis_json(gap.found),
         "truth": {

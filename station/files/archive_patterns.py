@@ -73,13 +73,13 @@ def _files(patterns: Sequence[str], *, results: bool) -> tuple[Path, ...]:
 
 
 def _is_meant(path: Path, pattern: str, results: bool) -> bool:
-    """Tell whether a file is of the kind; results given by name may have any name."""
+    """Return whether a file is of the kind; results given by name may have any name."""
     given = results and path == Path(pattern)
     return given or is_results_name(path) is results
 
 
 def is_results_name(path: Path) -> bool:
-    """Tell a results file by its name."""
+    """Return whether a name is that of a results file."""
     return path.name.endswith(RESULTS_SUFFIX)
 
 
@@ -100,7 +100,7 @@ def _named(pattern: str, endings: Sequence[str] = ()) -> Iterator[Path]:
 def _matching(pattern: str) -> Iterator[Path]:
     """Yield what a pattern matches; ``**`` meets each folder once, loop or not.
 
-    `glob` follows links round and round: two loops in an archive keep it busy for ever.
+    `glob` follows links in circles: two loops in an archive never end.
     """
     parts = Path(pattern).parts
     if "**" not in parts:
@@ -127,7 +127,7 @@ def _folders(base: str) -> Iterator[str]:
 
 
 def _tell(error: OSError) -> None:
-    """Say which folder is passed over: what nobody names is missed by nobody."""
+    """Warn of a skipped folder, unless it is hidden by convention."""
     name, reason = named(str(error.filename)), error.strerror
     logger.warning("jointbench: folder %s is passed over: %s", name, reason)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whatever files a command is given: sessions, hit tables and surfaces, told apart."""
+"""Input files of a command: sessions, hit tables and surfaces, by content."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,17 +10,8 @@ from jointbench.acquisition.file_access.text_files import file_digest
 from jointbench.acquisition.formats.columns import SURFACE_EXAMPLES, parse_columns
 from jointbench.acquisition.formats.heights.read_surfaces import read_surface
 from jointbench.acquisition.formats.samples.hit_tables import read_recording
-from jointbench.acquisition.formats.samples.mat_recording import read_mat_recording
-from jointbench.acquisition.formats.samples.rattlesnake import (
-    SUFFIXES as RATTLESNAKE_SUFFIXES,
-)
-from jointbench.acquisition.formats.samples.rattlesnake import read_rattlesnake
-from jointbench.acquisition.formats.samples.tdms import read_tdms
-from jointbench.acquisition.formats.samples.universal import (
-    SUFFIXES as UNIVERSAL_SUFFIXES,
-)
-from jointbench.acquisition.formats.samples.universal import read_universal
-from jointbench.acquisition.formats.samples.wave import read_wave
+from jointbench.acquisition.formats.samples.read_samples import read_samples
+from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.store import read_session
@@ -46,37 +37,6 @@ def is_session_name(path: Path) -> bool:
     return path.suffix.lower() in SESSION_SUFFIXES
 
 
-def read_samples(
-    path: Path, *, columns: str | None, point: str, full_scale: float | None = None
-) -> tuple[Recording, ...]:
-    """Read a file of a format that holds samples by its nature, told by its ending.
-
-    Args:
-        path: of the file.
-        columns: what its channels hold, where the file does not say.
-        point: where the hammer struck.
-        full_scale: what the largest number of a WAV file stands for.
-
-    Returns:
-        The recordings of the file; none where the ending is none of these.
-
-    Raises:
-        BadData: the file is not what it should be, or its units are missing.
-    """
-    suffix = path.suffix.lower()
-    if suffix in UNIVERSAL_SUFFIXES:
-        return (read_universal(path, columns=columns, point=point),)
-    if suffix == ".tdms":
-        return (read_tdms(path, columns=columns, point=point),)
-    if suffix == ".mat":
-        return (read_mat_recording(path, columns=columns, point=point),)
-    if suffix == ".wav":
-        return (read_wave(path, columns=columns, point=point, full_scale=full_scale),)
-    if suffix in RATTLESNAKE_SUFFIXES:
-        return read_rattlesnake(path, columns=columns, point=point)
-    return ()
-
-
 def read_foreign(
     path: Path, *, columns: str | None, point: str, full_scale: float | None = None
 ) -> tuple[Recording | Surface, ...]:
@@ -94,10 +54,10 @@ def read_foreign(
         holds several.
 
     Raises:
-        BadData: the file is neither, or its units are missing; the message says what
+        BadData: the file is neither, or its units are missing; the message names what
             to type.
     """
-    samples = read_samples(path, columns=columns, point=point, full_scale=full_scale)
+    samples = read_samples(path, SampleOptions(columns, point, full_scale))
     if samples:
         return samples
     if columns is not None and "time" in {c.role for c in parse_columns(columns)}:
@@ -130,7 +90,7 @@ def read_recordings(
         if is_session_name(path):
             found += read_session(path).recordings
         else:
-            samples = read_samples(path, columns=columns, point=point)
+            samples = read_samples(path, SampleOptions(columns, point))
             found += samples or (read_recording(path, columns=columns, point=point),)
     if not found:
         names = ", ".join(path.name for path in files)

@@ -154,7 +154,7 @@ def write_text(path: Path, text: str) -> None:
 
 
 def _of_its_kind(path: Path) -> bool:
-    """Tell whether an existing file is a result that may be made again."""
+    """Return whether an existing file is a result that may be replaced."""
     with path.open("rb") as file:
         head = file.read(_HEAD_BYTES)
     suffix = path.suffix.lower()

@@ -19,7 +19,7 @@ def session_facts(session: Session, path: Path) -> dict[str, str | float | bool 
 
     Returns:
         ``session`` (uuid), ``recorded``, ``operator``, ``specimen``, ``source``,
-        ``simulated``, ``torque`` [N m] and ``preload`` [N] (None where nobody said).
+        ``simulated``, ``torque`` [N m] and ``preload`` [N] (None where not given).
     """
     joint = session.joint
     return {

@@ -84,11 +84,11 @@ def session_place(out: Path, *, overwrite: bool) -> Iterator[Place]:
         overwrite: whether an earlier session of that name may be replaced.
 
     Yields:
-        The place. An earlier session's lock is held meanwhile: nobody else replaces it.
+        The place. An earlier session's lock is held meanwhile, so it stays.
 
     Raises:
         UsageError: there can be no such file, it is there and `overwrite` is off, it
-            is being recorded, or it is no session of ours.
+            is being recorded, or it is no session of the station.
     """
     if not (out.exists() or out.is_symlink()):
         check_outputs([], [out])

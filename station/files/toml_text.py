@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""TOML from strangers: looked over before it is parsed.
+"""TOML of unknown origin: checked before it is parsed.
 
 ``tomllib`` takes time and memory with the square of the parts of a dotted key: 100 kB
-of ``a.a.a. ... = 1`` took 100 s and 4 GB. No file of ours nests so deep, so depth is
-bounded before the parser begins.
+of ``a.a.a. ... = 1`` took 100 s and 4 GB. No file of the station nests so deep,
+so depth is bounded before the parser begins.
 """
 
 import re
@@ -37,7 +37,7 @@ def load_toml(path: Path) -> dict[str, Any]:
         path: of the file.
 
     Raises:
-        BadData: it is too large, or nests deeper than any file of ours.
+        BadData: it is too large, or nests deeper than any file of the station.
         OSError: it cannot be read.
         ValueError: it is not TOML, or not UTF-8.
         RecursionError: it is not TOML, in a way that the parser does not foresee.

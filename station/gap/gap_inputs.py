@@ -3,7 +3,7 @@
 
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData, NoHitFound, UsageError
@@ -12,7 +12,7 @@ from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
-from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.diagnosis.single_record import (
     StretchScore,
@@ -31,9 +31,9 @@ from jointbench.station.pipeline.joint_stages import gap_of
 from jointbench.station.pipeline.judge_again import StoredHits, with_hits
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.schemas.gap_model import gap_sheet
+from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.sources.open_source import is_url
-from jointbench.station.sources.visit_file import write_visit
+from jointbench.station.sources.recorded_session import record_session_file
 
 ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
 """Levels span 30x on purpose: none is weak but what lies far below the softest of them,
@@ -55,7 +55,7 @@ class GapRequest:
     model: Path | None = None
     without: frozenset[str] = frozenset()
     preload: float | None = None
-    entries: tuple[LumpedEffect, ...] = CATALOGUE
+    entries: tuple[LumpedEffect, ...] = field(default_factory=installed_catalogue)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ def examine(
         sources: a campaign file; sessions; a MAT file; a model file that names one of
             these; or the URL of a bench.
         wanted: model and options.
-        progress: told what is being done, one line at a time.
+        progress: receives one line per step.
 
     Raises:
         UsageError: a model is missing, or is given where the source brings its own.
@@ -95,7 +95,7 @@ def examine(
     if len(sources) == 1 and is_url(sources[0]):
         return _examine_url(sources[0], wanted, progress)
     if any(is_url(source) for source in sources):
-        raise UsageError("a URL is a visit of its own; give it alone")
+        raise UsageError("a URL is a measurement of its own; give no files with it")
     paths = [Path(source) for source in sources]
     if paths[0].suffix.lower() == ".toml":
         return _examine_named(paths, wanted, progress)
@@ -118,11 +118,11 @@ def _schema(path: Path) -> str:
 
 
 def _examine_url(url: str, wanted: GapRequest, progress: Progress) -> Examined:
-    """Record a visit into a session file, and examine that as any other session."""
+    """Record a session file from a source, and examine it like any other session."""
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "session.h5"
-        progress("recording the visit")
-        written = write_visit(url, session)
+        progress("recording the session")
+        written = record_session_file(url, session)
         model = wanted.model or written.model
         done = _examine_sessions([session], replace(wanted, model=model), progress)
     return replace(done, title=url)
@@ -179,7 +179,7 @@ def _examine_record(
         record.record,
         record.training,
         record.scored,
-        record.sheet,
+        record.nominal,
         without=wanted.without,
         entries=wanted.entries,
         progress=progress,
@@ -196,7 +196,7 @@ def _examine_record(
 def _examine_sessions(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
-    sheet = gap_sheet(_model(paths[0], wanted))
+    nominal = nominal_parameters(_model(paths[0], wanted))
     sessions = [read_session(path) for path in paths]
     sessions.sort(key=lambda session: session.created)
     remarks: list[str] = []
@@ -211,7 +211,7 @@ def _examine_sessions(
     found, left_out = gap_of(
         title,
         recordings,
-        sheet,
+        nominal,
         without=wanted.without,
         entries=wanted.entries,
         progress=progress,

@@ -2,25 +2,20 @@
 """What ``jointbench gap`` shows on a terminal, in 80 columns or more."""
 
 import textwrap
-from collections.abc import Sequence, Set
-from typing import Literal
 
-from rich.console import Console, Group, RenderableType
-from rich.table import Table
-from rich.text import Text
+from rich.console import Console
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
 from jointbench.station.report.gap_numbers import percent, short, sure
 from jointbench.station.report.gap_sentences import (
-    SHEET,
+    PRIORS,
     SMALL_GAP,
     headline,
     next_step,
     place,
     why_lost,
 )
-from jointbench.station.screen.escaping_console import seen
-from jointbench.station.screen.terminal import console
+from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.value_text import with_sd
 
 _MOST_CANDIDATES = 6
@@ -28,14 +23,13 @@ _MOST_SLICES = 3
 _SMALL_SHARE = 0.005
 _WIDEST = 110
 _LABEL = 9
-"""Width of the words that lead the lines."""
-_LONGEST_NAME = 34
+"""Width of the labels at the beginning of lines."""
 _VIEW_HEADS = ("view", "largest shares")
-_TRIED_HEADS = ("explanation", "behind", "chi2/dof", "pull", "why")
+_TRIED_HEADS = ("explanation", "delta score", "chi2/dof", "prior dev. [sd]", "reason")
 
 
 def show_diagnosis(found: Diagnosis, json_target: str | None) -> None:
-    """Print verdict, effects, where the gap sat, rivals, and what to do next.
+    """Print verdict, effects, location of the gap, rivals and the next step.
 
     Args:
         found: the diagnosis.
@@ -50,9 +44,9 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     _say(screen, "", f"{headline(found)}.")
     _say(screen, "", found.reason)
     if found.effects:
-        columns = ("effect", "value ± sd", "unit", "sure")
+        columns = ("effect", "value ± sd", "unit", "confidence")
         screen.print(
-            _table("What the model lacks", columns, _effects(found), words={0, 2})
+            table("Missing from the model", columns, _effects(found), words={0, 2})
         )
     screen.print()
     _say(screen, "gap", _gap_words(found))
@@ -63,17 +57,17 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     _say(screen, "limits", _limit_words(found))
     where = _where(found)
     if where:
-        screen.print(_table("Where the gap sits", _VIEW_HEADS, where, words={0, 1}))
+        screen.print(table("Location of the gap", _VIEW_HEADS, where, words={0, 1}))
     if len(found.candidates) > 1:
-        tried = _candidates(screen, found)
-        screen.print(_table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
+        tried = _candidates(found)
+        screen.print(table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
     if next_step(found):
         screen.print()
         _say(screen, "next", next_step(found))
 
 
 def _say(screen: Console, label: str, *texts: str) -> None:
-    """Print texts as paragraphs that hang behind a label."""
+    """Print texts as paragraphs with a hanging label."""
     width = min(screen.width, _WIDEST)
     for number, text in enumerate(texts):
         lead = f"{label}:" if label and number == 0 else ""
@@ -85,23 +79,6 @@ def _say(screen: Console, label: str, *texts: str) -> None:
             text, width, initial_indent=start, subsequent_indent=hang
         ):
             screen.print(line, markup=False, soft_wrap=True)
-
-
-def _table(
-    title: str,
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str]],
-    *,
-    words: Set[int],
-) -> RenderableType:
-    """Return a titled table; columns of words read from the left."""
-    result = Table(box=None, pad_edge=False)
-    for number, column in enumerate(columns):
-        side: Literal["left", "right"] = "left" if number in words else "right"
-        result.add_column(seen(column), justify=side)
-    for row in rows:
-        result.add_row(*(seen(cell) for cell in row))
-    return Group(Text(), seen(title, style="bold"), result)
 
 
 def _effects(found: Diagnosis) -> list[tuple[str, str, str, str]]:
@@ -118,44 +95,44 @@ def _effects(found: Diagnosis) -> list[tuple[str, str, str, str]]:
 
 def _gap_words(found: Diagnosis) -> str:
     before, after = found.gap_before, found.gap_after
-    pull = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+    deviation = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
     if found.verdict not in (Finding.NAMED, Finding.AMBIGUOUS):
         return (
-            f"{short(before.value)} on held-out records; sheet pulled by "
-            f"{short(pull)} sd"
+            f"{short(before.value)} on held-out records; largest prior deviation "
+            f"{short(deviation)} sd"
         )
     shrink = ""
     if before.value > SMALL_GAP:
-        shrink = f" (shrinks by {percent(found.shrink)})"
+        shrink = f" (reduced by {percent(found.shrink)})"
     return (
         f"{short(before.value)} before, {short(after.value)} after, on held-out "
-        f"records{shrink}; sheet pulled by {short(pull)} sd before, "
+        f"records{shrink}; largest prior deviation {short(deviation)} sd before, "
         f"{short(after.pull)} sd after"
     )
 
 
 def _limit_words(found: Diagnosis) -> str:
     largest, limit = found.null_statistic
-    words = f"null test {short(largest)} of {short(limit)}"
+    words = f"null test {short(largest)} (limit {short(limit)})"
     if found.exhibit is not None:
         limits = found.exhibit.limits
         words += (
-            f"; at the end chi2/dof {limits.chi2_per_dof:.4g} of "
-            f"{limits.chi2_allowed:.4g}"
+            f"; final chi2/dof {limits.chi2_per_dof:.4g} (limit "
+            f"{limits.chi2_allowed:.4g})"
         )
         if limits.remaining is not None:
             words += (
-                f", directed test left {short(limits.remaining)} of "
-                f"{short(limits.remaining_allowed)}"
+                f", largest remaining directed test {short(limits.remaining)} (limit "
+                f"{short(limits.remaining_allowed)})"
             )
     scatter = found.noise.get("scatter_gain", 0.0)
-    return f"{words}; hits repeat to {100 * scatter:.2g} %"
+    return f"{words}; hits repeat within {100 * scatter:.2g} %"
 
 
 def _where(found: Diagnosis) -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
-    sheet = found.exhibit is not None and found.exhibit.view == SHEET
-    if found.verdict is Finding.NONE or sheet:
+    priors = found.exhibit is not None and found.exhibit.view == PRIORS
+    if found.verdict is Finding.NONE or priors:
         return rows
     for view in found.gap_before.views:
         if view.name == "order" or len(view.share) < 2:
@@ -171,14 +148,10 @@ def _where(found: Diagnosis) -> list[tuple[str, str]]:
     return rows
 
 
-def _candidates(
-    screen: Console, found: Diagnosis
-) -> list[tuple[str, str, str, str, str]]:
-    room = min(screen.width, _WIDEST) - 3 * 10
-    widest = min(max(room // 2, 22), _LONGEST_NAME)
+def _candidates(found: Diagnosis) -> list[tuple[str, str, str, str, str]]:
     return [
         (
-            _short(" + ".join(one.effects), widest),
+            _short(" + ".join(one.effects)),
             short(one.behind),
             f"{one.chi2_per_dof:.4g}",
             short(one.pull),
@@ -188,6 +161,5 @@ def _candidates(
     ]
 
 
-def _short(name: str, widest: int) -> str:
-    name = "base alone" if name == "none" else name.replace("link:joint", "joint")
-    return name if len(name) <= widest else f"{name[: widest - 3]}..."
+def _short(name: str) -> str:
+    return "base model" if name == "none" else name.replace("link:joint", "joint")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How well parts of a record are foretold that no fit has seen: on screen, as page."""
+"""Prediction error on parts of a record outside the fit, on screen and in reports."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from jointbench.station.screen.page_parts import DataTable, Section
 from jointbench.station.screen.value_text import engineering
 
 UNPREFIXED = frozenset({"V", "m", "m/s", "m/s^2", "N"})
-"""Units that take an SI prefix; all others are written as they stand."""
+"""Units that take an SI prefix; all others are written unchanged."""
 
 
 def score_table(scores: Sequence[StretchScore], unit: str) -> DataTable:
@@ -24,15 +24,15 @@ def score_table(scores: Sequence[StretchScore], unit: str) -> DataTable:
         for score in scores
     )
     return DataTable(
-        "Error on parts of the record that no fit has seen (rms, share of the output)",
-        ("part", "output", "before", "after", "shrinks by"),
+        "Prediction error on parts of the record outside the fit (rms, % of output)",
+        ("part", "output", "before", "after", "reduced by"),
         rows,
     )
 
 
 def score_section(scores: Sequence[StretchScore], unit: str) -> Section:
     """Return the scores as a section of a report."""
-    return Section("scores", "On parts no fit has seen", (score_table(scores, unit),))
+    return Section("scores", "Prediction outside the fit", (score_table(scores, unit),))
 
 
 def scores_json(scores: Sequence[StretchScore], unit: str) -> list[dict[str, object]]:

@@ -16,7 +16,7 @@ from jointbench.analysis.gap.diagnosis.single_record import (
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.analysis.gap.model.nominal import Sheet
 from jointbench.station.schemas.bench_model import BenchModel
-from jointbench.station.schemas.gap_model import gap_sheet
+from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.schemas.record_model import RecordTable, StretchTable, stands_in
 from jointbench.station.schemas.record_units import StandIns, in_stand_ins
 
@@ -26,13 +26,13 @@ LINEAR_REPEATABILITY = 3e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordToExamine:
-    """A record with its sheet and its parts.
+    """A record with its model and its parts.
 
     Attributes:
         record: input and output, in SI or in the units that stand in for it.
         training: what the fits see.
         scored: what they do not.
-        sheet: the model with its priors.
+        nominal: the model with its priors.
         unit: of the output, as the model file writes it.
         factor: from that unit to the unit of `record`.
         remarks: what was assumed.
@@ -42,7 +42,7 @@ class RecordToExamine:
     record: SingleRecord
     training: Stretch
     scored: tuple[Stretch, ...]
-    sheet: Sheet
+    nominal: Sheet
     unit: str
     factor: float
     remarks: tuple[str, ...]
@@ -80,18 +80,18 @@ def read_record(path: Path, bench: BenchModel) -> RecordToExamine:
     table = bench.record
     if table is None:
         raise BadData(
-            f"the model does not say what is in {path.name}; add a [record] table with "
+            f"the model does not describe {path.name}; add a [record] table with "
             "input, output, their units, sample_rate and training"
         )
-    sheet = gap_sheet(bench)
-    if len(sheet.model.channels) != 1:
+    nominal = nominal_parameters(bench)
+    if len(nominal.model.channels) != 1:
         raise BadData(
-            f"the model has {len(sheet.model.channels)} channels, a record of one "
+            f"the model has {len(nominal.model.channels)} channels, a record of one "
             "output wants one; leave the others out"
         )
     remarks: tuple[str, ...] = ()
-    if sheet.repeatability is None:
-        sheet = replace(sheet, repeatability=LINEAR_REPEATABILITY)
+    if nominal.repeatability is None:
+        nominal = replace(nominal, repeatability=LINEAR_REPEATABILITY)
         remarks = (
             f"no repeatability is stated, {100 * LINEAR_REPEATABILITY:g} % of the peak "
             "is taken; state it in the [gap] table",
@@ -108,17 +108,17 @@ def read_record(path: Path, bench: BenchModel) -> RecordToExamine:
         source * _centred(force, table),
         sink * _centred(response, table),
         table.sample_rate,
-        _driven(table, bench, sheet),
+        _driven(table, bench, nominal),
     )
     return RecordToExamine(
         record,
         _stretch("training", table.training, table),
         tuple(_stretch(part.name, part, table) for part in table.scored),
-        sheet,
+        nominal,
         table.output_unit,
         sink,
         remarks,
-        _stand_ins(table, int(sheet.model.output)),
+        _stand_ins(table, int(nominal.model.output)),
     )
 
 
@@ -142,9 +142,9 @@ def _centred(values: FloatArray, table: RecordTable) -> FloatArray:
     return values - values.mean() if table.remove_mean else values
 
 
-def _driven(table: RecordTable, bench: BenchModel, sheet: Sheet) -> int:
+def _driven(table: RecordTable, bench: BenchModel, nominal: Sheet) -> int:
     if table.driven is None:
-        return sheet.model.index(sheet.model.channels[0].body)
+        return nominal.model.index(nominal.model.channels[0].body)
     names = list(bench.bodies)
     if table.driven not in names:
         raise BadData(

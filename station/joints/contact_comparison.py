@@ -33,7 +33,7 @@ def known_preloads(
     """Return the preload of every state [N]; what the table says comes first.
 
     Raises:
-        BadData: nobody says it of a state.
+        BadData: it is not known of a state.
     """
     found = {}
     for label, own in preloads.items():
@@ -95,11 +95,11 @@ def _values(
 def against_theory(
     states: Sequence[IdentifiedState], surface: ContactSurface, table: TheoryTable
 ) -> tuple[TheoryRow, ...]:
-    """Predict every state by every model, and lay it beside what was identified.
+    """Predict every state by every model, and compare with the identification.
 
     Args:
         states: identified.
-        surface: of both faces as one.
+        surface: equivalent surface of both.
         table: models, material, bolts.
 
     Returns:

@@ -16,7 +16,7 @@ from jointbench.station.pipeline.contact_prediction import surface_of
 from jointbench.station.pipeline.contact_request import parse_hardness, parse_models
 
 LADDER = ("ke_2d", "ke_3d", "ke_3d_modified")
-"""The three models that Fig. 9 of the 2025 paper lays beside the test."""
+"""The three models that Fig. 9 of the 2025 paper compares with the test."""
 
 _KINDS = {
     "modulus": "pressure",
@@ -28,7 +28,7 @@ _KINDS = {
 class TheoryTable(BaseModel):
     """What the contact law needs of one joint beside what was measured.
 
-    Modulus is the composite one [Pa]. The surface comes from files of one face or two,
+    Modulus is the composite one [Pa]. The surface comes from one or two files,
     from D and G, or from surfaces in the sessions. Preloads come with the sessions;
     where they do not, `preloads` gives them by state. Bolts turn them into torques.
     """
@@ -136,20 +136,20 @@ def joint_of(table: TheoryTable, joints: Sequence[str]) -> str:
 
 
 def theory_surface(
-    table: TheoryTable, folder: Path, faces: list[Path], sessions: list[Path]
+    table: TheoryTable, folder: Path, files: list[Path], sessions: list[Path]
 ) -> ContactSurface:
-    """Return the surface that stands for both faces of the joint.
+    """Return the equivalent surface of the joint.
 
     Args:
         table: of the model file.
         folder: of the model file; its surface files are relative to it.
-        faces: surface files of the command line, which come before the table's.
+        files: surface files of the command line, which precede those of the table.
         sessions: in which surfaces are looked for when nothing else is given.
 
     Raises:
         BadData: no surface is given anywhere, or it has no scaling range.
     """
-    if not faces and (table.dimension is not None or table.roughness is not None):
+    if not files and (table.dimension is not None or table.roughness is not None):
         return surface_of(
             table.dimension,
             table.roughness,
@@ -158,10 +158,10 @@ def theory_surface(
             dimension_sd=table.dimension_sd,
             roughness_sd=table.roughness_sd,
         )
-    files = faces or [folder / one for one in table.surfaces] or sessions
+    files = files or [folder / one for one in table.surfaces] or sessions
     if not files:
         raise BadData(
-            "[contact] has no surface; give --surface FILE for one face (both alike) "
+            "[contact] has no surface; give --surface FILE once (both alike) "
             "or twice for two, or dimension and roughness in the table"
         )
     return surface_of(None, None, files, table.columns)

@@ -81,7 +81,7 @@ class JointTable(StrictTable):
 
 
 class SupportTable(StrictTable):
-    """A face held by the ground; stiffness: normal and two tangential totals."""
+    """A surface held by the ground; stiffness: normal and two tangential totals."""
 
     body: str
     face: str

@@ -30,7 +30,7 @@ class StateEstimate:
     high: float | None
 
     def overlaps(self, other: "StateEstimate") -> bool | None:
-        """Tell whether two intervals share a value; None where one is not known."""
+        """Return whether two intervals overlap; None where one is not known."""
         ends = (self.low, self.high, other.low, other.high)
         if self.low is None or self.high is None or None in ends:
             return None
@@ -69,7 +69,7 @@ class TheoryRow:
         quantity: what is compared.
         identified: from the measurement.
         identifiable: whether the measurement determines it.
-        predicted: by model name; None where the model says nothing.
+        predicted: by model name; None where the model does not apply.
     """
 
     state: str

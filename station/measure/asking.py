@@ -8,7 +8,7 @@ from jointbench.station.measure.bench_parts import BenchParts
 from jointbench.station.measure.route import Route
 from jointbench.station.measure.trigger import TriggerWatch
 
-ASK_AGAIN = 4.0  # [s] beyond one block without a hit, the hand is asked again
+ASK_AGAIN = 4.0  # [s] beyond one block without a hit, the operator is asked again
 
 
 @dataclass(slots=True)
@@ -16,7 +16,7 @@ class Asker:
     """Asks for one hit after another.
 
     Attributes:
-        bench: whose hand strikes, and whose watcher reads what is wanted.
+        bench: whose operator strikes, and whose watcher shows the request.
         route: knows where to strike.
         trigger: knows how long a hit takes.
     """
@@ -32,13 +32,13 @@ class Asker:
         self._silent = self._asked = 0
         condition, done = self.route.condition, self.route.done
         self.bench.watcher.ask(condition, done, self.route.planned)
-        self.bench.hand.ask(condition)
+        self.bench.operator.ask(condition)
 
     def wait(self, count: int) -> None:
         """Take note of samples without a hit; ask again when they are many.
 
         Raises:
-            InstrumentError: nobody has hit for longer than the plan waits.
+            InstrumentError: no hit for longer than the plan waits.
         """
         rate, wait = self.bench.stream.sample_rate, self.bench.plan.hits.wait
         self._silent += count
@@ -49,4 +49,4 @@ class Asker:
             )
         if self._silent - self._asked > ASK_AGAIN * rate + self.trigger.after:
             self._asked = self._silent
-            self.bench.hand.ask(self.route.condition)
+            self.bench.operator.ask(self.route.condition)

@@ -38,7 +38,7 @@ from jointbench.station.measure.plan import MeasurePlan, conditions, read_plan
 from jointbench.station.measure.session_engine import MeasureSession
 from jointbench.station.measure.session_record import Record
 from jointbench.station.measure.teds_checks import NO_TRIGGER, by_device, teds_warnings
-from jointbench.station.screen.interrupt import patient_interrupt, restless
+from jointbench.station.screen.interrupt import interruptible_wait, patient_interrupt
 from jointbench.station.screen.terminal import lasting_console, table, write_json
 from jointbench.station.sources.serial_port import line_name
 
@@ -101,7 +101,7 @@ def run_measure(
     check_outputs([plan_file, out], [json_target])
     screen = lasting_console(json_target)
     with session_place(out, overwrite=overwrite) as place:
-        with _told_where(place, screen), open_chassis(url) as opened:
+        with _naming_file(place, screen), open_chassis(url) as opened:
             with watching(screen) as watcher:
                 measured = measure(plan, opened, place.own, watcher)
         measured = replace(measured, path=place.settle(whole=measured.whole))
@@ -113,8 +113,8 @@ def run_measure(
 
 
 @contextmanager
-def _told_where(place: Place, screen: Console) -> Iterator[None]:
-    """Where something goes wrong, say which file holds what was recorded."""
+def _naming_file(place: Place, screen: Console) -> Iterator[None]:
+    """On an error, name the file that holds what was recorded."""
     try:
         yield
     except BaseException:
@@ -160,7 +160,7 @@ def _stream_settings(plan: MeasurePlan, record: Record) -> StreamSettings:
         block=round(acquisition.block * acquisition.sample_rate),
         buffer=acquisition.buffer,
         patience=acquisition.patience,
-        sleep=restless(record),
+        sleep=interruptible_wait(record),
     )
 
 
@@ -201,7 +201,7 @@ def _record(
                 stream=stream,
                 live=live,
                 channels=channels,
-                hand=opened.hand,
+                operator=opened.operator,
                 watcher=watcher,
                 bolts=bolts,
                 hardware_trigger=by_device(plan, opened.chassis),

@@ -11,8 +11,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from jointbench.acquisition.basics.errors import FormatError, InstrumentError
+from jointbench.acquisition.basics.registry import Entry
+from jointbench.acquisition.serial_lines.instruments import read_torque, torque_tester
 from jointbench.acquisition.serial_lines.line import SerialLine
-from jointbench.acquisition.serial_lines.mark10 import Reading, read_gauge
+from jointbench.acquisition.serial_lines.serial_instrument import (
+    Reading,
+    SerialInstrument,
+)
 from jointbench.acquisition.session_file.live_write import LiveSession
 from jointbench.station.measure.observer import Command, Watcher
 from jointbench.station.measure.session_record import Record
@@ -33,7 +38,7 @@ class Surroundings(Protocol):
 
     @property
     def watcher(self) -> Watcher:
-        """Who is told."""
+        """Receives the messages."""
         ...
 
     @property
@@ -94,7 +99,7 @@ class BoltWatch:
 
         Args:
             target: of every bolt [N m].
-            bench: its watcher is told what to do, and may say: accept takes the
+            bench: its watcher shows the request, and may answer: accept takes the
                 reading as it is, undo goes back to the bolt before, quit ends the
                 session; its file takes every reading that counts.
             record: says when the session was interrupted.
@@ -103,10 +108,10 @@ class BoltWatch:
             Torque of each bolt [N m], None where the operator quits.
 
         Raises:
-            InstrumentError: nobody tightens a bolt, or the tester does not answer, for
+            InstrumentError: no bolt is tightened, or the tester does not answer, for
                 longer than `wait`.
         """
-        tester = Tester(self)
+        tester = Tester(self, torque_tester(self.table.instrument))
         try:
             return self._all(target, tester, bench, record)
         finally:
@@ -178,26 +183,27 @@ class Tester:
 
     Attributes:
         watch: that knows line and rate.
+        instrument: driver of the tester.
         trouble: why it could not be read the last time, empty if it could.
     """
 
     watch: BoltWatch
+    instrument: Entry[SerialInstrument]
     trouble: str = ""
     _line: SerialLine | None = None
 
     def read(self, watcher: Watcher, most: float) -> Reading | None:
-        """Return what it shows, None where it cannot be read, which is said once.
+        """Return the reading, None where it cannot be read, which is reported once.
 
         Args:
-            watcher: is told.
+            watcher: receives the messages.
             most: beyond which no reading is believed [N m].
         """
         try:
             if self._line is None:
-                self._line = SerialLine(
-                    self.watch.line, baud=self.watch.table.baud, timeout=_SILENCE
-                )
-            reading = _torque(self._line, most)
+                baud = self.watch.table.baud or self.instrument.value.baud
+                self._line = SerialLine(self.watch.line, baud=baud, timeout=_SILENCE)
+            reading = _believable(read_torque(self.instrument, self._line), most)
         except (InstrumentError, FormatError) as error:
             if str(error) != self.trouble:
                 watcher.say(f"torque tester: {error}; waiting for it")
@@ -216,8 +222,12 @@ class Tester:
             self._line = None
 
 
-def _torque(line: SerialLine, most: float) -> Reading:
-    reading = read_gauge(line)
+def _believable(reading: Reading, most: float) -> Reading:
+    """Return a reading that is a torque of at most `most` [N m].
+
+    Raises:
+        FormatError: it is a force, or beyond any torque of the plan.
+    """
     if reading.kind != "torque":
         raise FormatError(
             f"the gauge answers {reading.raw!r}, a {reading.kind}; a torque is "

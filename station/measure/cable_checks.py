@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether all sensors are still plugged in, where the device can tell."""
+"""Check that all sensors are still connected, where the device supports it."""
 
 from dataclasses import dataclass, field
 
@@ -12,12 +12,12 @@ LOOK_AT_CABLES = 1.0  # [s] of signal between looks at the sensor loops
 
 @dataclass(slots=True)
 class CableWatch:
-    """Look at the sensor loops now and then, and say what changed.
+    """Check the sensor loops periodically, and report changes.
 
     Attributes:
         stream: that knows the device.
         live: where a change is logged.
-        watcher: who is told.
+        watcher: receives the messages.
         open: channels whose loop is open.
     """
 

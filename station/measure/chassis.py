@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.driver_answers import ConnectionLost
-from jointbench.station.measure.observer import Operator, OwnHand
+from jointbench.station.measure.observer import BenchOperator, Operator
 from jointbench.station.measure.plan import Condition
 
 REMOTE = "ni+grpc://"
@@ -22,30 +22,30 @@ class OpenChassis:
     Attributes:
         chassis: the driver.
         name: URL that opens it again.
-        simulated: True where no hardware is behind it.
-        hand: whoever strikes.
+        simulated: True for a simulation, False for hardware.
+        operator: whoever strikes and tightens.
     """
 
     chassis: Chassis
     name: str
     simulated: bool
-    hand: Operator
+    operator: Operator
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SimulatedHand:
-    """The hand of a simulated bench, which moves hammer and bolts as it is told."""
+class OperatorOfSimulation:
+    """The operator of a simulated bench, who strikes and tightens on request."""
 
     chassis: Chassis
 
     def ask(self, condition: Condition) -> None:
-        """Ask for one stroke; while the server is away there is nobody to ask."""
-        wishes = {"point": condition.point}
+        """Request one hit; without a server there is none."""
+        request = {"point": condition.point}
         torque = condition.tightened or condition.torque
         optional = {"torque": torque, "level": condition.level}
-        wishes |= {k: v for k, v in optional.items() if v is not None}  # type: ignore[misc]
+        request |= {k: v for k, v in optional.items() if v is not None}  # type: ignore[misc]
         try:
-            self.chassis.strike(json.dumps(wishes).encode())
+            self.chassis.strike(json.dumps(request).encode())
         except ConnectionLost:
             return
 
@@ -60,7 +60,7 @@ def open_chassis(url: str) -> Iterator[OpenChassis]:
 
     Raises:
         UsageError: it is none of these.
-        InstrumentError: nobody answers.
+        InstrumentError: the device does not answer.
     """
     if url.rstrip("/") == "ni:":
         with _driver(None, "ni:") as opened:
@@ -93,9 +93,11 @@ def _driver(address: str | None, name: str) -> Iterator[OpenChassis]:
     try:
         modules = chassis.modules()
         simulated = bool(modules) and all(module.simulated for module in modules)
-        # NI's own simulated devices have no hand; asking the first time tells.
-        hand: Operator = SimulatedHand(chassis) if simulated else OwnHand()
-        yield OpenChassis(chassis, name, simulated, hand)
+        # NI's own simulated devices cannot strike; the first request shows that.
+        operator: Operator = (
+            OperatorOfSimulation(chassis) if simulated else BenchOperator()
+        )
+        yield OpenChassis(chassis, name, simulated, operator)
     finally:
         chassis.close()
 

@@ -76,14 +76,14 @@ class HitLedger:
         return len(own) - len(self.good(condition))
 
     def any(self, condition: int) -> bool:
-        """Tell whether a condition has hits, good or bad."""
+        """Return whether a condition has hits, accepted or rejected."""
         return any(e.condition == condition for e in self._entered)
 
     def obey(self, command: Command) -> Entered | None:
         """Accept or reject the last hit, or take the last word on it back.
 
         Args:
-            command: `ACCEPT`, `REJECT`, or `UNDO`, which takes back what was said of
+            command: `ACCEPT`, `REJECT`, or `UNDO`, which takes back the command on
                 the last hit and, where nothing was, the hit itself.
 
         Returns:

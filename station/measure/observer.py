@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a session tells whoever watches it, and what it may be told."""
+"""Messages from a session to its observer, and commands back."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -49,14 +49,14 @@ class HitNews:
 
 
 class Watcher(Protocol):
-    """A screen, lines of text, or nobody."""
+    """A screen, lines of text, or no one."""
 
     def begin(self, channels: tuple[Channel, ...], sample_rate: float) -> None:
-        """Tell that recording has begun."""
+        """Report that recording has begun."""
         ...
 
     def say(self, line: str) -> None:
-        """Tell one thing in words."""
+        """Report one message."""
         ...
 
     def block(self, samples: FloatArray) -> None:
@@ -77,14 +77,14 @@ class Watcher(Protocol):
 
 
 class Operator(Protocol):
-    """Whoever strikes: a person who reads the screen, or the hand of a simulation."""
+    """The operator: a person who reads the screen, or a simulated one."""
 
     def ask(self, condition: Condition) -> None:
-        """Ask for one hit; a person needs no telling beyond the screen."""
+        """Request one hit; a person needs only the screen."""
         ...
 
 
-class OwnHand:
+class BenchOperator:
     """A person."""
 
     def ask(self, condition: Condition) -> None:

@@ -22,7 +22,7 @@ class Condition:
     Attributes:
         number: in the order of the plan, from 0.
         torque: on each bolt [N m], None where the plan names none.
-        preload: that it makes [N], None where nobody says how.
+        preload: that results [N], None where no conversion is given.
         point: to strike.
         level: peak force to aim at [N], None for any.
         tightened: mean torque on the bolts as a tester read it [N m], None where

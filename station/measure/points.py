@@ -63,7 +63,7 @@ class Points:
         self._asker.ask()
 
     def take(self, cut: CutHit) -> None:
-        """Judge a hit, store the verdict, and go on."""
+        """Judge a hit, store the verdict, and continue."""
         condition = self._route.condition
         good = self._ledger.good(condition.number)
         least = weak_force(condition.level, good, self._elsewhere())

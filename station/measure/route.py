@@ -24,7 +24,7 @@ class Route:
 
     @property
     def done(self) -> int:
-        """How many of them are behind."""
+        """Number of completed conditions."""
         return self._record.done
 
     @property
@@ -57,7 +57,7 @@ class Route:
     def tighten(self) -> bool:
         """See to it that the bolts have the torque of the present condition.
 
-        Nothing is measured meanwhile: the stream stops, and begins anew after.
+        Nothing is measured meanwhile: the stream stops and restarts afterwards.
 
         Returns:
             Whether they were tightened just now.

@@ -21,7 +21,7 @@ from jointbench.signal.hits.live_hits import CutHit
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 
 _ELSEWHERE = 0.5  # a slender point is struck more softly than the others
-_ENOUGH = 3  # hits from which one of them can be told to spoil the others
+_ENOUGH = 3  # hits from which a single outlier can be recognised
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +100,7 @@ class GrowingAverage:
 
         Returns:
             The hit without which the coherence is highest, if that is what is wanted;
-            None where all agree, or where no single one is to blame.
+            None where all agree, or where no single hit is the cause.
         """
         if len(accepted) < _ENOUGH:
             return None
@@ -157,7 +157,7 @@ class GrowingAverage:
             hits=(hit,),
         )
         require_alive(recording, hit)
-        # Its words would tell every hit from every other.
+        # Its words would differ for every hit.
         return _Transformed(recording, replace(choose_window(recording), reason=""))
 
 

@@ -34,7 +34,7 @@ class MeasureSession:
 
         Raises:
             InstrumentError: the chassis does not come back, the disk refuses, or
-                nobody hits for longer than the plan waits.
+                no hit comes for longer than the plan waits.
         """
         self._points.tighten()
         for item in self._bench.stream.items():

@@ -14,14 +14,14 @@ NO_TRIGGER = (
 
 
 def by_device(plan: MeasurePlan, chassis: Chassis) -> bool:
-    """Tell whether the device shall look for hits itself, and can.
+    """Return whether the device shall trigger itself, and can.
 
     Args:
         plan: asks for it, or not.
         chassis: an open one.
 
     Raises:
-        InstrumentError: nobody answers.
+        InstrumentError: the device does not answer.
     """
     if plan.acquisition.trigger != "hardware":
         return False
@@ -40,7 +40,7 @@ def teds_warnings(chassis: Chassis, sensors: Sequence[Sensor]) -> tuple[str, ...
         One line for each that differs; a sensor without a TEDS is taken at its word.
 
     Raises:
-        InstrumentError: an input does not exist, or nobody answers.
+        InstrumentError: an input does not exist, or the device does not answer.
     """
     return tuple(_warnings(chassis, sensors))
 

@@ -58,7 +58,7 @@ class TextScreen:
         )
 
     def command(self) -> Command | None:
-        """Return None: nobody is at the keys."""
+        """Return None: there is no keyboard."""
         return None
 
     def _print(self, line: str) -> None:

@@ -52,7 +52,7 @@ class Trials:
         self.bench.watcher.hit(news)
 
     def settle(self) -> None:
-        """Propose settings, take those that the plan leaves open, and say why."""
+        """Propose settings with reasons, and use those that the plan leaves open."""
         self.record.proposals = self.trigger.settle(self._fit)
         for proposal in self.record.proposals:
             self.bench.live.log(setting_entry(proposal))

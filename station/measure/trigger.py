@@ -74,7 +74,7 @@ class TriggerWatch:
         return None if self._cutter is None else self._cutter.feed(samples)
 
     def break_off(self) -> CutHit | None:
-        """Start anew after a gap; return the hit that it cut short, if any."""
+        """Restart after a gap; return the hit that it cut short, if any."""
         return None if self._cutter is None else self._cutter.break_off()
 
     def judge(self, cut: CutHit, point: str, weak_force: float | None) -> Hit:

@@ -129,7 +129,7 @@ def judged_modes(
     """Take recordings with judged hits to modes, see `modal_chain`.
 
     Raises:
-        NoModeFound: there is none; the message says what may keep it from being found.
+        NoModeFound: there is none; the message gives possible causes.
     """
     try:
         with one_thread():

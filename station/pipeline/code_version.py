@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The version of the code behind a stage: a digest of the sources that it runs.
+"""The version of a stage's code: a digest of the sources that it runs.
 
 A stage is named with the modules that do its work. Their sources count, and the sources
 of all modules of this package that they import, directly or not; of the modules that
@@ -25,7 +25,7 @@ CALLERS = (
     "station.pipeline.record_codec",
     "station.pipeline.stage_store",
 )
-"""Behind every stage: what calls it and keeps its record; what they import is not."""
+"""Part of every stage: what calls it and stores its record, without their imports."""
 STAGE_MODULES = {
     "hits": ("station.pipeline.judge_again",),
     "kalman": ("signal.kalman.smoothing", "signal.hits.windows"),
@@ -76,7 +76,7 @@ def stage_sources(stage: str) -> frozenset[str]:
     """Return the full names of the modules that the version of a stage is made of."""
     modules = STAGE_MODULES.get(stage, STAGE_MODULES["result"])
     callers = {f"{_PACKAGE}.{name}" for name in CALLERS}
-    return sources_behind(*(f"{_PACKAGE}.{name}" for name in modules)) | callers
+    return sources_of(*(f"{_PACKAGE}.{name}" for name in modules)) | callers
 
 
 def code_version(modules: Iterable[str]) -> str:
@@ -93,8 +93,8 @@ def code_version(modules: Iterable[str]) -> str:
     return digest.hexdigest()
 
 
-def sources_behind(*modules: str) -> frozenset[str]:
-    """Return the names of modules and of all modules of ours that they import."""
+def sources_of(*modules: str) -> frozenset[str]:
+    """Return the names of modules and of all station modules that they import."""
     found: set[str] = set()
     waiting = list(modules)
     while waiting:
@@ -107,7 +107,7 @@ def sources_behind(*modules: str) -> frozenset[str]:
 
 @cache
 def imports_of(name: str) -> tuple[str, ...]:
-    """Return what a module of ours imports of us, wherever in it the import stands."""
+    """Return the station modules that a station module imports, at any depth."""
     return tuple(dict.fromkeys(_imported((source_of(name) or b"").decode())))
 
 
@@ -142,5 +142,5 @@ def source_digest(name: str) -> str:
 def _library(name: str) -> str:
     try:
         return version(name)
-    except PackageNotFoundError:  # vendored or frozen: its version is that of ours
+    except PackageNotFoundError:  # vendored or frozen: versioned with the station
         return "-"

@@ -3,86 +3,187 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 _Texts = list[str] | None
-_Modulus = Annotated[str, typer.Option(help="Composite modulus E*, '29.3 GPa'.")]
-_Hardness = Annotated[str, typer.Option(help="Hardness, '1.5 GPa' or '231 HB'.")]
-_Load = Annotated[
-    _Texts, typer.Option(help="Preload with unit, '25 kN'; may be repeated.")
+_QUANTITY = "QUANTITY"
+_MATERIAL = "Material"
+_PRELOAD = "Preload (one of --load, --torque, --stiffness, --real-area)"
+_SURFACE = "Surface (--dimension and --roughness, or --surface)"
+_FRICTION = "Friction"
+_LAW = "Contact law"
+_DAMPING = "Damping"
+
+
+def _option(group: str, metavar: str, text: str) -> Any:
+    return typer.Option(metavar=metavar, help=text, rich_help_panel=group)
+
+
+_Modulus = Annotated[
+    str,
+    _option(_MATERIAL, _QUANTITY, "Composite elastic modulus E*, as '29.3 GPa'."),
 ]
+_Hardness = Annotated[
+    str,
+    _option(
+        _MATERIAL, _QUANTITY, "Hardness of the softer body, as '1.5 GPa' or '231 HB'."
+    ),
+]
+_HardnessSd = Annotated[
+    str,
+    _option(_MATERIAL, _QUANTITY, "Standard deviation of the hardness, as '10 %'."),
+]
+_Poisson = Annotated[float, _option(_MATERIAL, "NUMBER", "Poisson's ratio [-].")]
+_YieldStrength = Annotated[
+    str | None,
+    _option(
+        _MATERIAL,
+        _QUANTITY,
+        "Yield strength of the softer body, as '350 MPa'; hardness / 2.8 by default.",
+    ),
+]
+_Load = Annotated[_Texts, _option(_PRELOAD, _QUANTITY, "Preload, as '25 kN'.")]
 _Torque = Annotated[
-    _Texts, typer.Option(help="On each bolt instead, '20 N m'; may be repeated.")
+    _Texts, _option(_PRELOAD, _QUANTITY, "Tightening torque of each bolt, as '20 N m'.")
 ]
 _Stiffness = Annotated[
-    str | None, typer.Option(help="Find the preload that gives it, '3e7 N/m'.")
+    str | None,
+    _option(
+        _PRELOAD, _QUANTITY, "Find the preload of this normal stiffness, as '3e7 N/m'."
+    ),
 ]
 _RealArea = Annotated[
-    float | None, typer.Option(help="Find the preload that gives it [m^2].")
+    float | None,
+    _option(
+        _PRELOAD,
+        "NUMBER",
+        "Find the preload of this real contact area [m^2], for example 1e-6.",
+    ),
 ]
-_BoltDiameter = Annotated[str | None, typer.Option(help="Nominal, '16 mm'.")]
-_Bolts = Annotated[int, typer.Option(help="Bolts that carry the joint.")]
-_NutFactor = Annotated[float, typer.Option(help="K in F = T/(K d) [-].")]
-_NutFactorSd = Annotated[float, typer.Option(help="How sure K is [-].")]
+_BoltDiameter = Annotated[
+    str | None, _option(_PRELOAD, _QUANTITY, "Nominal bolt diameter, as '16 mm'.")
+]
+_Bolts = Annotated[int, _option(_PRELOAD, "N", "Number of bolts of the joint.")]
+_NutFactor = Annotated[
+    float, _option(_PRELOAD, "NUMBER", "Nut factor K in F = T/(K d) [-].")
+]
+_NutFactorSd = Annotated[
+    float, _option(_PRELOAD, "NUMBER", "Standard deviation of the nut factor [-].")
+]
 _Dimension = Annotated[
-    float | None, typer.Option(help="Profile fractal dimension, 1 < D < 2.")
+    float | None,
+    _option(
+        _SURFACE, "NUMBER", "Fractal dimension D of the profile [-], for example 1.54."
+    ),
 ]
-_DimensionSd = Annotated[float, typer.Option(help="How sure D is [-].")]
+_DimensionSd = Annotated[
+    float, _option(_SURFACE, "NUMBER", "Standard deviation of D [-].")
+]
 _Roughness = Annotated[
-    str | None, typer.Option(help="Fractal roughness G with unit, '1e-9 m'.")
+    str | None, _option(_SURFACE, _QUANTITY, "Fractal roughness G, as '1e-9 m'.")
 ]
-_RoughnessSd = Annotated[str, typer.Option(help="How sure G is, '30 %'.")]
+_RoughnessSd = Annotated[
+    str, _option(_SURFACE, _QUANTITY, "Standard deviation of G, as '30 %'.")
+]
 _Surfaces = Annotated[
     list[Path] | None,
-    typer.Option(help="Surface file of one face; give it twice for a joint."),
+    _option(_SURFACE, "PATH", "Measured contact surface; give one or both."),
 ]
 _Columns = Annotated[
-    str | None, typer.Option(help="Columns of a plain table, 'x:um,z:um'.")
-]
-_Poisson = Annotated[float, typer.Option(help="Poisson's ratio [-].")]
-_YieldStrength = Annotated[
-    str | None, typer.Option(help="Of the softer body; hardness/2.8 if not given.")
-]
-_HardnessSd = Annotated[str, typer.Option(help="How sure it is, '10 %'.")]
-_FrictionFactor = Annotated[float, typer.Option(help="k_mu of friction_3d [-].")]
-_FrictionFactorSd = Annotated[float, typer.Option(help="How sure [-].")]
-_Friction = Annotated[float, typer.Option(help="Coefficient of friction [-].")]
-_TangentialLoad = Annotated[
-    str, typer.Option(help="On the joint, '1 kN'; contacts slip in part.")
+    str | None,
+    _option(
+        _SURFACE,
+        "ROLE:UNIT,...",
+        "Columns of a plain table of heights, for example 'x:um,z:um'.",
+    ),
 ]
 _NominalArea = Annotated[
-    float | None, typer.Option(help="Apparent area [m^2], which guards the real.")
+    float | None,
+    _option(
+        _SURFACE,
+        "NUMBER",
+        "Nominal contact area [m^2], for example 0.01; an upper limit of the real "
+        "area.",
+    ),
 ]
-_Model = Annotated[_Texts, typer.Option(help="Contact model; may be repeated.")]
+_FrictionFactor = Annotated[
+    float, _option(_FRICTION, "NUMBER", "Friction factor k_mu of friction_3d [-].")
+]
+_FrictionFactorSd = Annotated[
+    float, _option(_FRICTION, "NUMBER", "Standard deviation of k_mu [-].")
+]
+_Friction = Annotated[
+    float, _option(_FRICTION, "NUMBER", "Coefficient of friction [-].")
+]
+_TangentialLoad = Annotated[
+    str,
+    _option(
+        _FRICTION,
+        _QUANTITY,
+        "Tangential load on the joint, as '1 kN', for partial slip.",
+    ),
+]
+_Model = Annotated[
+    _Texts,
+    _option(
+        _LAW,
+        "NAME",
+        "Contact law; ke_3d_modified by default.",
+    ),
+]
 _Mode = Annotated[
-    str, typer.Option(help="'corrected', or 'as-printed' with the papers' faults.")
+    str,
+    _option(
+        _LAW,
+        "corrected|as-printed",
+        "Formulas with corrections, or as printed in the papers.",
+    ),
 ]
 _Without = Annotated[
     str | None,
-    typer.Option(metavar="TERM,...", help="Terms to leave out: interaction, ..."),
-]
-_Mass = Annotated[
-    str | None, typer.Option(help="On the joint, '19.5 kg', for its damping.")
-]
-_Frequency = Annotated[str | None, typer.Option(help="Instead of the mass, '200 Hz'.")]
-_LossForm = Annotated[
-    str, typer.Option(help="'kogut-etsion' or 'two-regime' energies.")
-]
-_LossConvention = Annotated[
-    str, typer.Option(help="'energy-ratio' or 'per-radian'; 2 pi apart.")
+    _option(_LAW, "TERM,...", "Terms to leave out, for example interaction,friction."),
 ]
 _Sweep = Annotated[
     str | None,
-    typer.Option(help="'load:1 kN:50 kN:20'; or dimension, or roughness."),
+    _option(
+        _LAW,
+        "NAME:FROM:TO:N",
+        "Vary load [N], dimension [-] or roughness [m], for example "
+        "'load:1 kN:50 kN:20'.",
+    ),
 ]
 _Plot = Annotated[
-    Path | None, typer.Option(help="HTML page to write, with the sweep's plots.")
+    Path | None, _option(_LAW, "PATH", "HTML report to write, with plots of the sweep.")
+]
+_Mass = Annotated[
+    str | None,
+    _option(_DAMPING, _QUANTITY, "Mass on the joint, as '19.5 kg'."),
+]
+_Frequency = Annotated[
+    str | None,
+    _option(
+        _DAMPING, _QUANTITY, "Vibration frequency, as '200 Hz', in place of --mass."
+    ),
+]
+_LossForm = Annotated[
+    str,
+    _option(_DAMPING, "kogut-etsion|two-regime", "Form of the contact energies."),
+]
+_LossConvention = Annotated[
+    str,
+    _option(
+        _DAMPING,
+        "energy-ratio|per-radian",
+        "Definition of the loss factor; the two differ by about 2 pi.",
+    ),
 ]
 _Json = Annotated[
     str | None,
-    typer.Option(metavar="PATH", help="Write results as JSON; '-' = stdout."),
+    typer.Option(
+        metavar="PATH", help="Write the results as JSON; '-' for standard output."
+    ),
 ]
 _Debug = Annotated[
     bool, typer.Option("--debug", help="Show the traceback of an error.")
@@ -91,7 +192,7 @@ _Debug = Annotated[
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactOptions:
-    """The options of the command line, by name, as they are typed."""
+    """The options of the command line by name, as typed, in the order of the help."""
 
     modulus: _Modulus
     hardness: _Hardness

@@ -16,6 +16,7 @@ from jointbench.analysis.contact.curve import require_surface
 from jointbench.analysis.contact.draws import StiffnessInterval
 from jointbench.analysis.contact.fractal_surface import FractalSurface
 from jointbench.analysis.contact.inverse import preload_of
+from jointbench.analysis.contact.model_catalogue import contact_law_package
 from jointbench.analysis.contact.models import ContactModel, Mode
 from jointbench.analysis.contact.predict import (
     ContactState,
@@ -101,7 +102,7 @@ def predict_point(case: ContactCase) -> ContactPoint:
 
 
 def equivalent_surface(structures: Sequence[StructureFunction]) -> ContactSurface:
-    """Return the one surface that stands for the faces of a joint, S_e = S_a + S_b."""
+    """Return the equivalent surface of a joint, S_e = S_a + S_b."""
     return contact_surface(fit_fractal(reduce(combine, structures)))
 
 
@@ -114,13 +115,11 @@ def surface_of(
     dimension_sd: float = 0.0,
     roughness_sd: str = "0 %",
 ) -> ContactSurface:
-    """Return the surface from numbers or from files of one face or two."""
+    """Return the surface from numbers or from files of one or two surfaces."""
     if files and dimension is None and roughness is None:
         found = read_surfaces(files, columns=columns)
         if len(found) > FACES:
-            raise UsageError(
-                f"{len(found)} surfaces for one joint; give one face or two"
-            )
+            raise UsageError(f"{len(found)} surfaces for one joint; give one or two")
         faces = found if len(found) == FACES else found * FACES
         chains = [analyse_surface(s) for _, s in faces]
         said = [one for chain in chains for one in chain_cautions(chain)]
@@ -131,7 +130,7 @@ def surface_of(
         return replace(whole, cautions=tuple(dict.fromkeys(said)))
     if dimension is None or roughness is None or files:
         raise UsageError(
-            "give either --dimension and --roughness, or --surface for one face (both "
+            "give either --dimension and --roughness, or --surface once (both "
             "alike) or twice for two"
         )
     plain = ContactSurface(_of_a_line(dimension), parse_value(roughness, "length"))
@@ -184,6 +183,7 @@ def _point_json(point: ContactPoint) -> dict[str, object]:
     damping = None if found is None else found.damping
     return {
         "name": state.model,
+        "package": contact_law_package(state.model),
         "mode": state.mode.value,
         "preload": state.preload,
         "normal_stiffness": state.normal_stiffness,

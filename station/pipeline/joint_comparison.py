@@ -28,10 +28,10 @@ CURVE_DECADES = 1.0
 
 @dataclass(frozen=True, slots=True)
 class ContactPrediction:
-    """What the contact law makes of two faces.
+    """Prediction of the contact law for two surfaces.
 
     Attributes:
-        surface: the one surface that stands for both faces.
+        surface: the equivalent surface of both.
         at: the prediction at the joint's own preload.
         curve: predictions over a range of preloads around it.
     """
@@ -44,18 +44,18 @@ class ContactPrediction:
 def predict_joint(
     structures: Sequence[StructureFunction], table: ContactTable
 ) -> ContactPrediction:
-    """Predict a joint from the structure functions of its faces.
+    """Predict a joint from the structure functions of its surfaces.
 
     Args:
-        structures: of two faces, or of one that stands for both.
+        structures: of two surfaces, or of one equivalent surface.
         table: material, preload and model.
 
     Raises:
-        BadData: no face, more than two, or no scaling range on them.
+        BadData: no surface, more than two, or no scaling range on them.
     """
     if not 1 <= len(structures) <= FACES:
         raise BadData(
-            f"{len(structures)} surfaces for one joint; keep the two faces that meet "
+            f"{len(structures)} surfaces for one joint; keep the two in contact "
             "in the session, or one that stands for both"
         )
     faces = structures if len(structures) == FACES else [structures[0]] * FACES

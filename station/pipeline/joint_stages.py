@@ -15,7 +15,13 @@ from typing import Any, TypeVar
 from jointbench.acquisition.basics.errors import JointbenchError
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.analysis.contact.model_catalogue import contact_law_code
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.catalogue.installed_effects import (
+    effect_code,
+    effect_packages,
+    installed_catalogue,
+)
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.intake.session_campaign import session_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
@@ -39,7 +45,7 @@ from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.pipeline.surface_stages import SurfaceChain
 from jointbench.station.schemas.bench_model import BenchModel, ContactTable
-from jointbench.station.schemas.gap_model import gap_sheet
+from jointbench.station.schemas.gap_model import nominal_parameters
 
 Page = dict[str, Any]
 Found = TypeVar("Found")
@@ -97,9 +103,12 @@ def _surface(surface: Surface, run: StageRun, gamma: float) -> SurfaceChain:
 def contact_stage(
     surfaces: Sequence[SurfaceChain], table: ContactTable, run: StageRun
 ) -> ContactPrediction:
-    """Predict the joint between faces, see `predict_joint`."""
+    """Predict the joint between surfaces, see `predict_joint`."""
     structures = tuple(one.structure for one in surfaces)
-    given = table.model_dump(mode="json", exclude={"link"})
+    given = [
+        table.model_dump(mode="json", exclude={"link"}),
+        *contact_law_code(table.model),
+    ]
     return run.stages.run(
         "contact",
         run.stages.key("contact", given, run.stages.digest(structures)),
@@ -135,13 +144,21 @@ def gap_stage(
         without: names of effects to leave out of the catalogue.
         run: store and source.
     """
-    left = frozenset(without)
+    left, entries = frozenset(without), installed_catalogue()
 
     def make() -> Page:
-        found, left_out = gap_of("session", judged, gap_sheet(bench), without=left)
-        return diagnosis_json(found) | {"left_out": list(left_out)}
+        found, left_out = gap_of(
+            "session",
+            judged,
+            nominal_parameters(bench),
+            without=left,
+            entries=entries,
+        )
+        packages = effect_packages(entries)
+        page = diagnosis_json(found) | {"left_out": list(left_out)}
+        return page | {"packages": packages}
 
-    given = [bench.model_dump(mode="json"), sorted(left)]
+    given = [bench.model_dump(mode="json"), sorted(left), *effect_code(left)]
     known = run.digest or run.stages.digest(tuple(judged))
     facts = run.stages.digest(
         tuple((r.name, r.hits, r.preload, r.provenance) for r in judged)
@@ -152,7 +169,7 @@ def gap_stage(
 def gap_of(
     name: str,
     judged: Sequence[Recording],
-    sheet: Sheet,
+    nominal: Sheet,
     *,
     without: frozenset[str],
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
@@ -163,14 +180,14 @@ def gap_of(
     Args:
         name: of the campaign.
         judged: recordings with hits and preloads, in the order recorded.
-        sheet: the model that should explain them.
+        nominal: the model that should explain them.
         without: names of effects to leave out.
         entries: the catalogue.
-        progress: told what is being done, one line at a time; None for no report.
+        progress: receives one line per step; None for no report.
 
     Returns:
         Verdict and evidence, and why accepted hits were left out, a line each.
     """
-    campaign, left_out = session_campaign(name, judged, sheet)
+    campaign, left_out = session_campaign(name, judged, nominal)
     found = diagnose(campaign, without=without, entries=entries, progress=progress)
     return found, left_out

@@ -20,7 +20,7 @@ class StoredHits:
     """What becomes of the hits that recordings carry already.
 
     Attributes:
-        again: they are found and judged anew; False keeps them as they are.
+        again: they are found and judged again; False keeps them as they are.
         keep_operator: what the operator refused stays refused.
         all_struck: where no recording carries hits, every one must hold a hit.
     """
@@ -57,7 +57,7 @@ class VerdictChange:
         time: of the trigger since the session began [s].
         before: verdict as stored, ``-`` where this hit was not found then.
         after: verdict now, ``-`` where it is not found now.
-        reason: behind the verdict that counts now; as stored, where it is gone.
+        reason: of the verdict that counts now; as stored, where it is gone.
     """
 
     recording: str

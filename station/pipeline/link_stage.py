@@ -22,7 +22,7 @@ SENSITIVITY_SD = 0.02
 
 
 def fits(result: Identification) -> bool:
-    """Tell whether the model can have the measured modes at all."""
+    """Return whether the model can reproduce the measured modes at all."""
     return result.verdict is not IdentificationVerdict.INCONSISTENT
 
 
@@ -39,7 +39,7 @@ def identify_joint(bench: BenchModel, modes: ModalModel) -> Identification:
 def mode_model(bench: BenchModel) -> LumpedModel:
     """Return the lumped model of a bench without the priors of its dampings.
 
-    The measured damping ratios alone say what the damping is: a stated damping is a
+    Only the measured damping ratios determine the damping: a stated damping is a
     start of the search. Only `gap` weighs it by its standard deviation.
     """
     model = lumped_model(bench)

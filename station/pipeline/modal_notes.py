@@ -62,13 +62,13 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
 
 
 def limit_words(chain: ModalChain) -> tuple[str, ...]:
-    """Say what cannot be in the data of a chain, a sentence each."""
+    """State what the data of a chain cannot contain, one sentence each."""
     judged = [r for r in chain.recordings if accepted_hits(r)]
     low, high = chain.result.band
     frequency = chain.frf.frequency
     lines = int(np.count_nonzero((frequency >= low) & (frequency <= high)))
     hits = sum(len(recording.hits) for recording in chain.recordings)
-    alone = "one hit alone: nothing tells whether it was a glancing one"
+    alone = "single hit: a glancing hit cannot be recognised"
     return (
         *time_scale_words(judged),
         *requested_band_words(judged, chain.result.settings.band),

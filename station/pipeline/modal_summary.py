@@ -104,7 +104,7 @@ def _beyond_json(notes: ModalNotes) -> dict[str, object]:
 
 
 def _linearity_json(notes: ModalNotes) -> dict[str, object]:
-    """Return whether the FRF depends on the level, or why nobody can tell."""
+    """Return whether the FRF depends on level, or why that is unknown."""
     found = notes.linearity
     if found is None:
         return {"checked": False, "words": notes.unchecked}

@@ -35,7 +35,7 @@ def pooled_structure(
 def pooled_beside(
     estimate: StructureFunction, dimensions: Sequence[float | None]
 ) -> Beside:
-    """Say how D and S of the single profiles scatter.
+    """Describe the scatter of D and S over the single profiles.
 
     Args:
         estimate: of all profiles.

@@ -47,7 +47,7 @@ class PreloadModes:
 
     Attributes:
         preload: [N], None where it is not known.
-        recordings: names of those behind them.
+        recordings: names of the recordings they come from.
         chain: hits, FRF and modes.
     """
 
@@ -186,7 +186,7 @@ def _modes_at(
 def _surfaces(
     session: Session, recipe: Recipe, run: StageRun
 ) -> tuple[SurfaceChain, ...]:
-    """Fit every surface of a session, or none where the recipe says so."""
+    """Fit every surface of a session, or none if the recipe excludes them."""
     if not recipe.surface.use:
         return ()
     gamma = recipe.surface.gamma or DEFAULT_GAMMA
@@ -200,7 +200,7 @@ def _contact(
     run: StageRun,
     remarks: Remarks,
 ) -> Page | None:
-    """Predict the joint from the session's faces, if the recipe has a contact."""
+    """Predict the joint from the session's surfaces, if the recipe has a contact."""
     part = recipe.contact
     if part is None:
         return None

@@ -124,7 +124,7 @@ def _made(
 
 
 def _is_a(value: Any, kind: Any) -> bool:
-    """Tell whether a value is of a type, with all that it holds."""
+    """Return whether a value is of a type, with all that it holds."""
     origin, parts = typing.get_origin(kind) or kind, typing.get_args(kind)
     if origin in {typing.Any, object}:
         return True

@@ -30,7 +30,7 @@ def by_preload(
 
 
 def at_words(preload: float | None) -> str:
-    """Say at which preload, with a blank before it; nothing where nobody knows."""
+    """Return " at ..." for a preload; empty where it is not known."""
     return "" if preload is None else f" at {preload:g} N"
 
 

@@ -31,8 +31,8 @@ _Record = TypeVar("_Record")
 _SUFFIX, _PART = ".stage", ".part"
 _KEY = 64
 """Characters of a key."""
-_LEFT_BEHIND = 3600.0
-"""Age at which a half written stage is nobody's [s]."""
+_ABANDONED = 3600.0
+"""Age at which a half-written stage counts as abandoned [s]."""
 
 
 def stage_key(name: str, settings: object, *inputs: str) -> str:
@@ -176,7 +176,7 @@ class StageRun:
         stages: keeps them.
         digest: SHA-256 of the file of the input, in which names are unique; empty to
             know records by their content.
-        progress: told what is done, and the share of it; None for no report.
+        progress: receives step and share done; None for no report.
     """
 
     stages: StageStore = field(default_factory=NoStore)
@@ -205,7 +205,7 @@ def _unsealed(key: str, path: Path) -> bytes:
 def _write(path: Path, data: bytes) -> None:
     """Write whole or not at all; a disk that is full keeps nothing, and that is fine.
 
-    No fsync: after a power loss the digest inside tells, and the stage runs again.
+    No fsync: after a power loss the digest detects damage, and the stage runs again.
     """
     part = path.with_name(f"{path.name}.{os.getpid()}{_PART}")
     try:
@@ -237,7 +237,7 @@ def prune_stages(folder: Path, most_bytes: int) -> int:
         except OSError:
             continue
         if path.suffix == _PART:
-            if now - info.st_mtime > _LEFT_BEHIND:
+            if now - info.st_mtime > _ABANDONED:
                 path.unlink(missing_ok=True)
             continue
         found.append((info.st_mtime, info.st_size, path))

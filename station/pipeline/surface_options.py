@@ -120,7 +120,7 @@ def beside_the_fit(
 
 
 def _changes(surface: Surface) -> Beside:
-    """Say what was masked and removed; JSON has it in the provenance."""
+    """State what was masked and removed; in JSON it is in the provenance."""
     lines = [_said(one, surface) for one in surface.provenance]
     return Beside(tuple(line for line in lines if line))
 
@@ -137,7 +137,7 @@ def _said(done: Step, surface: Surface) -> str:
 
 
 def _direction(estimate: StructureFunction) -> Beside:
-    """Say which lines of a map were taken."""
+    """Name the lines of a map that were used."""
     found = [s for s in estimate.provenance if s.name == "profiles_along"]
     detail = dict(found[-1].detail)
     asked, met = (
@@ -159,7 +159,7 @@ def _direction(estimate: StructureFunction) -> Beside:
 
 
 def _directions(areal: Areal) -> Beside:
-    """Say whether a map is equally rough in all directions."""
+    """State whether a map is equally rough in all directions."""
     found = isotropy(areal)
     word = "isotropic" if found.isotropic else "anisotropic, with a lay"
     keys = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report's section on how far the FRFs and the modal model can be trusted."""
+"""The report's section on the quality of the FRFs and of the modal model."""
 
 import numpy as np
 
@@ -61,12 +61,12 @@ def _indicators(chain: ModalChain) -> Plot:
         traces,
         axis("frequency [Hz]", anchor="y2"),
         axis("singular value", log=True, domain=[0.4, 1.0]),
-        yaxis2=axis("missed [%]", log=True, domain=[0.0, 0.32]),
+        yaxis2=axis("error [%]", log=True, domain=[0.0, 0.32]),
     )
     caption = (
-        "Complex mode indicator function: singular values of the FRF matrix; two that "
-        "peak together are two modes. Below: what the synthesis misses of the FRF on "
-        "each line, rms over all pairs."
+        "Complex mode indicator function: singular values of the FRF matrix; two "
+        "coincident peaks are two modes. Below: synthesis error of each line, rms over "
+        "all FRFs."
     )
     return Plot("cmif-plot", caption, plot, 460)
 
@@ -74,9 +74,9 @@ def _indicators(chain: ModalChain) -> Plot:
 def _leakage(chain: ModalChain, window: HammerWindow) -> str:
     leakage = estimate_leakage(chain.recordings, window)
     return (
-        f"Leakage: {100 * leakage.typical:.2g} % of the response's amplitude lies "
-        f"beyond the block as windowed, most of it near {leakage.worst_frequency:.5g} "
-        f"Hz ({100 * leakage.worst:.2g} % there)."
+        f"Leakage: {100 * leakage.typical:.2g} % of the response amplitude is "
+        f"truncated by the windowed block, at most {100 * leakage.worst:.2g} % near "
+        f"{leakage.worst_frequency:.5g} Hz."
     )
 
 
@@ -90,21 +90,21 @@ def _linearity(chain: ModalChain, window: HammerWindow) -> str:
 
 
 def systematic_words(chain: ModalChain) -> str:
-    """Say which intervals rest on misfit, not noise, and by how much at most."""
+    """Name the modes whose intervals are systematic, with the median and the worst."""
     model = chain.result.model
     rated = rate_modes(model, chain.result.stabilisation.orders.size)
     marked = np.flatnonzero(model.systematic)
     if marked.size == 0:
-        return "Noise makes up the intervals of all modes."
+        return "Noise dominates the intervals of all modes."
     error = rated.frequency_error[marked]
     worst = int(np.argmax(error))
     share = error / model.natural_frequency[marked]
     damping = rated.damping_error[marked] / np.abs(model.damping_ratio[marked])
     return (
         f"Systematic error exceeds noise at {marked.size} of "
-        f"{model.natural_frequency.size} modes: {np.median(error):.2g} Hz "
+        f"{model.natural_frequency.size} modes: median {np.median(error):.2g} Hz "
         f"({100 * np.median(share):.1g} %) and {100 * np.median(damping):.2g} % of the "
-        f"damping at the middle one, {error[worst]:.2g} Hz at most (mode "
-        f"{marked[worst] + 1}). Leakage, a neighbour left out or a structure that is "
-        "not linear; more hits would not narrow those intervals."
+        f"damping, maximum {error[worst]:.2g} Hz (mode {marked[worst] + 1}). Possible "
+        "causes: leakage, a missing neighbouring mode, a nonlinear structure; more "
+        "hits would not narrow these intervals."
     )

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""What ``jointbench contact`` shows: predictions, sweeps, and their page."""
+"""What ``jointbench contact`` shows: predictions, sweeps, and their report."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.basics.registry import OWN_PACKAGE
 from jointbench.acquisition.records.session import software_version
+from jointbench.analysis.contact.model_catalogue import contact_law_package
 from jointbench.analysis.contact.predict import DAMPING_REASON
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.station.files.output_paths import check_outputs
@@ -38,7 +40,7 @@ from jointbench.station.screen.traces import PALETTE, line
 
 LABELS = {
     "load": "preload [N]",
-    "dimension": "fractal dimension of a line [-]",
+    "dimension": "fractal dimension of a profile [-]",
     "roughness": "fractal roughness G [m]",
 }
 COLUMNS = (
@@ -55,7 +57,7 @@ COLUMNS = (
 
 @dataclass(frozen=True, slots=True)
 class SweepRow:
-    """One value of a swept input: what each model makes of it, or why it is refused."""
+    """One value of a swept input: the predictions, or the reason for refusal."""
 
     value: float
     points: tuple[ContactPoint, ...]
@@ -65,14 +67,14 @@ class SweepRow:
 def run_contact(
     request: ContactRequest, given: ContactOptions
 ) -> tuple[ContactPoint, ...]:
-    """Predict every model at every preload, along a sweep too, and show them."""
-    faces = given.surface or []
-    check_outputs(faces, [given.json, given.plot])
+    """Predict every model at every preload and along a sweep, and show the results."""
+    files = given.surface or []
+    check_outputs(files, [given.json, given.plot])
     sweep = None if given.sweep is None else parse_sweep(given.sweep)
     surface = surface_of(
         given.dimension,
         given.roughness,
-        faces,
+        files,
         given.columns,
         dimension_sd=given.dimension_sd,
         roughness_sd=given.roughness_sd,
@@ -83,7 +85,7 @@ def run_contact(
     if sweep is not None:
         _show_sweep(sweep, rows, given.json)
     if given.plot is not None:
-        write_report(contact_page(points, surface, sweep, rows), given.plot)
+        write_report(contact_report(points, surface, sweep, rows), given.plot)
     content = contact_json(points, surface)
     if sweep is not None:
         content["sweep"] = sweep_json(sweep, rows)
@@ -94,7 +96,7 @@ def run_contact(
 def run_sweep(
     request: ContactRequest, surface: ContactSurface, sweep: Sweep
 ) -> tuple[SweepRow, ...]:
-    """Predict along a sweep; a value that the model refuses keeps its place."""
+    """Predict along a sweep; refused values keep a row with the reason."""
     rows = []
     for value in sweep.values:
         try:
@@ -107,7 +109,7 @@ def run_sweep(
 
 
 def sweep_json(sweep: Sweep, rows: Sequence[SweepRow]) -> dict[str, object]:
-    """Return a sweep as the JSON has it."""
+    """Return a sweep as JSON."""
     return {
         "name": sweep.name,
         "label": LABELS[sweep.name],
@@ -130,13 +132,13 @@ def sweep_json(sweep: Sweep, rows: Sequence[SweepRow]) -> dict[str, object]:
     }
 
 
-def contact_page(
+def contact_report(
     points: Sequence[ContactPoint],
     surface: ContactSurface,
     sweep: Sweep | None,
     rows: Sequence[SweepRow],
 ) -> Report:
-    """Arrange predictions and sweep as one offline page."""
+    """Arrange predictions and sweep as one offline report."""
     cells = tuple(tuple(row) for row in _rows(points))
     items: list[Item] = [DataTable("Predictions", COLUMNS, cells)]
     items += [Text(said, "notice") for said in surface.cautions]
@@ -155,7 +157,7 @@ def contact_page(
 
 
 def _plots(sweep: Sweep, rows: Sequence[SweepRow]) -> tuple[Item, ...]:
-    """Return stiffness, and damping where there is any, against the swept input."""
+    """Return stiffness, and damping where predicted, over the swept input."""
     kept = [row for row in rows if row.points]
     if not kept:
         return (Text(rows[0].refusal, "notice"),)
@@ -222,15 +224,21 @@ def _show(
 
 
 def _reasons(points: Sequence[ContactPoint]) -> list[str]:
-    """Return every reason once, and what leaves the most open."""
-    lines = [reason for point in points for reason in point.state.reasons]
+    """Return packages of models, every reason once, and the dominant uncertainty."""
+    packages = {p.state.model: contact_law_package(p.state.model) for p in points}
+    lines = [
+        f"{name}: a model of package {package}"
+        for name, package in packages.items()
+        if package != OWN_PACKAGE
+    ]
+    lines += [reason for point in points for reason in point.state.reasons]
     for point in points:
         found = point.uncertainty
         if found is not None and (name := found.stiffness.dominant) is not None:
             share = found.stiffness.shares[name]
             lines.append(
-                f"{point.state.model}: {name} leaves the most open, {share:.0%} of the "
-                "variance of the stiffness"
+                f"{point.state.model}: {name} dominates the uncertainty with "
+                f"{share:.0%} of the variance of the stiffness"
             )
     return list(dict.fromkeys(lines))
 
@@ -259,7 +267,7 @@ def _show_sweep(
 
 
 def _bounds(point: ContactPoint) -> str:
-    """Write an interval; one that nothing widens is left out."""
+    """Write an interval; a zero-width interval is left out."""
     interval = point.interval
     if interval.upper <= interval.lower * (1 + 1e-9):
         return "-"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of a gap: before and after, in the record and the view that tell most."""
+"""Figures of a gap: before and after, in the representative record and view."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -30,8 +30,8 @@ def pretty(unit: str) -> str:
     return unit
 
 
-def misfit_spectrum(spectra: Spectra, *, tried: str) -> Figure:
-    """Return the misfit of all records over the noise against frequency."""
+def residual_spectrum(spectra: Spectra, *, tried: str) -> Figure:
+    """Return the residual of all records over the noise against frequency."""
     x, y = spectrum_axes(spectra)
     return figure(spectrum(spectra, tried, shown=True), x, y)
 
@@ -43,7 +43,7 @@ def spectrum(
     axes: tuple[str, str] = ("x", "y"),
     shown: bool = False,
 ) -> list[Trace]:
-    """Return the misfit over the noise before and after, and the noise, as lines."""
+    """Return residual over noise before and after, and the noise, as lines."""
     f = spectra.frequency
     floor = line(
         f[[0, -1]],
@@ -69,12 +69,12 @@ def spectrum_axes(spectra: Spectra) -> tuple[dict[str, object], dict[str, object
     top = max(float(spectra.misfit_before.max()), SMALLEST_TOP)
     span = [float(np.log10(LOWEST_BAR)), float(np.log10(2.0 * top))]
     return axis("frequency [Hz]", log=True), axis(
-        "misfit over noise [-]", log=True, range=span
+        "residual over noise [-]", log=True, range=span
     )
 
 
 def response_function(spectra: Spectra, *, tried: str) -> Figure:
-    """Return the measured and predicted response functions of the telling condition."""
+    """Return measured and predicted FRFs of the representative condition."""
     kept = np.isfinite(spectra.measured)
     f = spectra.frequency[kept]
     traces = [
@@ -90,23 +90,25 @@ def response_function(spectra: Spectra, *, tried: str) -> Figure:
     )
 
 
-def wish_figure(wishes: Wishes, *, against: str, tried: str, unit: str) -> Figure:
-    """Return the joint stiffness and damping each record would choose by itself.
+def record_estimate_figure(
+    estimates: Wishes, *, against: str, tried: str, unit: str
+) -> Figure:
+    """Return joint stiffness and damping estimated from each record separately.
 
     Args:
-        wishes: of the records.
+        estimates: of the records.
         against: `level` or `preload`.
         tried: legend of the model with the effects; empty where there is none.
         unit: of level and preload.
     """
-    x = wishes.level if against == "level" else wishes.preload
+    x = estimates.level if against == "level" else estimates.preload
     met = [float(value) for value in np.unique(x)]
     ticks: dict[str, Any] = {"tickvals": met, "ticktext": [f"{v:g}" for v in met]}
     traces: list[Trace] = []
     for column, (name, color) in enumerate((("base model", BEFORE), (tried, AFTER))):
         if name:
             shift = 1.0 + 0.03 * column
-            traces += _wish_points(wishes, x * shift, column, name, color)
+            traces += _estimate_points(estimates, x * shift, column, name, color)
     return figure(
         traces,
         axis(f"{against} [{unit}]", log=True, domain=[0.0, 0.45], **ticks),
@@ -118,8 +120,8 @@ def wish_figure(wishes: Wishes, *, against: str, tried: str, unit: str) -> Figur
     )
 
 
-def _wish_points(
-    wishes: Wishes, x: FloatArray, column: int, name: str, color: str
+def _estimate_points(
+    estimates: Wishes, x: FloatArray, column: int, name: str, color: str
 ) -> Sequence[Trace]:
     return [
         {
@@ -134,7 +136,7 @@ def _wish_points(
             "showlegend": legend,
         }
         for values, sd, axes, legend in (
-            (wishes.stiffness, wishes.stiffness_sd, ("x", "y"), True),
-            (wishes.damping, wishes.damping_sd, ("x2", "y2"), False),
+            (estimates.stiffness, estimates.stiffness_sd, ("x", "y"), True),
+            (estimates.damping, estimates.damping_sd, ("x2", "y2"), False),
         )
     ]

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""The page about a gap: what was found, where it sat, why the rivals lost."""
+"""The report about a gap: the finding, its location, and the rejected rivals."""
 
 from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Gap
 from jointbench.analysis.gap.model.evidence_records import Exhibit
 from jointbench.station.report.gap_bars import view_grid
 from jointbench.station.report.gap_figures import (
-    misfit_spectrum,
+    record_estimate_figure,
+    residual_spectrum,
     response_function,
-    wish_figure,
 )
 from jointbench.station.report.gap_numbers import percent, short, sure
+from jointbench.station.report.gap_policy_section import policy_section
 from jointbench.station.report.gap_sentences import (
     SMALL_GAP,
     effect_words,
@@ -19,7 +20,7 @@ from jointbench.station.report.gap_sentences import (
     place,
     why_lost,
 )
-from jointbench.station.report.gap_summary_figure import hero
+from jointbench.station.report.gap_summary_figure import summary_figure
 from jointbench.station.screen.page_parts import (
     DataTable,
     Item,
@@ -36,19 +37,20 @@ MOST_SLICES = 3
 SMALL_SHARE = 0.05
 UNDRAWN = ("frequency", "order")
 """Views with too many slices for bars."""
-HERO_HEIGHT = 640
+SUMMARY_HEIGHT = 640
 SAVE_HINT = "The camera above the picture saves it as SVG for a talk."
 
 
 def gap_report(found: Diagnosis, *, title: str) -> Report:
-    """Arrange a diagnosis as a page."""
+    """Arrange a diagnosis as a report."""
     sections = [
-        Section("picture", "The evidence in one picture", _picture(found)),
-        Section("effects", "What is missing", _effects(found)),
-        Section("where", "Where the gap sits", _where(found)),
+        Section("picture", "Evidence", _picture(found)),
+        Section("effects", "Conclusion", _effects(found)),
+        Section("where", "Location of the gap", _where(found)),
         Section("candidates", "Explanations tried", _candidates(found)),
-        Section("limits", "What could be seen, and what is left", _limits(found)),
-        Section("base", "The model at the end", (_base(found), _pulls(found))),
+        Section("limits", "Tests, noise and repeatability", _limits(found)),
+        Section("base", "Final model", (_base(found), _deviations(found))),
+        policy_section(found.policy),
     ]
     return Report(
         title=headline(found),
@@ -65,7 +67,7 @@ def _lead(found: Diagnosis, title: str) -> str:
     if found.exhibit is not None and found.exhibit.where:
         where = found.exhibit.where
         shown = found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)
-        text += f" Without the effect, {where}." if shown else f" Base: {where}."
+        text += f" Without the effect, {where}." if shown else f" Base model: {where}."
     return text
 
 
@@ -77,12 +79,12 @@ def _tiles(found: Diagnosis) -> tuple[Tile, ...]:
     if _after(found) is not None:
         tiles.append(Tile("gap after", short(after.value), note))
         if before.value > SMALL_GAP:
-            tiles.append(Tile("shrinks by", percent(found.shrink)))
-    pull = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
-    pulls = f"{short(pull)} sd"
+            tiles.append(Tile("reduced by", percent(found.shrink)))
+    largest = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+    deviation = f"{short(largest)} sd"
     if _after(found) is not None:
-        pulls = f"{short(pull)} → {short(after.pull)} sd"
-    tiles.append(Tile("pull of the sheet", pulls, "up to 4 is fair"))
+        deviation = f"{short(largest)} → {short(after.pull)} sd"
+    tiles.append(Tile("largest prior deviation", deviation, "acceptable up to 4 sd"))
     return tuple(tiles)
 
 
@@ -90,24 +92,24 @@ def _sure(found: Diagnosis) -> str:
     if not found.effects:
         return ""
     if found.verdict is Finding.AMBIGUOUS:
-        return f"{len(found.explanations)} explanations fit alike"
+        return f"{len(found.explanations)} explanations fit equally well"
     return f"confidence {sure(max(e.confidence for e in found.effects))}"
 
 
 def _tried(found: Diagnosis) -> str:
-    """Return the legend of what is shown as after; empty for the base itself."""
+    """Return the legend of the model with the effects; empty for the base model."""
     if found.exhibit is None or not found.exhibit.tried:
         return ""
     words = effect_words(found.exhibit.tried)
     refused = found.verdict is Finding.UNKNOWN
-    return f"closest try: {words} (refused)" if refused else f"with {words}"
+    return f"best fit: {words} (rejected)" if refused else f"with {words}"
 
 
 def _picture(found: Diagnosis) -> tuple[Item, ...]:
     exhibit = found.exhibit
     if exhibit is None:
         return ()
-    figure = hero(
+    figure = summary_figure(
         exhibit,
         found.gap_before,
         _after(found),
@@ -115,26 +117,26 @@ def _picture(found: Diagnosis) -> tuple[Item, ...]:
         tried=_tried(found),
         pulls=found.pulls,
     )
-    return (Plot("hero", _hero_caption(found, exhibit), figure, HERO_HEIGHT),)
+    return (Plot("hero", _summary_caption(found, exhibit), figure, SUMMARY_HEIGHT),)
 
 
 def _after(found: Diagnosis) -> Gap | None:
-    """Return the gap with the effects; None where the base is all there is."""
+    """Return the gap with the effects; None where no effect is shown."""
     shown = found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)
     return found.gap_after if shown else None
 
 
-def _hero_caption(found: Diagnosis, exhibit: Exhibit) -> str:
+def _summary_caption(found: Diagnosis, exhibit: Exhibit) -> str:
     curves = exhibit.curves
     text = (
         f"Record {curves.record}, {curves.condition}: channel {curves.channel}, which "
-        f"holds {100 * curves.share:.0f} % of the misfit. "
+        f"holds {100 * curves.share:.0f} % of the residual. "
     )
     if not exhibit.where:
         text = f"Record {curves.record}, {curves.condition}: channel {curves.channel}. "
     if exhibit.tried:
-        text += "Below it the misfit before and after, and what is left, magnified. "
-    return text + "Scatter that the repeats show is taken out. " + SAVE_HINT
+        text += "Below: residual before and after, and the final residual magnified. "
+    return text + "The scatter of repeated hits is removed. " + SAVE_HINT
 
 
 def _effects(found: Diagnosis) -> tuple[Item, ...]:
@@ -153,12 +155,12 @@ def _effects(found: Diagnosis) -> tuple[Item, ...]:
     items: list[Item] = [Text(f"{found.verdict.value.capitalize()}: {found.reason}.")]
     if rows:
         columns = ("effect", "parameter", "value ± sd", "95 %", "unit", "confidence")
-        items.append(DataTable("What the model lacks.", columns, rows))
+        items.append(DataTable("Missing from the model.", columns, rows))
     if found.verdict is Finding.UNKNOWN and found.exhibit is not None:
-        items.append(Text("What it looks like:"))
+        items.append(Text("Signature of the residual:"))
         items += [Text(f"– {line}.") for line in found.exhibit.look]
     if next_step(found):
-        items.append(Text(f"Do next: {next_step(found)}.", "notice"))
+        items.append(Text(f"Next step: {next_step(found)}.", "notice"))
     return tuple(items)
 
 
@@ -192,13 +194,13 @@ def _spectra(exhibit: Exhibit, tried: str) -> list[Item]:
     items: list[Item] = [
         Plot(
             "spectrum",
-            "By frequency: rms misfit of all records over the noise; 1 is noise.",
-            misfit_spectrum(exhibit.spectra, tried=tried),
+            "By frequency: rms residual of all records over the noise; 1 is noise.",
+            residual_spectrum(exhibit.spectra, tried=tried),
             340,
         ),
         Plot(
             "response",
-            f"Response over force, {exhibit.spectra.condition}.",
+            f"Frequency response, {exhibit.spectra.condition}.",
             response_function(exhibit.spectra, tried=tried),
             340,
         ),
@@ -208,9 +210,9 @@ def _spectra(exhibit: Exhibit, tried: str) -> list[Item]:
         items.append(
             Plot(
                 "wishes",
-                "The stiffness and damping of the joint that each record would choose "
-                "by itself, as a change from the model; a right model leaves 0.",
-                wish_figure(
+                "Stiffness and damping of the joint estimated from each record "
+                "separately, relative to the model; 0 for a correct model.",
+                record_estimate_figure(
                     exhibit.wishes,
                     against=against,
                     tried=tried,
@@ -242,7 +244,7 @@ def _where_table(found: Diagnosis) -> DataTable:
 def _candidates(found: Diagnosis) -> tuple[Item, ...]:
     rows = tuple(
         (
-            "base alone" if one.effects == ("none",) else " + ".join(one.effects),
+            "base model" if one.effects == ("none",) else " + ".join(one.effects),
             short(one.behind),
             f"{one.chi2_per_dof:.5g}",
             short(one.pull),
@@ -250,11 +252,19 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
         )
         for one in found.candidates[:MOST_CANDIDATES]
     )
-    columns = ("explanation", "behind", "chi2/dof", "pull [sd]", "reason")
+    policy = found.policy
+    columns = (
+        "explanation",
+        "delta score",
+        "chi2/dof",
+        "prior deviation [sd]",
+        "reason",
+    )
     caption = (
-        "Best first. The score is chi2 with the priors' pull and a charge of 10 for "
-        "each parameter; one that is 15 behind is told apart (60 where one place "
-        "bears two effects)."
+        "Best first. The score is chi2 plus the penalty of the priors plus "
+        f"{policy.parameter_charge:g} for each parameter; a rival is excluded at a "
+        f"delta score of {policy.rival_score:g} "
+        f"({policy.rival_score_one_site:g} where one site has two effects)."
     )
     items: list[Item] = [DataTable(caption, columns, rows)]
     if found.exhibit is not None and found.verdict is not Finding.NONE:
@@ -267,8 +277,8 @@ def _tests(exhibit: Exhibit) -> DataTable:
         (test.label, short(test.drop), f"{100 * test.share:.0f} %")
         for test in exhibit.tests
     )
-    columns = ("effect by itself", "chi2 it would take", "share of the misfit")
-    return DataTable("First look, before any fit, to first order.", columns, rows)
+    columns = ("single effect", "predicted drop of chi2", "share of the residual")
+    return DataTable("Directed tests before any fit, to first order.", columns, rows)
 
 
 def _limits(found: Diagnosis) -> tuple[Item, ...]:
@@ -280,27 +290,28 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
             "null test of the base",
             short(largest),
             short(limit),
-            "largest directed drop of chi2; linearised noise exceeds the limit once "
-            "in 200, an effect is looked for beyond 1.3 times it",
+            "largest drop of chi2 that one effect predicts; noise exceeds the limit "
+            "once in 200 campaigns; the search starts at 1.3 times the limit",
         )
     ]
     if found.exhibit is not None:
         limits = found.exhibit.limits
         rows.append(
             (
-                "chi2/dof at the end",
+                "final chi2/dof",
                 f"{limits.chi2_per_dof:.5g}",
                 f"{limits.chi2_allowed:.5g}",
-                "noise, and a small share for the model's own error",
+                "noise plus a small allowance for the error of the model",
             )
         )
         if limits.remaining is not None:
             rows.append(
                 (
-                    "directed test left",
+                    "remaining directed test",
                     f"{limits.remaining:.4g}",
                     f"{limits.remaining_allowed:.4g}",
-                    "chi2 that one more effect would take; the one nearest its limit",
+                    "predicted drop of chi2 by one more effect, the one nearest its "
+                    "limit",
                 )
             )
     table = DataTable(
@@ -310,8 +321,8 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
         f"Noise floor: {noise['sigma_min']:.3g} to {noise['sigma_max']:.3g} of the "
         f"response's unit, {noise['force_sigma_N']:.3g} {force_unit} of the force. "
         f"Repeatability: hits scatter by {100 * noise['scatter_gain']:.2g} % in "
-        f"strength, the joint by {100 * noise['scatter_joint']:.2g} % in stiffness; "
-        "an effect that does no more than that cannot be seen."
+        f"gain, the joint by {100 * noise['scatter_joint']:.2g} % in stiffness; "
+        "a smaller effect cannot be detected."
     )
     return (Text(floor), table)
 
@@ -321,13 +332,13 @@ def _base(found: Diagnosis) -> DataTable:
     return DataTable("Base parameters.", ("parameter", "value", "unit"), rows)
 
 
-def _pulls(found: Diagnosis) -> DataTable:
+def _deviations(found: Diagnosis) -> DataTable:
     rows = tuple(
         (name, f"{before:+.2f}", f"{after:+.2f}")
         for name, (before, after) in found.pulls.items()
     )
     return DataTable(
-        "Distance of each parameter from its sheet, in standard deviations.",
+        "Prior deviation: distance of each parameter from its nominal value [sd].",
         ("parameter", "before", "after"),
         rows,
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A diagnosis in words: the headline, and why each rival lost."""
+"""A diagnosis in words: the headline, and the reason against each rival."""
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Ranked
 from jointbench.station.report.gap_numbers import percent
@@ -9,9 +9,9 @@ _ALL = "channel:all"
 _MAINLY = 0.6
 _SEEN = {"level": "at", "hit point": "from hits on", "preload": "at preload"}
 SMALL_GAP = 0.3
-"""Gap below which the records are nearly met: the sheet or a directed test tells."""
-SHEET = "sheet"
-"""View of a gap that only the priors see."""
+"""Gap below which the records are nearly met: priors or a directed test decide."""
+PRIORS = "sheet"
+"""View of a gap that shows in the prior deviations only; the key of JSON files."""
 
 
 def place(site: str) -> str:
@@ -42,15 +42,15 @@ def effect_words(label: str) -> str:
 
 
 def headline(found: Diagnosis) -> str:
-    """Return what was found, in one sentence for the top of a page."""
+    """Return what was found, in one sentence for the top of a report."""
     if found.verdict is Finding.NONE:
-        return "Nothing is missing: the model explains every record to its noise"
+        return "Nothing is missing: the model explains every record within its noise"
     if found.verdict is Finding.UNKNOWN:
         return _unknown(found)
     names = _names(found)
     text = f"{names[:1].upper()}{names[1:]} {_explains(found)}"
     if found.verdict is Finding.AMBIGUOUS:
-        text += "; these records do not tell which"
+        text += "; these records cannot distinguish them"
     return text
 
 
@@ -63,32 +63,35 @@ def _names(found: Diagnosis) -> str:
 
 def _unknown(found: Diagnosis) -> str:
     if len(found.explanations) > 1:
-        return "Several explanations fit alike, and these records do not tell which"
+        return (
+            "Several explanations fit equally well; these records cannot "
+            "distinguish them"
+        )
     if found.explanations:
-        return "These records cannot show what is missing, if anything is"
+        return "These records cannot show whether an effect is missing, or which"
     if found.gap_before.value < SMALL_GAP:
-        return "The sheet and the records disagree, and no effect says why"
-    return "Something is missing that no effect of the catalogue explains"
+        return "Nominal parameters and records disagree; no effect explains it"
+    return "An effect is missing that is not in the catalogue"
 
 
 def _explains(found: Diagnosis) -> str:
     several = found.verdict is Finding.NAMED and len(found.effects) > 1
     verb = "explain" if several else "explains"
-    sheet = found.exhibit is None or found.exhibit.view == SHEET
+    priors = found.exhibit is None or found.exhibit.view == PRIORS
     if not found.foretold:
-        return f"{verb} the records, but one condition alone shows it"
-    if found.gap_before.value < SMALL_GAP and not sheet:
+        return f"{verb} the records, but only one condition shows it"
+    if found.gap_before.value < SMALL_GAP and not priors:
         largest, limit = found.null_statistic
         return (
-            f"{verb} what little is missing: a directed test takes {largest:.0f} "
-            f"units of chi2, noise alone seldom more than {limit:.0f}"
+            f"{verb} the small remaining gap: a directed test lowers chi2 by "
+            f"{largest:.0f}, noise rarely by more than {limit:.0f}"
         )
     if found.gap_before.value < SMALL_GAP:
         before = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
         verb = "bring" if several else "brings"
         return (
-            f"{verb} the model back to its sheet: largest pull {before:.2g} sd "
-            f"before, {found.gap_after.pull:.2g} sd after"
+            f"{verb} the parameters back to their nominal values: largest prior "
+            f"deviation {before:.2g} sd before, {found.gap_after.pull:.2g} sd after"
         )
     whole = found.shrink >= 1.0
     size = "the whole" if whole else percent(found.shrink) + " of the"
@@ -96,7 +99,7 @@ def _explains(found: Diagnosis) -> str:
 
 
 def _seen(found: Diagnosis) -> str:
-    """Say in which slice of the telling view the gap is seen, where it is one."""
+    """Name the slice of the most significant view that shows the gap, if it is one."""
     name = found.exhibit.view if found.exhibit is not None else ""
     view = next((v for v in found.gap_before.views if v.name == name), None)
     if view is None or name not in _SEEN or len(view.share) < 2:
@@ -118,7 +121,7 @@ def next_step(found: Diagnosis) -> str:
 
 
 def why_lost(one: Ranked, found: Diagnosis) -> str:
-    """Return why an explanation is not the answer, or what it is.
+    """Return the reason against an explanation, or its place in the answer.
 
     Args:
         one: explanation that was tried.
@@ -129,25 +132,25 @@ def why_lost(one: Ranked, found: Diagnosis) -> str:
     if found.verdict is Finding.NONE and one.effects == ("none",):
         return "nothing more is needed"
     if one is best and found.verdict is not Finding.UNKNOWN:
-        return "the best" if not faults else "the best, although: " + faults
+        return "the best" if not faults else "the best, but " + faults
     if faults:
         return faults
     if found.verdict is Finding.UNKNOWN:
-        return _not_told(one, found)
+        return _not_distinguished(one, found)
     if one.effects in found.explanations:
-        return "not told apart from the best"
+        return "not distinguishable from the best"
     if set(best.effects) < set(one.effects):
-        return "the best and one more that earns nothing"
+        return "the best with one effect more, which explains nothing further"
     return "fits, but less well"
 
 
-def _not_told(one: Ranked, found: Diagnosis) -> str:
+def _not_distinguished(one: Ranked, found: Diagnosis) -> str:
     if one.effects in found.explanations:
-        return "fits, but these records cannot show it"
+        return "fits, but these records cannot confirm it"
     if found.explanations:
         return "fits less well"
     closest = one is found.candidates[0]
-    return "the closest try, refused" if closest else "behind the closest try"
+    return "best fit, rejected" if closest else "fits less well than the best"
 
 
 def _faults(one: Ranked, found: Diagnosis) -> str:
@@ -156,5 +159,5 @@ def _faults(one: Ranked, found: Diagnosis) -> str:
     if limits is not None and one.chi2_per_dof > limits.chi2_allowed:
         faults.append(f"chi2/dof above {limits.chi2_allowed:.4g}")
     if limits is not None and one.pull > limits.pull_allowed:
-        faults.append(f"sheet pulled above {limits.pull_allowed:g} sd")
+        faults.append(f"prior deviation above {limits.pull_allowed:g} sd")
     return ", ".join(faults)

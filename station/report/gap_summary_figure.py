@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The one picture of a gap: the telling record beside the telling view."""
+"""The summary figure of a gap: the representative record and most significant view."""
 
 import textwrap
 from collections.abc import Mapping
@@ -11,51 +11,55 @@ from jointbench.analysis.gap.model.diagnosis_record import Gap
 from jointbench.analysis.gap.model.evidence_records import Curves, Exhibit
 from jointbench.station.report.gap_bars import bar_axes, bars
 from jointbench.station.report.gap_figures import pretty, spectrum, spectrum_axes
-from jointbench.station.report.gap_sentences import SHEET
+from jointbench.station.report.gap_sentences import PRIORS
 from jointbench.station.report.gap_style import AFTER, BEFORE, LEGEND, MEASURED
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.traces import Trace, band, line
 
-Pulls = Mapping[str, tuple[float, float]]
+Deviations = Mapping[str, tuple[float, float]]
 NOISE = "rgba(42, 157, 143, 0.22)"
 TITLE_WIDTH = 76
 SHOWN = 0.6
-"""Share of the misfit of the record that the first look holds; zoom out for more."""
-SHORTEST_LOOK = 0.012
-LONGEST_LOOK = 0.05
+"""Share of the record's residual in the initial time window; zoom out for more."""
+SHORTEST_WINDOW = 0.012
+LONGEST_WINDOW = 0.05
 HALF_WIDTH = 0.62
 
 
-def hero(
+def summary_figure(
     exhibit: Exhibit,
     before: Gap,
     after: Gap | None,
     *,
     title: str,
     tried: str,
-    pulls: Pulls,
+    pulls: Deviations,
 ) -> Figure:
-    """Return the one picture of a gap.
+    """Return the summary figure of a gap.
 
     Args:
         exhibit: evidence of the diagnosis.
         before: gap of the base.
         after: gap with the effects; None where nothing was named.
-        title: what was found, in words.
+        title: the finding, in words.
         tried: legend of the model with the effects; empty where there is none.
-        pulls: of each base parameter, before and after [sd].
+        pulls: prior deviation of each base parameter, before and after [sd].
     """
     curves = exhibit.curves
     x, y, left = _panels(curves, tried)
     view = exhibit.view
     lines = textwrap.wrap(title, TITLE_WIDTH)
-    traces = [*_response(curves, tried), *_misfit(curves, tried), *_left(curves, tried)]
+    traces = [
+        *_response(curves, tried),
+        *_residual(curves, tried),
+        *_left(curves, tried),
+    ]
     if view == "frequency":
         traces += spectrum(exhibit.spectra, tried, axes=("x4", "y4"))
         x4, y4 = spectrum_axes(exhibit.spectra)
-    elif view == SHEET:
-        traces += _pull_bars(pulls, shown=after is not None)
-        x4, y4 = axis("base parameter", type="category"), axis("pull [sd]")
+    elif view == PRIORS:
+        traces += _deviation_bars(pulls, shown=after is not None)
+        x4, y4 = axis("base parameter", type="category"), axis("prior deviation [sd]")
     else:
         traces += bars(view, before, after, axes=("x4", "y4"))
         x4, y4 = bar_axes(view, before)
@@ -81,9 +85,9 @@ def hero(
 def _panels(
     curves: Curves, tried: str
 ) -> tuple[dict[str, object], dict[str, object], dict[str, object]]:
-    """Return the axes of response, misfit and what is left, one above the other."""
-    look = _first_look(curves)
-    times: dict[str, Any] = {"domain": [0.0, HALF_WIDTH], "range": look}
+    """Return the axes of response, residual and final residual, stacked."""
+    window = _first_window(curves)
+    times: dict[str, Any] = {"domain": [0.0, HALF_WIDTH], "range": window}
     unit = pretty(curves.unit)
     heights = ([0.63, 0.94], [0.30, 0.55], [0.0, 0.21])
     if not tried:
@@ -98,22 +102,22 @@ def _panels(
             anchor="y2",
             showticklabels=not tried,
         ),
-        "yaxis2": axis(f"misfit [{unit}]", domain=heights[1], anchor="x2"),
+        "yaxis2": axis(f"residual [{unit}]", domain=heights[1], anchor="x2"),
     }
     if tried:
         more["xaxis3"] = axis("time [ms]", **times, matches="x", anchor="y3")
-        more["yaxis3"] = axis(f"what is left [{unit}]", domain=heights[2], anchor="x3")
+        more["yaxis3"] = axis(f"final [{unit}]", domain=heights[2], anchor="x3")
     return x, y, more
 
 
-def _first_look(curves: Curves) -> list[float]:
-    """Return the span of time that is shown at first [ms]."""
+def _first_window(curves: Curves) -> list[float]:
+    """Return the initial time window [ms]."""
     power = np.cumsum(curves.misfit_before**2)
     start = float(curves.time[0])
-    reach = start + SHORTEST_LOOK
+    reach = start + SHORTEST_WINDOW
     if power[-1] > 0:
         reach = float(curves.time[int(np.searchsorted(power, SHOWN * power[-1]))])
-    span = min(max(1.3 * (reach - start), SHORTEST_LOOK), LONGEST_LOOK)
+    span = min(max(1.3 * (reach - start), SHORTEST_WINDOW), LONGEST_WINDOW)
     return [1e3 * start, 1e3 * min(start + span, float(curves.time[-1]))]
 
 
@@ -130,7 +134,7 @@ def _response(curves: Curves, tried: str) -> list[Trace]:
     return traces
 
 
-def _misfit(curves: Curves, tried: str) -> list[Trace]:
+def _residual(curves: Curves, tried: str) -> list[Trace]:
     time, axes = 1e3 * curves.time, ("x2", "y2")
     traces = [] if tried else _noise_band(curves, axes)
     traces.append(
@@ -179,23 +183,25 @@ def _headings(curves: Curves, view: str) -> list[dict[str, object]]:
     shared |= {"y": 0.95, "yanchor": "bottom"}
     shared |= {"font": {"size": 13, "color": "#5b6b7b"}}
     left = f"record {curves.record}: {curves.channel}, {curves.condition}"
-    right = "misfit over noise, by frequency"
-    if view == SHEET:
-        right = "how far the sheet is bent; up to 4 is fair"
+    right = "residual over noise, by frequency"
+    if view == PRIORS:
+        right = "prior deviation; acceptable up to 4 sd"
     elif view != "frequency":
         right = f"chi2/dof by {view}, all records"
     return [{**shared, "x": 0.0, "text": left}, {**shared, "x": 0.70, "text": right}]
 
 
-def _pull_bars(pulls: Pulls, *, shown: bool) -> list[Trace]:
-    """Return how far each base parameter is off its sheet, before and after."""
+def _deviation_bars(pulls: Deviations, *, shown: bool) -> list[Trace]:
+    """Return bars of each base parameter's prior deviation, before and after."""
     columns = ((0, BEFORE), (1, AFTER)) if shown else ((0, BEFORE),)
     return [
         {
             "type": "bar",
             "x": list(pulls),
-            "y": [float(f"{abs(pull[column]):.4g}") for pull in pulls.values()],
-            "text": [f"{abs(pull[column]):.2g}" for pull in pulls.values()],
+            "y": [
+                float(f"{abs(deviation[column]):.4g}") for deviation in pulls.values()
+            ],
+            "text": [f"{abs(deviation[column]):.2g}" for deviation in pulls.values()],
             "textposition": "outside",
             "cliponaxis": False,
             "showlegend": False,

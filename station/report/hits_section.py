@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report's section on hits: what was struck, how it was judged, and why."""
+"""The report's section on hits: force pulses, responses, verdicts with reasons."""
 
 from collections.abc import Sequence
 
@@ -18,9 +18,9 @@ from jointbench.station.screen.plot_numbers import thin
 from jointbench.station.screen.traces import GREY, PALETTE, Trace, line
 
 BEFORE_TRIGGER = 1.5e-3
-"""Time shown before the trigger in the picture of the pulses [s]."""
+"""Time before the trigger in the plot of the force pulses [s]."""
 AFTER_TRIGGER = 60e-3
-"""Time shown after the trigger, long enough for a bounce to be seen [s]."""
+"""Time after the trigger, long enough to show a double hit [s]."""
 MOST_POINTS = 1600
 REJECTED = frozenset(v.value for v in Verdict if v is not Verdict.OK)
 UNITS = {
@@ -48,8 +48,8 @@ def _pulse_caption(recordings: Sequence[Recording]) -> str:
     hits = [hit for recording in recordings for hit in recording.hits]
     good = sum(hit.verdict is Verdict.OK for hit in hits)
     return (
-        f"Force of all {len(hits)} hits, laid over one another at the trigger: "
-        f"{good} accepted, {len(hits) - good} left out (red, dashed)."
+        f"Force of all {len(hits)} hits, aligned at the trigger: {good} accepted, "
+        f"{len(hits) - good} rejected (red, dotted)."
     )
 
 
@@ -100,7 +100,7 @@ def _responses(recordings: Sequence[Recording]) -> tuple[str, dict[str, object]]
     ]
     caption = (
         f"Response to one hit ({recording.name}, {hit.peak_force:.0f} N): all "
-        "channels, whole block."
+        "channels, entire block."
     )
     plot = figure(traces, axis("time after trigger [s]"), axis(f"response [{unit}]"))
     return caption, dict(plot)
@@ -131,8 +131,8 @@ def _table(recordings: Sequence[Recording]) -> DataTable:
         for number, hit in enumerate(recording.hits, 1)
     )
     return DataTable(
-        "Every hit, its verdict and the number behind it. Nothing is deleted: a hit "
-        "that was left out stays in the session and can be judged again.",
+        "Every hit with its verdict and reason. Rejected hits stay in the session "
+        "and can be assessed again.",
         ("hit", "time [s]", "point", "peak [N]", "verdict", "reason"),
         rows,
         REJECTED,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The report's section on the joint: contact law and identification, side by side."""
+"""The report's section on the joint: contact law compared with identification."""
 
 from jointbench.analysis.lumped.identified import Identification
 from jointbench.station.pipeline.joint_comparison import ContactPrediction
@@ -53,8 +53,9 @@ def _stiffness_plot(
         shapes=[_at_preload(contact)],
     )
     caption = (
-        "Normal stiffness against preload: the contact law from the measured faces, "
-        "and what the measured modes ask of the joint at its preload (dotted)."
+        "Normal stiffness over preload: prediction of the contact law from the "
+        "measured surfaces, and the value identified from the measured modes at the "
+        "preload of the joint (dotted line)."
     )
     return Plot("stiffness-plot", caption, plot, 400)
 
@@ -62,7 +63,7 @@ def _stiffness_plot(
 def _identified(
     contact: ContactPrediction, joint: Identification, link: str
 ) -> list[Trace]:
-    """Return the mark of what the modes determine; one of many solutions has none."""
+    """Return the identified value as a marker; none where it is not identifiable."""
     value = joint.parameter(f"{link}.stiffness")
     if not value.identifiable:
         return []
@@ -96,7 +97,7 @@ def _at_preload(contact: ContactPrediction) -> dict[str, object]:
 def side_by_side(
     contact: ContactPrediction, joint: Identification | None, link: str
 ) -> str:
-    """Say in one sentence how prediction and identification compare."""
+    """Compare prediction and identification in one sentence."""
     predicted = contact.at.state.normal_stiffness
     text = (
         f"At {contact.at.state.preload / 1e3:.4g} kN the contact law "
@@ -111,13 +112,13 @@ def side_by_side(
         return f"{text}; the modes do not determine it (admissible, N/m: {ends})."
     ratio = predicted / measured.value
     text += (
-        f"; the modes say {with_sd(measured.value, measured.sd)} N/m, "
-        f"a ratio of {ratio:.3g}."
+        f"; identification from the modes gives "
+        f"{with_sd(measured.value, measured.sd)} N/m, a ratio of {ratio:.3g}."
     )
     if not 1 / 3 < ratio < 3:
         text += (
-            " Contact of the asperities alone does not explain the joint: bodies, "
-            "bolts, waviness and the scale of the faces act in series with it."
+            " Asperity contact alone does not explain the joint: the compliance of "
+            "bodies, bolts and waviness acts in series with it."
         )
     return text
 
@@ -135,7 +136,7 @@ def _links_table(joint: Identification) -> DataTable:
     )
     return DataTable(
         f"Links identified from frequencies, damping and shapes (± one standard "
-        f"deviation; where it is open, all that is admissible): {joint.verdict.value}. "
+        f"deviation; admissible range if not identifiable): {joint.verdict.value}. "
         f"{'; '.join(joint.reasons)}",
         ("parameter", "value", "unit", "identifiable", "reason"),
         rows,
@@ -162,8 +163,8 @@ def _fit_table(joint: Identification) -> DataTable:
         )
     )
     return DataTable(
-        "Measured modes beside those of the identified bench, and the share of each "
-        "link in a mode's strain energy: a small share says little about the link.",
+        "Measured and identified modes, and the share of each link in the strain "
+        "energy of a mode: a mode with a small share does not determine the link.",
         (
             "mode",
             "measured [Hz]",

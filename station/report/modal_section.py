@@ -39,7 +39,7 @@ def modal_sections(
         Section(
             "modes",
             "Modes",
-            (modes_table(chain), Text(_misfit(chain)), Text(_kalman(chain))),
+            (modes_table(chain), Text(_systematic(chain)), Text(_kalman(chain))),
         ),
         shapes_section(chain, geometry),
         checks_section(chain),
@@ -47,7 +47,7 @@ def modal_sections(
 
 
 def shown_band(frf: Frf) -> IntArray:
-    """Return the indices of the lines worth showing: the excited band and a rim."""
+    """Return the indices of the lines shown: the excited band with a margin."""
     low, high = frf.usable_band or (frf.frequency[0], frf.frequency[-1])
     return np.flatnonzero(
         (frf.frequency >= 0.9 * low)
@@ -78,9 +78,9 @@ def _frf_plot(chain: ModalChain) -> Plot:
         yaxis3=axis("coherence [-]", domain=[0.0, 0.18], range=[0, 1.05]),
     )
     caption = (
-        f"{frf.kind.value.capitalize()} from {frf.averages} accepted hits a point "
-        f"({_estimator(chain)}): measured as lines, synthesised from the identified "
-        "modes as dashes; phase; ordinary coherence."
+        f"{frf.kind.value.capitalize()} from {frf.averages} accepted hits per point "
+        f"({_estimator(chain)}): magnitude, measured (solid) and synthesised from the "
+        "modes (dashed); phase; ordinary coherence."
     )
     return Plot("frf-plot", caption, plot, 620)
 
@@ -185,7 +185,7 @@ def _stabilisation_plot(chain: ModalChain) -> Plot:
     )
     caption = (
         "Poles of every model order of the least-squares complex frequency estimator. "
-        "Vertical lines: the modes that were chosen."
+        "Vertical lines: selected modes."
     )
     return Plot("stabilisation-plot", caption, plot, 440)
 
@@ -214,14 +214,14 @@ def modes_table(chain: ModalChain) -> DataTable:
                 100 * model.damping_ratio[number], 100 * model.damping_ratio_sd[number]
             ),
             *stage_cells(chain, number),
-            "hand" if model.by_hand[number] else "program",
+            "user" if model.by_hand[number] else "program",
         )
         for number in range(len(model.natural_frequency))
     )
     return DataTable(
         "Identified modes with one standard deviation; gain and phase of the Kalman "
         "stage at each mode.",
-        ("mode", "frequency [Hz]", "damping ratio [%]", *STAGE_COLUMNS, "chosen by"),
+        ("mode", "frequency [Hz]", "damping ratio [%]", *STAGE_COLUMNS, "selected by"),
         rows,
     )
 
@@ -232,17 +232,17 @@ def _window(chain: ModalChain) -> str:
     text = f"Windows: {detail['window_reason']}."
     if added > 0:
         text += (
-            f" The exponential window adds {added:.4g} 1/s to every pole's decay; "
-            "that much is taken off again, exactly."
+            f" The exponential window adds {added:.4g} 1/s to the decay rate of every "
+            "pole; this is subtracted exactly."
         )
     missed = 100 * synthesis_error(chain)
-    return f"{text} The synthesis misses {missed:.2g} % of the FRF (rms over the band)."
+    return f"{text} Synthesis error: {missed:.2g} % of the FRF (rms over the band)."
 
 
-def _misfit(chain: ModalChain) -> str:
-    """Say which intervals rest on misfit; results of earlier versions do not tell."""
+def _systematic(chain: ModalChain) -> str:
+    """Name systematic intervals; results of earlier versions do not hold this."""
     if np.isnan(chain.result.model.residual_ratio).all():
-        return "The results file does not say how much of the intervals is noise."
+        return "The results file does not hold the systematic part of the intervals."
     return systematic_words(chain)
 
 
@@ -250,10 +250,10 @@ def _kalman(chain: ModalChain) -> str:
     gain = chain.result.stage_gain
     if gain is None:
         if any(step.name == "kalman_stage" for step in chain.provenance):
-            return "The results file does not keep what the Kalman stage did to a mode."
+            return "The results file does not hold the gain of the Kalman stage."
         return "No Kalman stage was used."
     return (
         f"Kalman stage: {gain.settings.model.value.replace('_', ' and ')} smoother of "
-        "zero phase, run on force and responses alike, so that its gain W cancels in "
-        "the FRF and biases neither frequency nor damping."
+        "zero phase on force and responses; its gain W cancels in the FRF and biases "
+        "neither frequency nor damping."
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What ``jointbench modal`` prints: verdicts, modes by confidence, and what to know."""
+"""What ``jointbench modal`` prints: verdicts, modes by confidence, notes."""
 
 import numpy as np
 from rich.console import Console
@@ -21,9 +21,9 @@ from jointbench.station.screen.value_text import with_sd
 COLUMNS = (
     "mode",
     "natural frequency [Hz]",
-    "of it systematic",
+    "systematic part",
     "damping ratio [%]",
-    "of it",
+    "systematic",
     "orders",
     "rank",
     "confidence",
@@ -49,7 +49,7 @@ def show_modal(chain: ModalChain, notes: ModalNotes, json_target: str | None) ->
     _show_modes(screen, title, chain, rated, ~apart)
     _show_modes(
         screen,
-        f"Found at less than {100 * FEW_ORDERS:.0f} % of {orders} orders, or doubtful",
+        f"Doubtful: stable at less than {100 * FEW_ORDERS:.0f} % of {orders} orders",
         chain,
         rated,
         apart,
@@ -92,8 +92,8 @@ def _row(chain: ModalChain, rated: ModeConfidence, number: int) -> tuple[str, ..
 
 
 def remark(chain: ModalChain, rated: ModeConfidence, number: int) -> str:
-    """Say who chose a mode, if not the program, and whether it may be no mode."""
-    words = ["kept by hand"] if chain.result.model.by_hand[number] else []
+    """Note a mode kept by the user, and one that may be background."""
+    words = ["kept by user"] if chain.result.model.by_hand[number] else []
     if rated.broad[number]:
         words.append("broad: background?")
     return ", ".join(words)
@@ -112,7 +112,7 @@ def _show_beyond(screen: Console, notes: ModalNotes) -> None:
     if rows:
         columns = (
             "peak [Hz]",
-            "height [x the highest within]",
+            "height [of highest in band]",
             "coherence [-]",
             "force [dB]",
         )
@@ -122,15 +122,15 @@ def _show_beyond(screen: Console, notes: ModalNotes) -> None:
 def _legend(chain: ModalChain) -> tuple[str, ...]:
     gain = chain.result.stage_gain
     words = (
-        "systematic: the part of the ± that comes of misfit around a mode (leakage, a "
-        "neighbour left out, a structure that is not linear); more hits do not help"
+        "systematic: part of the interval from model error around a mode (leakage, a "
+        "missing neighbour, nonlinearity); more hits do not reduce it"
     )
     if gain is None:
         return (words,)
     least, most, phase = gain.gain.min(), gain.gain.max(), np.abs(gain.phase).max()
     stage = (
         f"Kalman stage at the modes: |W| {least:.4f} to {most:.4f}, phase within "
-        f"{np.degrees(phase):.1f} deg; alike on all channels, it cancels in the FRF"
+        f"{np.degrees(phase):.1f} deg; equal on all channels, so it cancels in the FRF"
     )
     return (words, stage)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Everything a session can tell: modes, surfaces and, with a bench model, a joint."""
+"""Full analysis of a session: modes, surfaces and, with a bench model, the joint."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -34,9 +34,9 @@ class PreloadAnalysis:
     """Modes at one preload of the joint, and the links that they identify.
 
     Attributes:
-        preload: [N], or None where nobody said.
+        preload: [N], or None where it is not known.
         modal: hits, FRF and modes.
-        run: by which run the modes were found; empty where they were found now.
+        run: run whose results hold the modes; empty if they were extracted now.
         joint: identified from the modes, if a model names the bodies.
     """
 
@@ -48,7 +48,7 @@ class PreloadAnalysis:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SessionAnalysis:
-    """What was found in a session; None or empty where there was nothing to find.
+    """Results of a session; None or empty where the session has no data for them.
 
     Attributes:
         session: as recorded.
@@ -56,7 +56,7 @@ class SessionAnalysis:
         preloads: modes at each preload that has some.
         surfaces: from its surfaces.
         contact: predicted from the surfaces, if a model names a contact.
-        remarks: what could not be done, and why, a line each.
+        remarks: stages that failed, with the reason, one line each.
     """
 
     session: Session
@@ -86,12 +86,12 @@ def analyse_session(
 ) -> SessionAnalysis:
     """Run every stage that the session and the model allow.
 
-    A stage that cannot be done becomes a remark; it does not take the others along.
+    A stage that fails becomes a remark; the other stages still run.
 
     Args:
         session: as recorded.
         model: of the bench, or None.
-        stored: results that exist; modes are taken from them and not looked for again.
+        stored: existing results; their modes are used instead of a new extraction.
         run: store and source of the stages; None to keep none.
     """
     run = run or StageRun()
@@ -121,7 +121,7 @@ def _modes(
     run: StageRun,
     remarks: Remarks,
 ) -> tuple[PreloadAnalysis, ...]:
-    """Return the modes at each preload: those that are stored, else found now."""
+    """Return the modes at each preload, stored ones where they exist."""
     if not recordings:
         return ()
     found = []

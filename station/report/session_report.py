@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench report``: one offline page about a session."""
+"""``jointbench report``: one offline HTML report about a session."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
+from jointbench.acquisition.basics.registry import Registry
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.recordings import Verdict
 from jointbench.acquisition.session_file.store import read_session
+from jointbench.analysis.contact.model_catalogue import contact_law_package
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
@@ -15,6 +18,13 @@ from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.report.hits_section import hits_section
 from jointbench.station.report.joint_section import joint_section
 from jointbench.station.report.modal_section import modal_sections
+from jointbench.station.report.report_sections import (
+    REPORT_SECTIONS_GROUP,
+    ReportSection,
+    SessionView,
+    made_sections,
+    section_fault,
+)
 from jointbench.station.report.session_analysis import SessionAnalysis, analyse_session
 from jointbench.station.report.surface_section import surface_section
 from jointbench.station.results.results_beside import stored_results
@@ -40,10 +50,10 @@ def run_report(
     json_target: str | None,
     run: StageRun | None = None,
 ) -> Path:
-    """Write the page of `session` beside it, or to `out`.
+    """Write the report of `session` next to it, or to `out`.
 
-    Modes are those of the results that exist, see `stored_results`; where there are
-    none, they are looked for now, by stages that `run` keeps.
+    Modes come from existing results, see `stored_results`; without results they are
+    extracted now, and `run` stores the stages.
     """
     target = out or session.with_suffix(".html")
     given = (session, model, geometry, results)
@@ -60,8 +70,12 @@ def run_report(
         {"preload_n": one.preload, "results": one.run or None}
         for one in analysis.preloads
     ]
-    page = {"report": str(target), "remarks": list(analysis.remarks), "modes": runs}
-    write_json(json_target, page)
+    content_json = {
+        "report": str(target),
+        "remarks": list(analysis.remarks),
+        "modes": runs,
+    }
+    write_json(json_target, content_json)
     return target
 
 
@@ -73,27 +87,17 @@ def compose(
     extra: tuple[Section, ...] = (),
     geometry: Geometry | None = None,
 ) -> Report:
-    """Arrange an analysis as a page; `extra` sections come first.
+    """Arrange an analysis as a report; `extra` sections come first.
 
     Shapes are drawn on the `geometry`, or on a row of points without one.
     """
-    session = analysis.session
+    session, view = analysis.session, SessionView(analysis, bench, geometry)
     sections = list(extra)
-    if analysis.remarks:
-        notes = tuple(Text(remark, "notice") for remark in analysis.remarks)
-        sections.append(Section("remarks", "Remarks", notes))
-    if analysis.recordings:
-        sections.append(hits_section(analysis.recordings))
-    several = len(analysis.preloads) > 1
-    for one in analysis.preloads:
-        own = modal_sections(one.modal, geometry)
-        at = at_words(one.preload) if several else ""
-        sections += placed_sections(own, at)
-    if analysis.surfaces:
-        sections.append(surface_section(analysis.surfaces))
-    if analysis.contact is not None or analysis.joint is not None:
-        sections += _joint_sections(analysis, joint_link(bench))
-    sections.append(_provenance(analysis))
+    entries = REPORT_SECTIONS.entries()
+    for entry in entries:
+        sections += made_sections(entry, view)
+    added = [(e.value.name, e.package) for e in entries if not e.built_in]
+    sections.append(_provenance(analysis, added))
     return Report(
         title=title,
         lead=_lead(analysis),
@@ -104,8 +108,39 @@ def compose(
     )
 
 
-def _joint_sections(analysis: SessionAnalysis, link: str) -> list[Section]:
-    """Return a section for each preload with links; one where there is but one."""
+def _remarks(view: SessionView) -> list[Section]:
+    notes = tuple(Text(remark, "notice") for remark in view.analysis.remarks)
+    return [Section("remarks", "Remarks", notes)] if notes else []
+
+
+def _hits(view: SessionView) -> list[Section]:
+    recordings = view.analysis.recordings
+    return [hits_section(recordings)] if recordings else []
+
+
+def _modes(view: SessionView) -> list[Section]:
+    preloads = view.analysis.preloads
+    several = len(preloads) > 1
+    return [
+        section
+        for one in preloads
+        for section in placed_sections(
+            modal_sections(one.modal, view.geometry),
+            at_words(one.preload) if several else "",
+        )
+    ]
+
+
+def _surfaces(view: SessionView) -> list[Section]:
+    surfaces = view.analysis.surfaces
+    return [surface_section(surfaces)] if surfaces else []
+
+
+def _joint(view: SessionView) -> list[Section]:
+    """Return one section for each preload with identified links."""
+    analysis, link = view.analysis, joint_link(view.bench)
+    if analysis.contact is None and analysis.joint is None:
+        return []
     known = [one for one in analysis.preloads if one.joint is not None]
     if len(known) < 2:
         return [joint_section(analysis.contact, analysis.joint, link)]
@@ -119,7 +154,7 @@ def _joint_sections(analysis: SessionAnalysis, link: str) -> list[Section]:
 
 
 def joint_link(bench: BenchModel | None) -> str:
-    """Return the link that the contact law speaks of, else the last one."""
+    """Return the link of the contact law, else the last link."""
     if bench is None:
         return ""
     return bench.contact.link if bench.contact else list(bench.links)[-1]
@@ -202,7 +237,26 @@ def _tiles_of(chain: ModalChain, at: str) -> list[Tile]:
     return tiles
 
 
-def _provenance(analysis: SessionAnalysis) -> Section:
+_SECTIONS = (
+    ReportSection("remarks", _remarks),
+    ReportSection("hits", _hits),
+    ReportSection("modes", _modes),
+    ReportSection("surfaces", _surfaces),
+    ReportSection("joint", _joint),
+)
+REPORT_SECTIONS = Registry(
+    REPORT_SECTIONS_GROUP,
+    "report section",
+    ReportSection,
+    lambda: _SECTIONS,
+    fault=section_fault,
+)
+"""The sections of a report in their order; those of other packages follow."""
+
+
+def _provenance(
+    analysis: SessionAnalysis, added: Sequence[tuple[str, str]] = ()
+) -> Section:
     records = [*analysis.session.recordings, *analysis.session.surfaces]
     rows = [
         (record.name, step.name, _detail(step))
@@ -219,6 +273,10 @@ def _provenance(analysis: SessionAnalysis) -> Section:
             (f"{chain.surface.name}, fit", step.name, _detail(step))
             for step in chain.fit.provenance
         ]
+    if analysis.contact is not None:
+        law = analysis.contact.at.state.model
+        rows.append(("contact", law, f"package {contact_law_package(law)}"))
+    rows += [("report", f"section {name}", f"package {p}") for name, p in added]
     table = DataTable(
         "Every step from the instrument to the numbers above.",
         ("of", "step", "detail"),

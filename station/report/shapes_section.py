@@ -69,11 +69,10 @@ def _drawing(chain: ModalChain, drawn: DrawnShapes) -> Plot:
     where = (
         "on the geometry given"
         if drawn.measured
-        else "points in a row, in the order measured: give --geometry for their places"
+        else "points in a row in measured order; --geometry gives their positions"
     )
     caption = (
-        f"Mode shapes, {where}. Choose a mode above to see it move; turn the drawing "
-        "with the mouse."
+        f"Mode shapes, {where}. Select a mode above to animate it; drag to rotate."
     )
     return Plot("shapes-plot", caption, {**drawing, "frames": frames}, 480)
 
@@ -110,7 +109,7 @@ def _wire(
 
 
 def _scene(drawn: DrawnShapes, extent: float) -> Figure:
-    """Return fixed axes, so that nothing jumps while a shape moves."""
+    """Return fixed axes, so that the view stays still during animation."""
     unit = " [m]" if drawn.measured else ""
     room = 1.2 * _AMPLITUDE * extent
     low, high = drawn.place.min(axis=0) - room, drawn.place.max(axis=0) + room
@@ -126,7 +125,7 @@ def _scene(drawn: DrawnShapes, extent: float) -> Figure:
 
 
 def _menu(chain: ModalChain) -> Figure:
-    """Return a menu with one entry a mode, and one that stops the movement."""
+    """Return a menu with one entry per mode and one that stops the animation."""
     play = {
         "mode": "immediate",
         "frame": {"duration": _MILLISECONDS, "redraw": True},
@@ -167,8 +166,8 @@ def _mac(chain: ModalChain) -> Plot:
         },
     )
     caption = (
-        "Modal assurance criterion of each shape with each other: 1 on the diagonal; "
-        "high values beside it mean modes that these points cannot tell apart."
+        "Modal assurance criterion between all shapes: 1 on the diagonal; high values "
+        "off the diagonal are modes that the measured points cannot distinguish."
     )
     return Plot("mac-plot", caption, plot, 380)
 
@@ -189,10 +188,10 @@ def _table(chain: ModalChain) -> DataTable:
         for i, frequency in enumerate(model.natural_frequency)
     )
     return DataTable(
-        "How nearly real each shape is: modal phase collinearity (1 for a real mode) "
-        "and mean phase deviation (0); modal mass with the largest component 1, from "
-        "the driving point, and the phase there (0 for a real mode and a well-placed "
-        "sensor).",
+        "Complexity of the shapes: modal phase collinearity MPC (1 for a real mode), "
+        "mean phase deviation MPD (0 for a real mode); modal mass from the driving "
+        "point, scaled to a largest component of 1, and the phase there (0 for a real "
+        "mode and a collocated sensor).",
         (
             "mode",
             "frequency [Hz]",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The page about a structure's joints: numbers, likelihoods, shapes to turn around."""
+"""The report on the joints of a structure: parameters, likelihoods, mode shapes."""
 
 from pathlib import Path
 
@@ -48,7 +48,7 @@ def write_structure_report(
     result: StructureIdentification,
     theory: Section | None = None,
 ) -> None:
-    """Write one offline HTML page about identified joints."""
+    """Write one offline HTML report about identified joints."""
     sections = [
         Section("parameters", "Joints", (_parameters(result), *_reasons(result))),
         *([theory] if theory is not None else []),
@@ -63,7 +63,11 @@ def write_structure_report(
         software=software_version(),
         simulated=False,
         tiles=tuple(
-            Tile(one.name, f"{_tile(one)} {one.unit}", _sure(one.identifiable))
+            Tile(
+                one.name,
+                f"{_tile(one)} {one.unit}",
+                _identifiable_words(one.identifiable),
+            )
             for one in result.parameters[:6]
         ),
         sections=tuple(section for section in sections if section.items),
@@ -75,7 +79,7 @@ def _tile(one: JointParameter) -> str:
     return f"{one.value:.4g}" if one.identifiable else interval_text(one.interval)
 
 
-def _sure(identifiable: bool) -> str:
+def _identifiable_words(identifiable: bool) -> str:
     return "identifiable" if identifiable else "not identifiable"
 
 
@@ -86,15 +90,15 @@ def _parameters(result: StructureIdentification) -> DataTable:
             with_sd(one.value, one.sd) if one.identifiable else "-",
             one.unit,
             interval_text(one.interval),
-            _sure(one.identifiable),
+            _identifiable_words(one.identifiable),
         )
         for one in result.parameters
     )
     columns = ("parameter", "value ± sd", "unit", "95 % interval", "verdict")
     return DataTable(
-        f"{result.verdict.value}; standard deviations from the measured covariance. "
-        "Where a parameter is not identifiable, the interval holds all admissible "
-        "solutions.",
+        f"Identification {result.verdict.value}; standard deviations from the measured "
+        "covariance. The interval of a parameter that is not identifiable covers all "
+        "admissible solutions.",
         columns,
         rows,
         frozenset({"not identifiable"}),
@@ -133,10 +137,10 @@ def _profiles(result: StructureIdentification) -> list[Item]:
         rise = profile.chi2 - profile.chi2.min()
         limit = np.full(profile.value.size, 3.84)
         curves = [
-            line(profile.value, rise, "chi2 above the best"),
+            line(profile.value, rise, "delta chi2"),
             line(profile.value, limit, "95 %", color=PALETTE[1], dash="dash"),
         ]
-        plot = figure(curves, axis(name, log=True), axis("rise of chi2"))
+        plot = figure(curves, axis(name, log=True), axis("delta chi2 [-]"))
         found.append(Plot(f"profile-{number}", f"Profile of {name}", plot, 280))
     return found
 
@@ -146,20 +150,20 @@ def _solutions(result: StructureIdentification) -> DataTable:
     rows = tuple(
         (
             f"{one.chi2:.4g}",
-            "stands" if one.admissible else "falls",
+            "admissible" if one.admissible else "excluded",
             *(f"{one.parameters[name]:.4g}" for name in names),
         )
         for one in result.solutions
     )
     return DataTable(
-        "Ends of all searches, the best first.", ("chi2", "", *names), rows
+        "Solutions of all starts, best first.", ("chi2", "verdict", *names), rows
     )
 
 
 def _shapes(
     structure: Structure, model: ReducedModel, result: StructureIdentification
 ) -> list[Item]:
-    """Return the lowest elastic shapes of the best solution as turnable bodies."""
+    """Return the lowest elastic shapes of the best solution as 3-D plots."""
     found = solve_reduced(model, _stiffness(model, result))
     elastic = np.flatnonzero(found.natural_frequency > 0)[:SHAPES_SHOWN]
     items: list[Item] = []
@@ -169,13 +173,13 @@ def _shapes(
         frequency = float(found.natural_frequency[at])
         plot = shape_figure(structure, motion.reshape(-1, 3))
         items.append(
-            Plot(f"shape-{at}", f"{frequency:.1f} Hz; drag to turn", plot, 420)
+            Plot(f"shape-{at}", f"{frequency:.1f} Hz; drag to rotate", plot, 420)
         )
     return items
 
 
 def _stiffness(model: ReducedModel, result: StructureIdentification) -> FloatArray:
-    """Return the best stiffnesses of the first state; what was not sought is left."""
+    """Return the best stiffnesses of the first state; others keep unit stiffness."""
     best = result.solutions[0].parameters
     values = []
     for name in model.names:
@@ -185,7 +189,7 @@ def _stiffness(model: ReducedModel, result: StructureIdentification) -> FloatArr
 
 
 def shape_figure(structure: Structure, motion: FloatArray) -> Figure:
-    """Return bodies bent by a shape, coloured by how far each point moves.
+    """Return bodies deformed by a shape, coloured by displacement.
 
     Args:
         structure: bodies and joints.

@@ -28,7 +28,7 @@ BAD = frozenset({"no scaling range", "instrument-limited"})
 
 
 def surface_section(chains: Sequence[SurfaceChain]) -> Section:
-    """Return the section: each face's heights, then all structure functions."""
+    """Return the section: heights of each surface, then all structure functions."""
     items: list[Item] = [_heights(chain, n) for n, chain in enumerate(chains)]
     items += [_structure_plot(chains), _slope_plot(chains), _table(chains)]
     items += [Text(said, "notice") for c in chains for said in chain_cautions(c)]
@@ -100,7 +100,7 @@ def _structure_plot(chains: Sequence[SurfaceChain]) -> Plot:
                 line(
                     curve.lag * 1e6,
                     curve.surface * 1e12,
-                    f"{name}, surface alone",
+                    f"{name}, without instrument",
                     color=GREY,
                     dash="dot",
                 )
@@ -109,8 +109,8 @@ def _structure_plot(chains: Sequence[SurfaceChain]) -> Plot:
         traces, axis("lag [µm]", log=True), axis("structure function S [µm²]", log=True)
     )
     caption = (
-        "Structure function: points measured, line as the instrument shows the fitted "
-        "surface, dots the fitted surface without the instrument."
+        "Structure function: measured (points), fitted surface as seen through the "
+        "instrument (line) and without the instrument (dotted)."
     )
     return Plot("structure-plot", caption, plot, 420)
 
@@ -133,8 +133,8 @@ def _slope_plot(chains: Sequence[SurfaceChain]) -> Plot:
         axis("local slope 4 - 2D [-]", range=[-0.2, 2.2]),
     )
     caption = (
-        "Local slope of ln S over ln lag: level where the surface is self-affine, 2 "
-        "where it is smooth, 0 where it is noise or longer than its longest wave."
+        "Local slope of ln S over ln lag: constant where the surface is self-affine, "
+        "2 where it is smooth, 0 for white noise and beyond its longest wavelength."
     )
     return Plot("slope-plot", caption, plot, 300)
 
@@ -150,8 +150,9 @@ def _table(chains: Sequence[SurfaceChain]) -> DataTable:
             row[4] = " to ".join(engineering(end, "m") for end in fit.fit_band)
         rows.append(tuple(row))
     return DataTable(
-        "Fractal parameters of a line on each surface; D with one standard deviation, "
-        "G with its 95 % interval; where that is wider than a decade, S at its pivot.",
+        "Fractal parameters of a profile of each surface; D with one standard "
+        "deviation, G with its 95 % interval; S at the pivot lag where that interval "
+        "exceeds a decade.",
         ("surface", "verdict", "D [-]", HEADING, "fit band", "instrument model"),
         tuple(rows),
         BAD,

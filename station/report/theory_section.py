@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Identified joints beside the contact law: the table and the plots."""
+"""Identified joints compared with the contact law: table and plots."""
 
 from collections.abc import Sequence
 
@@ -15,13 +15,13 @@ from jointbench.station.screen.page_parts import DataTable, Item, Plot, Section,
 from jointbench.station.screen.terminal import console, table
 from jointbench.station.screen.traces import PALETTE, Trace
 
-TITLE = "Identified joint beside the contact law (95 % intervals)"
+TITLE = "Identified joint compared with the contact law (95 % intervals)"
 NOTE = (
-    "The law's damping is the loss of a first loading, at the frequency of the mode "
-    "that works the joint most: an upper bound for a small vibration. Bodies, bolts "
-    "and waviness act beside and in series with the contacts; the law knows none."
+    "The damping of the law is the loss of a first loading at the frequency of the "
+    "mode with the largest strain energy in the joint: an upper bound for small "
+    "vibration. The law does not include the compliance of bodies, bolts and waviness."
 )
-# Models stand side by side at each preload, this far apart in ratio.
+# Markers of several models are shifted by this ratio at each preload.
 _APART = 1.02
 
 
@@ -29,7 +29,7 @@ HEADS = ("quantity", "state", "identified", "model", "predicted", "ratio", "over
 
 
 def theory_table(rows: Sequence[TheoryRow]) -> list[tuple[str, ...]]:
-    """Return the cells of the comparison, a line for each model, under `HEADS`."""
+    """Return the cells of the comparison, one row per model, under `HEADS`."""
     order = list(JointQuantity)
     ranked = sorted(rows, key=lambda row: (order.index(row.quantity), row.preload))
     return [
@@ -46,7 +46,7 @@ def theory_table(rows: Sequence[TheoryRow]) -> list[tuple[str, ...]]:
 
 
 def _state(row: TheoryRow) -> str:
-    """Name a state by its torque or preload, whichever its label lacks."""
+    """Name a state by torque or preload, the one that its label lacks."""
     if row.torque is not None:
         return f"{row.state}, {row.torque:.4g} N m"
     return f"{row.state}, {row.preload:.4g} N"
@@ -61,7 +61,7 @@ def _estimate(one: StateEstimate) -> str:
 
 
 def _identified(row: TheoryRow) -> str:
-    """Write what was identified: where it is open, all that is admissible."""
+    """Write the identified value, or its admissible range if not identifiable."""
     if row.identifiable:
         return _estimate(row.identified)
     ends = interval_text((row.identified.low, row.identified.high))
@@ -86,7 +86,7 @@ def show_theory(rows: Sequence[TheoryRow], json_target: str | None) -> None:
 
 
 def theory_section(rows: Sequence[TheoryRow]) -> Section | None:
-    """Return the section of the page: the table, and a plot of each quantity."""
+    """Return the section of the report: the table, and a plot of each quantity."""
     if not rows:
         return None
     items: list[Item] = [
@@ -99,13 +99,13 @@ def theory_section(rows: Sequence[TheoryRow]) -> Section | None:
         )
         if own:
             items.append(_plot(quantity, own))
-    return Section("theory", "Against theory", tuple(items))
+    return Section("theory", "Comparison with the contact law", tuple(items))
 
 
 def _plot(quantity: JointQuantity, rows: Sequence[TheoryRow]) -> Plot:
     preload = [row.preload / 1e3 for row in rows]
-    sure = [row.identified if row.identifiable else None for row in rows]
-    traces = [_points(preload, sure, "identified", PALETTE[1])]
+    known = [row.identified if row.identifiable else None for row in rows]
+    traces = [_points(preload, known, "identified", PALETTE[1])]
     models = list(dict.fromkeys(name for row in rows for name in row.predicted))
     for number, name in enumerate(models):
         shifted = [one * _APART ** (number + 1) for one in preload]
@@ -115,7 +115,7 @@ def _plot(quantity: JointQuantity, rows: Sequence[TheoryRow]) -> Plot:
     words = quantity.replace("_", " ")
     plot = figure(
         traces,
-        axis("preload [kN], models side by side", log=True),
+        axis("preload [kN]", log=True),
         axis(f"{words} [{unit_of(quantity)}]", log=True),
     )
     caption = f"{words.capitalize()}: identified and predicted, 95 % intervals"
@@ -125,7 +125,7 @@ def _plot(quantity: JointQuantity, rows: Sequence[TheoryRow]) -> Plot:
 def _points(
     x: Sequence[float], found: Sequence[StateEstimate | None], name: str, color: str
 ) -> Trace:
-    """Return points with intervals; a value of 0 has no place on a logarithm."""
+    """Return points with intervals; a log axis cannot show a value of 0."""
     kept = [(at, one) for at, one in zip(x, found, strict=True) if one and one.value]
     return {
         "type": "scatter",

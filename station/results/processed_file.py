@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The results file of a recipe, layout 2: one file for all that a session tells.
+"""The results file of a recipe, layout 2: one file for all results of a session.
 
 ::
 
@@ -8,7 +8,7 @@
     /hits         hits as judged now, and what the stored verdict was
     /modal/<n>    frf, synthesis, stabilisation, modes of each preload, as in layout 1
     /surfaces/<n> structure function of each surface
-    /pages        contact, joint and gap as JSON, a line of 4096 characters a row
+    /pages        contact, joint and gap as JSON, rows of 4096 characters
     /stages       names and keys of the stages
     /remarks      what could not be done
 
@@ -211,7 +211,7 @@ def _write_pages(file: h5py.File, result: ProcessedSession) -> None:
 def _pages(
     result: ProcessedSession,
 ) -> Iterator[tuple[str, dict[str, Any] | None]]:
-    """Yield the pages; links at several preloads are one page with a list."""
+    """Yield the documents; links at several preloads are one document with a list."""
     yield "contact", result.contact
     joints = [{"preload_n": preload} | page for preload, page in result.joints]
     if joints:

@@ -32,7 +32,7 @@ class ResultQuantity:
         value: [unit]; NaN where there is a word in its place.
         sd: its standard deviation [unit]; NaN where none is known.
         word: a verdict, where the quantity is one.
-        preload: at which it was found [N]; NaN where nobody said.
+        preload: at which it was found [N]; NaN where not given.
     """
 
     part: str
@@ -66,7 +66,7 @@ def quantities_of(result: ProcessedSession) -> tuple[ResultQuantity, ...]:
 
 
 def _preload(result: ProcessedSession, own: float | None) -> float:
-    """Return the preload of a part, else of the session [N]; NaN where nobody said."""
+    """Return the preload of a part, else of the session [N]; NaN where not given."""
     joint = result.session.joint
     stored = None if joint is None else joint.preload
     preload = own if own is not None else stored

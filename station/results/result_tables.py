@@ -57,7 +57,7 @@ def result_tables(path: Path) -> list[ExportTable]:
 
 
 def result_texts(path: Path) -> dict[str, str]:
-    """Return the recipe and the pages of contact, joint and gap: JSON by its name."""
+    """Return the recipe and the JSON documents of contact, joint and gap by name."""
     with open_result(path) as file:
         return {
             name.rpartition("/")[2]: "".join(read_texts(file[f"{name}/text"]))

@@ -112,7 +112,7 @@ def _run_words(file: h5py.File, modes: Sequence[StoredModes]) -> str:
 
 
 def _asked(steps: Provenance) -> str:
-    """Say what was asked of a run, as far as its steps tell."""
+    """Return the options of a run, as far as its steps record them."""
     details = {step.name: dict(step.detail) for step in steps}
     frf, modes = (details.get(n, {}) for n in ("estimate_frf", "identify_modes"))
     known = (
@@ -175,7 +175,7 @@ def _pair(group: h5py.Group, name: str) -> tuple[float, float] | None:
 
 
 def _missed(group: h5py.Group, frf: Frf, synthesis: Frf) -> FloatArray:
-    """Return what the synthesis misses on each line; files without it are reckoned."""
+    """Return the synthesis error of each line, computed where the file lacks it."""
     stored = _optional(group, "missed")
     if stored is not None:
         return stored
@@ -192,7 +192,7 @@ def _model(group: h5py.Group, frf: Frf, steps: Provenance) -> ModalModel:
     count = residues.shape[0]
     unknown = np.full(count, np.nan)
     orders = group.get("stable_orders")
-    significance, misfit = (
+    significance, residual = (
         _optional(group, name) for name in ("significance", "misfit")
     )
     return ModalModel(
@@ -206,7 +206,7 @@ def _model(group: h5py.Group, frf: Frf, steps: Provenance) -> ModalModel:
         shapes_sd=_complex_or_nan(group, "shape_sd", shapes.shape),
         participation=participation,
         significance=unknown if significance is None else significance,
-        residual_ratio=unknown if misfit is None else misfit,
+        residual_ratio=unknown if residual is None else residual,
         stable_orders=np.zeros(count, np.int64)
         if orders is None
         else read_integers(orders),

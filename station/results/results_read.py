@@ -111,7 +111,7 @@ def open_result(path: Path) -> Iterator[h5py.File]:
 
 
 def is_results(path: Path) -> bool:
-    """Tell results of any layout, later ones too, from sessions, whatever their names.
+    """Return whether a file holds results of any layout, whatever its name.
 
     Raises:
         BadData: it is neither, or asks for more than a result would.
@@ -135,7 +135,9 @@ def read_result(path: Path) -> StoredResult:
         if schema == MODAL_SCHEMA:
             return _modal(file, path)
         later = isinstance(schema, str) and schema.startswith(_FAMILY)
-        way = "a later jointbench reads it" if later else "`jointbench inspect` tells"
+        way = (
+            "a later jointbench reads it" if later else "`jointbench inspect` shows it"
+        )
         raise FormatError(
             f"{named(path)} has the layout {shown(schema)}, results have "
             f"{MODAL_SCHEMA!r} or {PROCESSED_SCHEMA!r}; {way}"

@@ -64,7 +64,7 @@ class LinkTable(StrictTable):
 
 
 class ContactTable(StrictTable):
-    """What the contact law needs to predict one link from its two faces."""
+    """Input of the contact law for the prediction of one link from two surfaces."""
 
     link: str
     preload: Force
@@ -78,7 +78,7 @@ class GapTable(StrictTable):
     """What `gap` needs beside bodies and links.
 
     What all channels measure; the preload [N] that the nominal values belong to; the
-    scatter from hit to hit relative to the peak response [-], where no repeats tell;
+    scatter from hit to hit relative to the peak response [-], without repeats;
     the sessions to examine, beside this file, where it is given in their place.
     """
 

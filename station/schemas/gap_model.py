@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""From a bench model file to the sheet of the gap engine: values with priors."""
+"""From a bench model file to nominal parameters with priors of the gap engine."""
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.model.nominal import Sheet
 from jointbench.station.schemas.bench_model import BenchModel, lumped_model
 
 
-def gap_sheet(bench: BenchModel) -> Sheet:
+def nominal_parameters(bench: BenchModel) -> Sheet:
     """Return the model of a bench whose every value has a prior, and its hit points.
 
     Raises:

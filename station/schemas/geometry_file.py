@@ -62,7 +62,7 @@ def draw_shapes(
     geometry: Geometry | None,
     directions: Mapping[str, str] | None = None,
 ) -> DrawnShapes:
-    """Lay the shapes of a model on points.
+    """Draw the shapes of a model on points.
 
     Where the hammer roved (more inputs than outputs) the shape is that of the inputs,
     by reciprocity. Without a geometry the points stand in a row, in order.

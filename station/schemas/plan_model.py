@@ -25,12 +25,13 @@ import re
 from datetime import date
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
-from jointbench.acquisition.basics.errors import UnitError
+from jointbench.acquisition.basics.errors import UnitError, UsageError
 from jointbench.acquisition.basics.units import parse_sensitivity, parse_value
 from jointbench.acquisition.ni.sensors import Axis, Sensor
 from jointbench.acquisition.records.recordings import Quantity
+from jointbench.acquisition.serial_lines.instruments import torque_tester
 from jointbench.station.files.toml_file import StrictTable, with_unit
 
 _SECONDS_IN_A_MINUTE = 60.0
@@ -176,16 +177,25 @@ class PlanJointTable(StrictTable):
         return self.bolts * torque / (self.nut_factor * self.diameter)
 
 
+def _known_tester(name: str) -> str:
+    """Refuse a torque tester that neither jointbench nor a package has."""
+    try:
+        return torque_tester(name).value.name
+    except UsageError as error:
+        raise ValueError(str(error)) from error
+
+
 class TorqueTable(StrictTable):
     """The torque tester that every bolt is tightened with, on a serial line.
 
     A bolt's torque is the largest reading between two rests. A reading beside the
     target by more than `tolerance` is asked for again, `tries` times at the most.
+    The instrument is a Mark-10, or one that a package adds; its usual `baud` if None.
     """
 
-    instrument: Literal["mark10"] = "mark10"
+    instrument: Annotated[str, AfterValidator(_known_tester)] = "mark10"
     line: str = Field(min_length=1)
-    baud: int = Field(default=115_200, ge=300, le=4_000_000)
+    baud: int | None = Field(default=None, ge=300, le=4_000_000)
     tolerance: float = Field(default=0.1, gt=0, lt=1)
     tries: int = Field(default=3, ge=1, le=100)
     poll: _Seconds = 0.02
@@ -215,7 +225,7 @@ class MeasureTable(StrictTable):
     def _bolts_known(self) -> "MeasureTable":
         if self.torque is not None and (self.joint is None or not self.hits.torques):
             raise ValueError(
-                "[torque] reads bolts that nobody names; give torques in [hits], and "
+                "[torque] reads bolts that no entry names; give torques in [hits], and "
                 "bolts and diameter in [joint]"
             )
         return self

@@ -19,8 +19,15 @@ from pydantic import (
 
 from jointbench.acquisition.basics.errors import BadData, JointbenchError
 from jointbench.acquisition.file_access.quoting import named, shown
-from jointbench.analysis.contact.model_catalogue import contact_model
-from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
+from jointbench.analysis.contact.model_catalogue import (
+    contact_law_code,
+    contact_model,
+)
+from jointbench.analysis.gap.catalogue.catalogue import check_names
+from jointbench.analysis.gap.catalogue.installed_effects import (
+    effect_code,
+    installed_catalogue,
+)
 from jointbench.station.files.toml_file import (
     StrictTable,
     read_toml,
@@ -57,7 +64,7 @@ class SurfacePart(StrictTable):
 
 
 class ContactPart(StrictTable):
-    """What the contact law needs to predict the joint from the session's faces."""
+    """Input of the contact law for the prediction of the joint from its surfaces."""
 
     modulus: Pressure
     hardness: Pressure
@@ -132,7 +139,7 @@ def read_recipe(path: Path) -> Recipe:
 
 
 def _check_names(recipe: Recipe, path: Path) -> None:
-    """Refuse names of contact models and effects that nobody has, before any work."""
+    """Refuse unknown names of contact models and effects, before any work."""
     key = ""
     try:
         if recipe.contact is not None:
@@ -140,20 +147,31 @@ def _check_names(recipe: Recipe, path: Path) -> None:
             contact_model(recipe.contact.model)
         if recipe.gap is not None:
             key = "gap.without"
-            check_names(recipe.gap.without, CATALOGUE)
+            check_names(recipe.gap.without, installed_catalogue())
     except JointbenchError as error:
         raise BadData(f"{named(path)}: key {key!r}: {error}") from error
 
 
 def recipe_content(recipe: Recipe) -> dict[str, object]:
-    """Return all that a result depends on: not the name, but what the models say."""
+    """Return all that a result depends on: not the name, but what the models say.
+
+    A contact law and effects of other packages count by version and code.
+    """
     content = recipe.model_dump(mode="json", exclude={"name"})
-    return content | {
-        "models": {
-            name: model.model_dump(mode="json")
-            for name, model in sorted(recipe.models.items())
+    code = [
+        *(contact_law_code(recipe.contact.model) if recipe.contact else ()),
+        *(effect_code(recipe.gap.without) if recipe.gap else ()),
+    ]
+    return (
+        content
+        | ({"packages": code} if code else {})
+        | {
+            "models": {
+                name: model.model_dump(mode="json")
+                for name, model in sorted(recipe.models.items())
+            }
         }
-    }
+    )
 
 
 def recipe_digest(recipe: Recipe) -> str:

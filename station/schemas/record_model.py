@@ -102,7 +102,7 @@ class RecordTable(StrictTable):
 
 
 def stands_in(input_unit: str) -> bool:
-    """Tell whether the units of a record stand in for newton and metre."""
+    """Return whether the units of a record replace newton and metre."""
     return not is_unit(input_unit, "force")
 
 

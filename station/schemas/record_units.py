@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Units that stand in for newton and metre, in what is told of a record."""
+"""Units that replace newton and metre in the results of a record."""
 
 import re
 import unicodedata

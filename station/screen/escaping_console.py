@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The terminal: nothing that a file says can command it, or pass for a line of ours."""
+"""The terminal: texts from files can neither control it nor imitate our own lines."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -9,25 +9,23 @@ from rich.segment import Segment
 from rich.text import Text
 
 from jointbench.acquisition.file_access.quoting import visible
-
-WIDTH_WITHOUT_TERMINAL = 120
+from jointbench.station.screen.text_width import output_width
 
 
 class Screen(Console):
     """A console that shows texts as they stand: no markup, no control characters.
 
-    The console's own control sequences (colours, bars that move) are set apart by rich
-    from the texts, which is what makes this possible at the last step before the
-    terminal, whatever rich was given to print.
+    Rich separates its own control sequences (colours, moving bars) from the texts, so
+    that texts can be escaped at the last step before the terminal.
     """
 
     def __init__(self, *, stderr: bool = False) -> None:
         super().__init__(stderr=stderr, highlight=False, markup=False, emoji=False)
         if not self.is_terminal:
-            self.width = WIDTH_WITHOUT_TERMINAL
+            self.width = output_width()
 
     def print(self, *objects: Any, **options: Any) -> None:
-        """Print; of a text only the line ends at its beginning are line ends."""
+        """Print; only line ends at the beginning of a text are kept as line ends."""
         super().print(
             *(one_line(one) if isinstance(one, str) else one for one in objects),
             **options,
@@ -36,7 +34,7 @@ class Screen(Console):
     def render(
         self, renderable: RenderableType, options: ConsoleOptions | None = None
     ) -> Iterable[Segment]:
-        """Yield what is printed, made visible."""
+        """Yield the segments to print, with control characters escaped."""
         for segment in super().render(renderable, options):
             if segment.control:
                 yield segment
@@ -46,11 +44,11 @@ class Screen(Console):
 
 
 def one_line(text: str) -> str:
-    """Return a text that takes one line, below the empty lines it begins with."""
+    """Return a text in one line, below the empty lines that it begins with."""
     rest = text.lstrip("\n")
     return "\n" * (len(text) - len(rest)) + visible(rest)
 
 
 def seen(text: str, style: str = "") -> Text:
-    """Return a text as rich sets it, in one line and without markup."""
+    """Return a text for rich, in one line and without markup."""
     return Text(visible(text), style=style)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Exit codes: which family of errors leaves with which, and its one line."""
+"""Exit codes of the families of errors, and the one line of each error."""
 
 import sys
 import traceback
@@ -28,13 +28,13 @@ _EXIT_INTERRUPTED = 130
 
 
 def exit_code(command: Callable[..., object], *, debug: bool) -> int:
-    """Call `command` and turn what it raises into the contract's exit code."""
+    """Call `command` and turn its result or error into the exit code."""
     with interruptible():
         if debug:
             result = command(standalone_mode=False)
             return result if isinstance(result, int) else 0
         with warnings.catch_warnings():
-            # What a warning of a library means to the user is said by our own checks.
+            # Our own checks report what a library warns of.
             warnings.simplefilter("ignore")
             return _quiet_exit_code(command)
 
@@ -43,14 +43,14 @@ def _quiet_exit_code(command: Callable[..., object]) -> int:
     try:
         result = command(standalone_mode=False)
     except TyperException as error:
-        return _fail(error.format_message(), EXIT_USAGE)
+        return _fail(usage_words(error), EXIT_USAGE)
     except JointbenchError as error:
         return _fail(str(error), code_of(error))
     except (KeyboardInterrupt, typer.Abort):
-        return _fail("interrupted; finished files are whole", _EXIT_INTERRUPTED)
+        return _fail("interrupted; finished files are complete", _EXIT_INTERRUPTED)
     except OSError as error:
         return _fail(_system_words(error), EXIT_BAD_DATA)
-    except Exception as error:  # noqa: BLE001 - a traceback helps no operator
+    except Exception as error:  # noqa: BLE001 - one line for the operator
         kind = type(error).__name__
         return _fail(
             f"internal error ({kind}: {error}); run again with --debug and report it",
@@ -59,8 +59,25 @@ def _quiet_exit_code(command: Callable[..., object]) -> int:
     return result if isinstance(result, int) else 0
 
 
+def usage_words(error: TyperException) -> str:
+    """Return the line of a usage error: near matches, and where to look.
+
+    Args:
+        error: of the command line library.
+    """
+    near = [f"'{one}'" for one in getattr(error, "possibilities", None) or ()]
+    words = str(error.message if near else error.format_message()).rstrip(".")
+    if near:
+        words += f". Did you mean {' or '.join(near)}?"
+    context = getattr(error, "ctx", None)
+    if context is None:
+        return words
+    mark = " See" if words.endswith("?") else "; see"
+    return f"{words}{mark} '{context.command_path} --help'"
+
+
 def _system_words(error: OSError) -> str:
-    """Return what the system refused, and of which file where it says so."""
+    """Return the reason that the system gives, and the file where it names one."""
     reason = error.strerror or str(error)
     return reason if error.filename is None else f"{reason}: {error.filename}"
 
@@ -75,7 +92,7 @@ def code_of(error: JointbenchError) -> int:
 def show_traceback(
     kind: type[BaseException], error: BaseException, trace: TracebackType | None
 ) -> None:
-    """Write what ``--debug`` lets through; messages may quote names from files."""
+    """Write a traceback for ``--debug``; messages may quote names from files."""
     text = "".join(traceback.format_exception(kind, error, trace))
     sys.stderr.write("".join(f"{visible(line)}\n" for line in text.split("\n")))
 

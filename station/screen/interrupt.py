@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Ctrl-C, a polite kill and a closed window: stop, but store what was read already.
+"""Ctrl-C, termination signals and a closed window: stop and store the data read so far.
 
-SIGTERM, SIGHUP and, on Windows, SIGBREAK mean what Ctrl-C means. There the system ends
-a process as soon as its handler of a closed window returns, so that handler waits until
-everything is in order; Windows grants it five seconds.
+SIGTERM, SIGHUP and, on Windows, SIGBREAK act like Ctrl-C. Windows ends a process as
+soon as its handler of a closed window returns. The handler therefore waits for the
+clean-up; Windows allows five seconds.
 """
 
 import signal
@@ -15,51 +15,51 @@ from contextlib import ExitStack, contextmanager
 from types import FrameType
 from typing import Protocol
 
-_KILLS = ("SIGTERM", "SIGHUP", "SIGBREAK")
+_TERMINATION = ("SIGTERM", "SIGHUP", "SIGBREAK")
 Handler = Callable[[int, FrameType | None], None]
 
 
 class Stoppable(Protocol):
-    """Work that looks at intervals whether it was told to stop."""
+    """Work that checks at intervals whether it was interrupted."""
 
     interrupted: bool
 
 
-def kills() -> tuple[signal.Signals, ...]:
+def termination_signals() -> tuple[signal.Signals, ...]:
     """Return the signals of this system that ask a process to end.
 
-    One that is ignored when the program begins stays so, as under ``nohup``.
+    A signal that is ignored at the start stays ignored, as under ``nohup``.
     """
-    found = [getattr(signal, name) for name in _KILLS if hasattr(signal, name)]
+    found = [getattr(signal, name) for name in _TERMINATION if hasattr(signal, name)]
     return tuple(s for s in found if signal.getsignal(s) is not signal.SIG_IGN)
 
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Take a polite kill and a closed window as Ctrl-C: unwind, put all in order.
+    """Treat termination signals and a closed window as Ctrl-C: unwind and clean up.
 
-    A second kill does not disturb that: a terminal that closes sends two.
+    A second signal is ignored: a terminal that closes sends two.
     """
-    told = False
+    stopping = False
 
     def stop(number: int, frame: FrameType | None) -> None:
-        nonlocal told
-        again, told = told, True
+        nonlocal stopping
+        again, stopping = stopping, True
         if not again:
             raise KeyboardInterrupt
 
-    with _handling(dict.fromkeys(kills(), stop)), _closed_window():
+    with _handling(dict.fromkeys(termination_signals(), stop)), _closed_window():
         yield
 
 
 @contextmanager
 def patient_interrupt(work: Stoppable) -> Iterator[None]:
-    """Note Ctrl-C and kills in the work; a Ctrl-C after that interrupts at once.
+    """Note Ctrl-C and termination signals; a second Ctrl-C interrupts at once.
 
-    A second kill changes nothing.
+    A second termination signal has no effect.
 
     Args:
-        work: looks at its `interrupted` after every block.
+        work: checks its `interrupted` after every block.
     """
 
     def note(number: int, frame: FrameType | None) -> None:
@@ -67,20 +67,20 @@ def patient_interrupt(work: Stoppable) -> Iterator[None]:
             raise KeyboardInterrupt
         work.interrupted = True
 
-    with _handling(dict.fromkeys((signal.SIGINT, *kills()), note)):
+    with _handling(dict.fromkeys((signal.SIGINT, *termination_signals()), note)):
         yield
 
 
-def restless(
+def interruptible_wait(
     work: Stoppable, sleep: Callable[[float], None] = time.sleep
 ) -> Callable[[float], None]:
-    """Return a wait that ends the work, once it was told to stop.
+    """Return a wait that raises KeyboardInterrupt once the work is interrupted.
 
-    Where something is waited for that may never come, nobody looks at a note.
+    It is for waits without end, in which the work does not check `interrupted`.
 
     Args:
         work: that waits.
-        sleep: waits [s].
+        sleep: function that waits [s].
     """
 
     def wait(seconds: float) -> None:
@@ -93,7 +93,7 @@ def restless(
 
 @contextmanager
 def _handling(handlers: Mapping[signal.Signals, Handler]) -> Iterator[None]:
-    """Install handlers meanwhile; only the main thread may."""
+    """Install handlers for the duration; only the main thread can."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -104,13 +104,13 @@ def _handling(handlers: Mapping[signal.Signals, Handler]) -> Iterator[None]:
 
 
 def hold_window(number: int, over: threading.Event) -> None:
-    """Tell the main thread of a closed window, and wait until all is in order.
+    """Signal a closed window to the main thread and wait for its clean-up.
 
     Args:
-        number: of the signal whose handler the main thread runs.
-        over: set when all is in order.
+        number: signal whose handler the main thread runs.
+        over: set at the end of the clean-up.
     """
-    # Python runs handlers in the main thread, whoever raises the signal.
+    # Python runs handlers in the main thread, whichever thread raises the signal.
     signal.raise_signal(number)
     over.wait()
 
@@ -126,13 +126,13 @@ if sys.platform == "win32":
     def _closed_window() -> Iterator[None]:
         over = threading.Event()
 
-        def heard(event: int) -> bool:
+        def on_close(event: int) -> bool:
             if event not in {_CLOSE, _LOGOFF, _SHUTDOWN}:
                 return False
             hold_window(signal.SIGBREAK, over)
             return True
 
-        routine = _Routine(heard)
+        routine = _Routine(on_close)
         ctypes.windll.kernel32.SetConsoleCtrlHandler(routine, True)
         try:
             yield

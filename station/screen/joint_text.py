@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""How a joint's parameter is written: its value, or all that is admissible."""
+"""Text of a joint parameter: its value, or its admissible range."""
 
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.station.screen.value_text import with_sd
 
-WHAT_IS_SHOWN = "(± one standard deviation; where it is open, all that is admissible)"
+VALUE_LEGEND = "(± one standard deviation; admissible range if not identifiable)"
 
 
 def parameter_text(parameter: JointParameter) -> str:
-    """Write a joint's parameter: value and sd, or the range that is admissible.
+    """Write a joint parameter: value and sd, or the admissible range.
 
-    What the measurement does not determine has no value and no standard deviation.
+    A parameter that is not identifiable has no value and no standard deviation.
     """
     if parameter.identifiable:
         return with_sd(parameter.value, parameter.sd)
@@ -18,7 +18,7 @@ def parameter_text(parameter: JointParameter) -> str:
 
 
 def interval_text(interval: tuple[float | None, float | None]) -> str:
-    """Write an interval of which either end may be open.
+    """Write an interval; either end may be open.
 
     >>> interval_text((2.2e8, None))
     'above 2.2e+08'

@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 
 Poll = Callable[[], str]
-"""Returns the key pressed since the last call, empty where there was none."""
+"""Returns the key pressed since the last call; empty without one."""
 
 if sys.platform == "win32":
     import msvcrt
 
     @contextmanager
     def keyboard() -> Iterator[Poll]:
-        """Give a function that polls the keyboard."""
+        """Yield a function that polls the keyboard."""
         yield lambda: msvcrt.getwch() if msvcrt.kbhit() else ""
 else:
     import select
@@ -22,7 +22,7 @@ else:
 
     @contextmanager
     def keyboard() -> Iterator[Poll]:
-        """Give a function that polls the keyboard; the terminal is put back after."""
+        """Yield a function that polls the keyboard; restore the terminal afterwards."""
         if not sys.stdin.isatty():
             yield lambda: ""
             return
@@ -31,11 +31,11 @@ else:
         try:
             yield _pressed
         finally:
-            with suppress(termios.error):  # a terminal that was closed
+            with suppress(termios.error):  # a closed terminal
                 termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
 
     def _pressed() -> str:
         ready, _, _ = select.select([sys.stdin], [], [], 0)
-        with suppress(OSError):  # a terminal that was closed is always ready
+        with suppress(OSError):  # a closed terminal is always ready
             return sys.stdin.read(1) if ready else ""
         return ""

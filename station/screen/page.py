@@ -14,18 +14,18 @@ from jointbench.station.files.output_paths import write_text
 from jointbench.station.screen.page_parts import Plot, Report, Section
 
 _PROSE_COLUMNS = frozenset({"reason", "detail", "step", "verdict"})
-"""Columns of words, which read from the left."""
-# plotly.js reads tags in texts, links among them; ours have no attributes.
+"""Columns of text, which are left-aligned."""
+# plotly.js interprets tags in texts, links included; our own have no attributes.
 _FOREIGN_TAG = re.compile(r"<(?!/?(?:br|b|i|sub|sup|extra)/?>)")
 
 
 def placed_sections(sections: Sequence[Section], at: str) -> list[Section]:
-    """Return sections that may stand beside others of their kind.
+    """Return sections with unique titles and anchors.
 
     Args:
         sections: of one preload, for example.
-        at: words that set them apart, with a blank before; empty to leave them as
-            they are.
+        at: words that distinguish them, with a leading blank; empty to change
+            nothing.
     """
     if not at:
         return list(sections)
@@ -46,7 +46,7 @@ def placed_sections(sections: Sequence[Section], at: str) -> list[Section]:
 
 
 def render(report: Report) -> str:
-    """Return `report` as one self-contained HTML page."""
+    """Return `report` as one self-contained HTML document."""
     from jinja2 import Environment
     from plotly.offline import get_plotlyjs
 
@@ -68,7 +68,7 @@ def render(report: Report) -> str:
 
 
 def write_report(report: Report, path: Path) -> None:
-    """Write the rendered page to `path`."""
+    """Write the rendered report to `path`."""
     write_text(path, render(report))
 
 
@@ -83,14 +83,14 @@ def _figures(report: Report) -> str:
 
 
 def _seen(value: object) -> object:
-    """Return what the template prints: texts visible, our own markup as it is."""
+    """Return a value for the template; control characters in texts are escaped."""
     if isinstance(value, str) and not hasattr(value, "__html__"):
         return visible(value)
     return value
 
 
 def _seen_below(value: object) -> object:
-    """Return a figure whose texts are visible and link to nowhere."""
+    """Return a figure with escaped control characters and without links."""
     if isinstance(value, str):
         return _FOREIGN_TAG.sub("&lt;", visible(value))
     if isinstance(value, Mapping):
@@ -101,5 +101,5 @@ def _seen_below(value: object) -> object:
 
 
 def _script_safe(text: str) -> str:
-    """Escape what could end a script element early, whatever a file's texts hold."""
+    """Escape characters that could end a script element early."""
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

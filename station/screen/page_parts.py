@@ -18,7 +18,7 @@ class Tile:
 
 @dataclass(frozen=True, slots=True)
 class Text:
-    """One paragraph; a notice is set apart."""
+    """One paragraph; a notice is highlighted."""
 
     text: str
     kind: Literal["text", "notice"] = "text"
@@ -26,7 +26,7 @@ class Text:
 
 @dataclass(frozen=True, slots=True)
 class DataTable:
-    """A table; cells found in `bad_words` are shown as failures."""
+    """A table; cells that equal one of `bad_words` are marked as failures."""
 
     caption: str
     columns: tuple[str, ...]
@@ -37,7 +37,7 @@ class DataTable:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """A figure under an identifier that is unique within the page."""
+    """A figure with an identifier that is unique in the report."""
 
     identifier: str
     caption: str
@@ -51,7 +51,7 @@ Item = Text | DataTable | Plot
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """A titled part of the page."""
+    """A titled part of the report."""
 
     anchor: str
     title: str
@@ -60,7 +60,7 @@ class Section:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """Everything that a page shows."""
+    """The whole content of a report."""
 
     title: str
     lead: str

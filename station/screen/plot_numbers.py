@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Numbers made ready for a plot: rounded, and thinned where there are too many."""
+"""Numbers for a plot: rounded, and thinned where there are too many."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ _SIGNIFICANT_DIGITS = 6
 
 
 def numbers(values: Any) -> list[float | None]:
-    """Return numbers rounded for plotting; what is not finite leaves a gap."""
+    """Return numbers rounded for plotting; numbers that are not finite leave a gap."""
     array = np.asarray(values, dtype=np.float64)
     return [
         float(f"{v:.{_SIGNIFICANT_DIGITS}g}") if np.isfinite(v) else None for v in array
@@ -19,7 +19,7 @@ def numbers(values: Any) -> list[float | None]:
 
 
 def thin(x: _Values, y: _Values, most: int) -> tuple[_Values, _Values]:
-    """Thin a long line to about `most` points and keep its envelope (min and max)."""
+    """Thin a long line to about `most` points; the envelope is preserved."""
     if x.size <= most:
         return x, y
     group = -(-x.size // (most // 2))

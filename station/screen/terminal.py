@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What a command shows: progress and tables on the terminal, JSON for programs.
+"""Output of a command: progress and tables for the terminal, JSON for programs.
 
 Tables go to standard output, unless the JSON goes there; progress to standard error.
 """
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager, suppress
 from math import isfinite
 from pathlib import Path
@@ -14,12 +14,12 @@ from typing import IO, cast
 
 from rich.console import Console, Group, RenderableType
 from rich.markup import escape
-from rich.progress import Progress
-from rich.table import Table
+from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
 from jointbench.station.files.output_paths import write_text
 from jointbench.station.screen.escaping_console import Screen, seen
+from jointbench.station.screen.fitted_table import FittedTable
 
 _Jsonable = Mapping[str, object]
 
@@ -32,7 +32,7 @@ def console(json_target: str | None = None) -> Console:
 def lasting_console(json_target: str | None = None) -> Console:
     """Return a console that a closed terminal or pipe does not break.
 
-    A measurement goes on, and is finished, where nobody reads any more.
+    A measurement continues to its end without a reader.
     """
     screen = console(json_target)
     screen.file = cast("IO[str]", LastingText(screen.file))
@@ -40,30 +40,30 @@ def lasting_console(json_target: str | None = None) -> Console:
 
 
 class LastingText:
-    """A text stream that takes what it is given even where that goes nowhere."""
+    """A text stream that ignores errors of a closed terminal or pipe."""
 
     def __init__(self, stream: IO[str]) -> None:
         self._stream = stream
 
     def __getattr__(self, name: str) -> object:
-        """Return what the stream has."""
+        """Return an attribute of the stream."""
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        """Write; what nobody takes is dropped."""
+        """Write; text that the stream refuses is dropped."""
         with suppress(OSError):
             return self._stream.write(text)
         return len(text)
 
     def flush(self) -> None:
-        """Flush, if there is somewhere to flush to."""
+        """Flush, if the stream is still open."""
         with suppress(OSError):
             self._stream.flush()
 
 
 @contextmanager
 def working(message: str) -> Iterator[None]:
-    """Show on a terminal what is being done, for as long as it takes."""
+    """Show a message on a terminal while the work lasts."""
     progress = Screen(stderr=True)
     if not progress.is_terminal:
         yield
@@ -74,31 +74,47 @@ def working(message: str) -> Iterator[None]:
 
 @contextmanager
 def progress_bar(first: str) -> Iterator[Callable[[str, float], None]]:
-    """Show a bar on a terminal; yield what moves it: words and the share done."""
+    """Show a progress bar on a terminal.
+
+    Yields:
+        A function that takes the description of the step and the fraction done [-].
+    """
     target = Screen(stderr=True)
     if not target.is_terminal:
-        yield lambda _what, _share: None
+        yield lambda _what, _fraction: None
         return
-    with Progress(console=target, transient=True) as bars:
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=None),
+        TextColumn("{task.percentage:>3.0f} %"),
+    )
+    with Progress(*columns, console=target, transient=True, expand=True) as bars:
         task = bars.add_task(first, total=1.0)
-        yield lambda what, share: bars.update(
-            task, description=escape(what), completed=share
+        yield lambda what, fraction: bars.update(
+            task, description=escape(what), completed=fraction
         )
 
 
 def table(
-    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]]
+    title: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    words: Set[int] = frozenset({0}),
 ) -> RenderableType:
-    """Return a titled table, its first column left-aligned, the others right-aligned.
+    """Return a titled table; columns of text are left-aligned, others right-aligned.
 
-    Cells are texts as they stand, in one line: brackets are units, not markup.
+    Cells are texts without markup: brackets are units. They wrap where the terminal is
+    too narrow.
+
+    Args:
+        title: above the table.
+        columns: heads.
+        rows: cells.
+        words: numbers of the columns of text.
     """
-    result = Table(box=None, pad_edge=False)
-    for number, column in enumerate(columns):
-        result.add_column(seen(column), justify="left" if number == 0 else "right")
-    for row in rows:
-        result.add_row(*(seen(cell) for cell in row))
-    return Group(Text(), seen(title, style="bold"), result)
+    content = FittedTable(tuple(columns), tuple(map(tuple, rows)), frozenset(words))
+    return Group(Text(), seen(title, style="bold"), content)
 
 
 def write_json(target: str | None, content: _Jsonable) -> None:
@@ -113,7 +129,7 @@ def write_json(target: str | None, content: _Jsonable) -> None:
 
 
 def _plain(value: object) -> object:
-    """Turn numbers that JSON cannot hold into null, and keys into text."""
+    """Replace numbers that JSON cannot hold by null, and keys by text."""
     if isinstance(value, Mapping):
         return {str(key): _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Truth and estimate side by side, for benches that know what they are made of."""
+"""Comparison of true and estimated parameters of a simulated bench."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
@@ -7,18 +7,18 @@ from dataclasses import asdict, dataclass
 
 @dataclass(frozen=True, slots=True)
 class TruthComparison:
-    """One known quantity beside its estimate.
+    """One known quantity and its estimate.
 
     Attributes:
-        quantity: what is compared, for example ``"natural_frequency[0]"``.
+        quantity: name of the quantity, for example ``"natural_frequency[0]"``.
         unit: of truth, estimate and standard deviation; ``"-"`` when none.
-        truth: what the simulated bench is made of.
-        estimate: what the station found, None if it found nothing.
+        truth: parameter of the simulated bench.
+        estimate: result of the station, None if there is none.
         sd: standard deviation of the estimate, None if there is none.
         error: estimate minus truth, relative to truth unless `absolute`.
-        limit: largest `error` the demo accepts, None where it accepts any.
-        absolute: True where `error` and `limit` carry the unit.
-        passed: `error` within `limit`.
+        limit: largest accepted `error`, None for no limit.
+        absolute: True if `error` and `limit` have the unit.
+        passed: `error` is within `limit`.
     """
 
     quantity: str
@@ -42,7 +42,7 @@ def compare_value(
     limit: float | None = None,
     absolute: bool = False,
 ) -> TruthComparison:
-    """Lay an estimate beside the truth; a missing estimate passes no limit."""
+    """Compare an estimate with the truth; a missing estimate passes no limit."""
     error = None
     if estimate is not None:
         error = estimate - truth if absolute else estimate / truth - 1

@@ -8,7 +8,7 @@ _PLAIN_FROM, _PLAIN_TO = -3, 6
 
 
 def with_sd(value: float, sd: float | None, *, digits: int = 2) -> str:
-    """Write a value and its standard deviation with as many digits as it deserves.
+    """Write a value and its standard deviation with the significant digits.
 
     >>> with_sd(810.2314, 0.021)
     '810.231 ± 0.021'

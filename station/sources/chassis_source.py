@@ -39,7 +39,7 @@ class ChassisSource:
 
     @property
     def simulated(self) -> bool:
-        """True: there is no hardware behind it."""
+        """True: it is a simulation."""
         return True
 
     @property
@@ -80,7 +80,7 @@ class ChassisSource:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChassisRun:
-    """A `Run` of a visit whose samples took the way through the NI driver.
+    """A `Run` whose samples come through the NI driver.
 
     Attributes:
         run: what is plugged into the simulated chassis.
@@ -97,7 +97,7 @@ class ChassisRun:
 
     @property
     def simulated(self) -> bool:
-        """True: there is no hardware behind it."""
+        """True: it is a simulation."""
         return True
 
     @property
@@ -117,7 +117,7 @@ class ChassisRun:
 
     @property
     def start_time(self) -> float:
-        """Of its first sample since the visit began [s]."""
+        """Of its first sample since the first run began [s]."""
         return self.run.start_time
 
     def blocks(self) -> Iterator[FloatArray]:

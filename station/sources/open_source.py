@@ -18,31 +18,31 @@ SCHEMES = ("sim",)
 
 
 @dataclass(frozen=True, slots=True)
-class Visit:
-    """A visit to a bench: one run after another, each under a setting of its own.
+class RunSequence:
+    """Consecutive runs on a bench, each with its own setting.
 
     Attributes:
         source: the URL that opens it again.
-        simulated: True where no hardware is behind it.
+        simulated: True for a simulation, False for hardware.
         runs: in the order in which they are recorded.
-        sheet: bench model with priors as TOML, where the source brings one.
+        model: bench model with priors as TOML, where the source provides one.
         truth: what a simulated bench hides, for whoever compares; never an input.
     """
 
     source: str
     simulated: bool
     runs: tuple[Run, ...]
-    sheet: str | None = None
+    model: str | None = None
     truth: Mapping[str, object] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class WholeStream:
-    """A plain source as the only run of a visit.
+    """A plain source as a single run.
 
     Attributes:
         source: what it streams.
-        preload: on the joint meanwhile [N], None where nobody says.
+        preload: on the joint [N], None where it is not given.
         start_time: of its first sample [s].
     """
 
@@ -76,7 +76,7 @@ class WholeStream:
 
 
 def is_url(text: str) -> bool:
-    """Tell a source's URL from the path of a file."""
+    """Return whether a name is the URL of a source, not the path of a file."""
     return text.partition(":")[0] in SCHEMES and ":" in text
 
 
@@ -100,8 +100,8 @@ def open_source(url: str) -> Source:
     return ChassisSource(bench, samples=bench.samples)
 
 
-def open_visit(url: str) -> Visit:
-    """Open what `url` names as a visit: runs, and the sheet if there is one.
+def open_runs(url: str) -> RunSequence:
+    """Open the source of `url` as runs, with the bench model if it has one.
 
     Args:
         url: as for `open_source`, or ``sim:two-body-campaign?seed=1&hide=jenkins``
@@ -115,23 +115,23 @@ def open_visit(url: str) -> Visit:
     from jointbench.simulators.two_body.bench import TwoBodyBench
     from jointbench.simulators.two_body.bench_url import specimen_from_url
     from jointbench.simulators.two_body.campaign_bench import campaign_runs
-    from jointbench.station.sources.campaign_sheet import sheet_text
+    from jointbench.station.sources.campaign_model import model_text
     from jointbench.station.sources.chassis_source import ChassisRun, ChassisSource
 
     bench = specimen_from_url(url)
     if isinstance(bench, TwoBodyBench):
         source = ChassisSource(bench, samples=bench.samples)
         stream = WholeStream(source, bench.truth.preload)
-        return Visit(bench.name, bench.simulated, (stream,))
+        return RunSequence(bench.name, bench.simulated, (stream,))
     campaign = bench.simulate()
-    return Visit(
+    return RunSequence(
         bench.name,
         bench.simulated,
         tuple(
             ChassisRun(run, samples=run.samples.shape[1])
             for run in campaign_runs(campaign)
         ),
-        sheet_text(campaign.design),
+        model_text(campaign.design),
         campaign_truth(campaign),
     )
 

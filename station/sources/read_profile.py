@@ -11,9 +11,10 @@ from jointbench.acquisition.basics.errors import InstrumentError, UsageError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.acquisition.formats.heights.height_facts import cautions, checked
 from jointbench.acquisition.records.surfaces import Profile
-from jointbench.acquisition.serial_lines import diavite, mitutoyo
+from jointbench.acquisition.serial_lines import instruments
 from jointbench.acquisition.serial_lines.line import SerialLine
 from jointbench.acquisition.serial_lines.line_faults import ProfileBroken
+from jointbench.acquisition.serial_lines.serial_instrument import ProfileOptions
 from jointbench.acquisition.session_file.add_surface import add_surface, require_addable
 from jointbench.acquisition.session_file.overwrite_guard import fresh_path
 from jointbench.station.files.output_paths import (
@@ -35,10 +36,11 @@ class ProfileRequest:
     """What is asked of which instrument.
 
     Attributes:
-        instrument: ``"diavite"`` or ``"mitutoyo"``.
-        line: name of its serial line, or of a twin.
+        instrument: name of a roughness tester, ``"diavite"``, ``"mitutoyo"`` or one
+            that a package adds.
+        line: name of its serial line, or of a simulator.
         name: of the profile.
-        traverse: length that a DH-8 traced, with its unit, as text.
+        traverse: length that was traced, with its unit, as text; a DH-8 needs it.
         baud: bits per second, None for what is usual.
         filtered: the roughness profile of a DH-8.
         signed: whether heights of a DH-8 have a sign.
@@ -75,6 +77,7 @@ def run_profile(
         InstrumentError: the line breaks; what had come by then is in a table beside
             the one asked for, ``*.broken.csv``.
     """
+    instruments.roughness_tester(wanted.instrument)
     _check_places(wanted, out, session, overwrite=overwrite, json_target=json_target)
     try:
         with line_name(wanted.line) as line:
@@ -98,25 +101,21 @@ def read_profile(wanted: ProfileRequest, line: str) -> Profile:
     """Read a profile from a line by its name.
 
     Raises:
-        UsageError: the length of a DH-8's traverse is not given.
+        UsageError: there is no such instrument, or it needs the length of its
+            traverse and none is given.
         InstrumentError: the line cannot be opened, or breaks.
         FormatError: the answer is not what the instrument's notes say.
     """
-    if wanted.instrument == "mitutoyo":
-        port = SerialLine(line, baud=wanted.baud or mitutoyo.BAUD)
-    else:
-        port = SerialLine(line, baud=wanted.baud or diavite.BAUD)
+    tester = instruments.roughness_tester(wanted.instrument)
+    options = ProfileOptions(
+        name=wanted.name,
+        traverse=_traverse(wanted),
+        filtered=wanted.filtered,
+        signed=wanted.signed,
+    )
+    port = SerialLine(line, baud=wanted.baud or tester.value.baud)
     try:
-        if wanted.instrument == "mitutoyo":
-            return _checked(mitutoyo.read_profile(port, name=wanted.name), line)
-        found = diavite.read_profile(
-            port,
-            name=wanted.name,
-            traverse=_traverse(wanted),
-            filtered=wanted.filtered,
-            signed=wanted.signed,
-        )
-        return _checked(found, line)
+        return _checked(instruments.read_profile(tester, port, options), line)
     finally:
         port.close()
 
@@ -127,11 +126,16 @@ def _checked(profile: Profile, line: str) -> Profile:
     return replace(profile, provenance=found.provenance)
 
 
-def _traverse(wanted: ProfileRequest) -> float:
+def _traverse(wanted: ProfileRequest) -> float | None:
+    """Return the length that was traced [m], None where the instrument says it."""
+    tester = instruments.roughness_tester(wanted.instrument).value
     if wanted.traverse is None:
-        raise UsageError(
-            "a DH-8 does not say how long its traverse was; add --traverse '4.8 mm'"
-        )
+        if tester.needs_traverse:
+            raise UsageError(
+                f"a {tester.title} does not report its traverse length; add "
+                "--traverse '4.8 mm'"
+            )
+        return None
     length = parse_value(wanted.traverse, "length")
     if not length > 0:
         raise UsageError(f"traverse is {wanted.traverse!r}; give a length above zero")
@@ -147,9 +151,8 @@ def _check_places(
     json_target: str | None,
 ) -> None:
     if out is None and session is None:
-        raise UsageError("nowhere to put the profile; add --out face.csv or --session")
-    if wanted.instrument == "diavite":
-        _traverse(wanted)
+        raise UsageError("no output for the profile; add --out trace.csv or --session")
+    _traverse(wanted)
     if out is not None:
         if out.suffix.lower() != ".csv":
             raise UsageError(f"'{out}' is no table; name it *.csv")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A visit recorded as `measure` records: every block is on the disk before the next.
+"""Recording of runs as `measure` records: each block is on disk before the next.
 
-Hits are judged when the file is finished, or recovered: its head says so.
+Hits are judged when the file is finished or recovered; its header records this.
 """
 
 import uuid
@@ -24,7 +24,7 @@ from jointbench.acquisition.session_file.store import read_session, write_sessio
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import HitCriteria, find_hits
 from jointbench.station.screen.interrupt import patient_interrupt
-from jointbench.station.sources.open_source import Visit
+from jointbench.station.sources.open_source import RunSequence
 
 BLOCK = 0.1
 """Usual length of a block [s]."""
@@ -37,17 +37,17 @@ class Progress:
     """How far a recording has come.
 
     Attributes:
-        interrupted: whether it was told to stop.
+        interrupted: whether a stop was requested.
     """
 
     interrupted: bool = False
 
 
-def record_live(visit: Visit, path: Path) -> bool:
-    """Record all runs of a visit into a file, and finish it, come what may.
+def record_live(sequence: RunSequence, path: Path) -> bool:
+    """Record all runs into a file, and finish it in any case.
 
     Args:
-        visit: an opened visit.
+        sequence: an opened source.
         path: of a file that is not there yet.
 
     Returns:
@@ -61,18 +61,18 @@ def record_live(visit: Visit, path: Path) -> bool:
     progress = Progress()
     with patient_interrupt(progress):
         try:
-            _record_runs(visit, path, progress)
+            _record_runs(sequence, path, progress)
         except BaseException:
             # What went wrong first is what the operator has to know.
             with suppress(JointbenchError):
                 if path.exists() and not is_held(path):
-                    finish_visit(path)
+                    finish_recording(path)
             raise
-        finish_visit(path)
+        finish_recording(path)
     return not progress.interrupted
 
 
-def finish_visit(path: Path) -> None:
+def finish_recording(path: Path) -> None:
     """Judge the hits of a recording and turn its file into a finished session.
 
     Raises:
@@ -89,7 +89,7 @@ def with_hits(session: Session, criteria: HitCriteria | None = None) -> Session:
         criteria: how hits are found and judged; None for the defaults.
 
     Returns:
-        The session; a recording in which nobody hit has none.
+        The session; a recording without hits is left out.
     """
     judged = [_judged(recording, criteria) for recording in session.recordings]
     limits = (criteria or HitCriteria()).limits
@@ -103,13 +103,13 @@ def _judged(recording: Recording, criteria: HitCriteria | None) -> Recording:
         return recording
 
 
-def _record_runs(visit: Visit, path: Path, progress: Progress) -> None:
-    first = visit.runs[0]
+def _record_runs(sequence: RunSequence, path: Path, progress: Progress) -> None:
+    first = sequence.runs[0]
     block = max(1, round(BLOCK * first.sample_rate))
     channels = len(first.channels)
-    with LiveSession(path, _meta(visit), channels=channels, block=block) as live:
+    with LiveSession(path, _meta(sequence), channels=channels, block=block) as live:
         try:
-            for segment, run in enumerate(visit.runs):
+            for segment, run in enumerate(sequence.runs):
                 _require_same(first, run)
                 _record_run(run, segment, live, progress)
                 if progress.interrupted:
@@ -160,14 +160,14 @@ def _require_same(first: Run, run: Run) -> None:
         )
 
 
-def _meta(visit: Visit) -> dict[str, object]:
-    first = visit.runs[0]
+def _meta(sequence: RunSequence) -> dict[str, object]:
+    first = sequence.runs[0]
     return {
         "uuid": str(uuid.uuid4()),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "software": software_version(),
-        "source": visit.source,
-        "simulated": visit.simulated,
+        "source": sequence.source,
+        "simulated": sequence.simulated,
         "sample_rate": first.sample_rate,
         "channels": channel_rows(first.channels),
         **HITS_LATER,

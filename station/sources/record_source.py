@@ -12,7 +12,7 @@ from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import JointSetup, Session, new_session
 from jointbench.acquisition.records.source import Source
 from jointbench.signal.hits.find_hits import HitCriteria
-from jointbench.station.sources.open_source import Visit
+from jointbench.station.sources.open_source import RunSequence
 from jointbench.station.sources.record_live import with_hits
 
 
@@ -53,30 +53,32 @@ def record(
     )
 
 
-def record_visit(visit: Visit, *, criteria: HitCriteria | None = None) -> Session:
-    """Record all runs of a visit into a session, each with its preload.
+def record_runs(
+    sequence: RunSequence, *, criteria: HitCriteria | None = None
+) -> Session:
+    """Record all runs into a session, each with its preload.
 
     Args:
-        visit: an opened visit.
+        sequence: an opened source.
         criteria: how hits are found and judged; None for the defaults.
 
     Returns:
-        One recording a run, its hits judged; a run in which nobody hit has none. It
+        One recording per run, its hits judged; a run without hits has none. It
         is in memory alone: a bench is recorded by `record_live`.
 
     Raises:
         InstrumentError: a run delivered nothing.
     """
     recordings = []
-    for run in visit.runs:
+    for run in sequence.runs:
         recorded = record(run, name=run.name)
         recordings.append(
             replace(recorded, start_time=run.start_time, preload=run.preload)
         )
     preloads = {recording.preload for recording in recordings}
     session = new_session(
-        source=visit.source,
-        simulated=visit.simulated,
+        source=sequence.source,
+        simulated=sequence.simulated,
         recordings=recordings,
         joint=JointSetup(preload=preloads.pop()) if len(preloads) == 1 else None,
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Serial lines by name, with an instrument without hardware behind ``sim:``."""
+"""Serial lines by name; ``sim:`` names a simulated instrument."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,16 +11,17 @@ def line_name(name: str) -> Iterator[str]:
 
     Args:
         name: ``COM3``, ``/dev/ttyUSB0``, ``socket://host:port``, or ``sim:diavite``,
-            ``sim:mitutoyo``, ``sim:mark10?torques=20,50&bolts=4`` for a twin, which
-            stays plugged in while this context lasts.
+            ``sim:mitutoyo``, ``sim:mark10?torques=20,50&bolts=4`` or ``sim:NAME`` of
+            an instrument that a package adds: a simulator, which stays plugged in
+            while this context lasts.
 
     Raises:
-        UsageError: the URL of a twin makes no sense.
+        UsageError: the URL of a simulated instrument is invalid.
     """
     if not name.startswith("sim:"):
         yield name
         return
     from jointbench.simulators.twins.twin_url import twin_from_url
 
-    with twin_from_url(name) as twin:
-        yield twin.name
+    with twin_from_url(name) as simulator:
+        yield simulator.name

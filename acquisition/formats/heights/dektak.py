@@ -17,6 +17,10 @@ from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.heights.height_facts import caution, range_caution
+from jointbench.acquisition.formats.heights.height_format import (
+    HeightFile,
+    HeightFormat,
+)
 from jointbench.acquisition.formats.heights.number_grids import (
     length_of,
     masked,
@@ -218,3 +222,14 @@ def _describe(header: dict[str, str], missing: int) -> Step:
         missing_points=missing,
         **known,
     )
+
+
+def _recognise(file: HeightFile) -> bool:
+    return is_dektak(file.lines)
+
+
+def _read_format(file: HeightFile) -> Profile:
+    return parse_dektak(file.lines, file.path, file.origin, file.label)
+
+
+FORMAT = HeightFormat("dektak", _recognise, _read_format)

@@ -9,6 +9,10 @@ from jointbench.acquisition.basics.errors import FormatError, UnitError
 from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.heights.height_facts import caution
+from jointbench.acquisition.formats.heights.height_format import (
+    HeightFile,
+    HeightFormat,
+)
 from jointbench.acquisition.formats.heights.number_grids import (
     length_of,
     masked,
@@ -115,3 +119,14 @@ def _square_or_said(
         "along them holds"
     )
     return (caution(said),)
+
+
+def _recognise(file: HeightFile) -> bool:
+    return is_gwyddion(file.lines)
+
+
+def _read_format(file: HeightFile) -> Areal:
+    return parse_gwyddion(file.lines, file.path, file.origin, file.label)
+
+
+FORMAT = HeightFormat("gwyddion", _recognise, _read_format)

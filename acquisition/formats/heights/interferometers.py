@@ -10,6 +10,10 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.formats.heights.height_format import (
+    HeightFile,
+    HeightFormat,
+)
 from jointbench.acquisition.formats.heights.number_grids import (
     count_of,
     masked,
@@ -196,3 +200,14 @@ def _zygo_xyz(
         if cells[2] != "No":
             heights[place] = parse_cells(cells[2:3], number, path)[0]
     return heights * _MICROMETRE, (pixel, pixel), "Zygo XYZ"
+
+
+def _recognise(file: HeightFile) -> bool:
+    return is_interferometer(file.lines)
+
+
+def _read_format(file: HeightFile) -> Areal:
+    return parse_interferometer(file.lines, file.path, file.origin, file.label)
+
+
+FORMAT = HeightFormat("interferometer", _recognise, _read_format)

@@ -21,11 +21,16 @@ from jointbench.acquisition.basics.errors import FormatError, HostileFile, UnitE
 from jointbench.acquisition.basics.units import to_si
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.heights.height_facts import caution
+from jointbench.acquisition.formats.heights.height_format import (
+    HeightFile,
+    HeightFormat,
+)
 from jointbench.acquisition.formats.heights.keyence_labels import (
     MARK,
     UNIT_WORDS,
     Language,
     decode_keyence,
+    is_keyence,
 )
 from jointbench.acquisition.formats.table_cells import DECIMAL_COMMA, NUMBER, parse_cell
 from jointbench.acquisition.formats.tables import MAX_CELLS
@@ -288,3 +293,14 @@ def _describe(
         missing_points=int(np.isnan(heights).sum()),
         **kept,
     )
+
+
+def _recognise(file: HeightFile) -> bool:
+    return is_keyence(file.data)
+
+
+def _read_format(file: HeightFile) -> Areal:
+    return parse_keyence(file.data, file.path, file.origin, file.label)
+
+
+FORMAT = HeightFormat("keyence", _recognise, _read_format)

@@ -24,6 +24,10 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import FormatError, UnitError
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.columns import Column
+from jointbench.acquisition.formats.heights.height_format import (
+    HeightFile,
+    HeightFormat,
+)
 from jointbench.acquisition.formats.heights.number_grids import (
     count_of,
     masked,
@@ -161,3 +165,16 @@ def _mahr(lines: Sequence[str], path: Path) -> tuple[FloatArray, str]:
 def _is_data(lines: Sequence[str], k: int) -> bool:
     """Return whether there are three consecutive whole numbers from line k on."""
     return all(_WHOLE.fullmatch(line) is not None for line in lines[k : k + 3])
+
+
+def _recognise(file: HeightFile) -> bool:
+    single = file.columns is None or len(file.columns) == 1
+    return single and is_stylus_list(file.lines)
+
+
+def _read_format(file: HeightFile) -> Profile:
+    column = None if file.columns is None else file.columns[0]
+    return parse_stylus_list(file.lines, file.path, file.origin, file.label, column)
+
+
+FORMAT = HeightFormat("stylus-list", _recognise, _read_format, with_columns=True)

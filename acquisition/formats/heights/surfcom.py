@@ -15,6 +15,10 @@ import numpy as np
 from jointbench.acquisition.basics.errors import FormatError
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.heights.height_facts import caution, range_caution
+from jointbench.acquisition.formats.heights.height_format import (
+    HeightFile,
+    HeightFormat,
+)
 from jointbench.acquisition.formats.heights.stated_lengths import (
     StatedLength,
     half_digit,
@@ -190,3 +194,14 @@ def _cells(lines: Sequence[str]) -> list[str]:
     while end > _HEADER_LINES and not lines[end - 1].strip(" \t\x1a\f"):
         end -= 1
     return [line.strip() for line in lines[_HEADER_LINES:end]]
+
+
+def _recognise(file: HeightFile) -> bool:
+    return is_surfcom(file.lines, file.path)
+
+
+def _read_format(file: HeightFile) -> Profile:
+    return parse_surfcom(file.lines, file.path, file.origin, file.label)
+
+
+FORMAT = HeightFormat("surfcom", _recognise, _read_format)

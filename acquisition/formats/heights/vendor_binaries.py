@@ -20,12 +20,17 @@ from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.heights.height_facts import LONGEST
+from jointbench.acquisition.formats.heights.height_format import (
+    HeightFile,
+    HeightFormat,
+)
 from jointbench.acquisition.formats.heights.number_grids import masked
-from jointbench.acquisition.formats.tables import MAX_CELLS
+from jointbench.acquisition.formats.tables import MAX_CELLS, read_head
 from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 
 MOST_BYTES = 512 * 2**20
+_PLAIN_BYTES = 512
 _XML = (".xml", ".rels")
 _MOST_ENTRIES, _MOST_LINES = 1000, 1_000_000
 _NEEDED = 40
@@ -192,3 +197,20 @@ def _surface(
         valid=valid,
         provenance=provenance,
     )
+
+
+def _recognise(file: HeightFile) -> bool:
+    return is_vendor_name(file.path) and not _is_plain(file.path)
+
+
+def _is_plain(path: Path) -> bool:
+    """Return whether a file with a maker's ending is but a table, as .dat often is."""
+    head = read_head(path, _PLAIN_BYTES)
+    return path.suffix.lower() == ".dat" and b"\x00" not in head
+
+
+def _read_format(file: HeightFile) -> Surface:
+    return read_vendor(file.path, file.origin, file.label)
+
+
+FORMAT = HeightFormat("vendor-binary", _recognise, _read_format)

@@ -14,6 +14,10 @@ from jointbench.acquisition.formats.samples.mat_file import (
     list_mat_variables,
     read_mat_rows,
 )
+from jointbench.acquisition.formats.samples.sample_format import (
+    SampleFormat,
+    SampleOptions,
+)
 from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.records.recordings import Recording
 
@@ -87,3 +91,10 @@ def _parted(columns: str) -> tuple[Column, str]:
                 "example force.F:N"
             )
     return parse_columns(times[0])[0], ",".join(rest)
+
+
+def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
+    return (read_mat_recording(path, columns=options.columns, point=options.point),)
+
+
+FORMAT = SampleFormat("mat", (".mat",), _read_format)

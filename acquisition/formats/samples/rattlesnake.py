@@ -24,6 +24,10 @@ from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.hdf5_guards import FileLimits, open_guarded
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
+from jointbench.acquisition.formats.samples.sample_format import (
+    SampleFormat,
+    SampleOptions,
+)
 from jointbench.acquisition.formats.stated_channels import (
     MOST_CHANNELS,
     StatedChannel,
@@ -190,3 +194,10 @@ def _texts(path: Path, table: h5py.Group, name: str, count: int) -> list[str]:
             )
         texts.append(text.strip())
     return texts
+
+
+def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
+    return read_rattlesnake(path, columns=options.columns, point=options.point)
+
+
+FORMAT = SampleFormat("rattlesnake", SUFFIXES, _read_format)

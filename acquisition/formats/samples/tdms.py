@@ -22,6 +22,10 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
+from jointbench.acquisition.formats.samples.sample_format import (
+    SampleFormat,
+    SampleOptions,
+)
 from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.records.recordings import Recording
 
@@ -168,3 +172,10 @@ def _stated(channel: Any) -> StatedChannel:
 
 def _values(channel: Any) -> FloatArray:
     return np.asarray(channel[:], dtype=np.float64)
+
+
+def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
+    return (read_tdms(path, columns=options.columns, point=options.point),)
+
+
+FORMAT = SampleFormat("tdms", (".tdms",), _read_format)

@@ -24,6 +24,10 @@ from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import read_bytes
 from jointbench.acquisition.formats.even_steps import roundest
+from jointbench.acquisition.formats.samples.sample_format import (
+    SampleFormat,
+    SampleOptions,
+)
 from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.records.recordings import Quantity, Recording
 
@@ -187,3 +191,10 @@ def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, A
             f"{named(path)} cannot be read as a universal file ({shown(error)}); use "
             "another copy"
         ) from error
+
+
+def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
+    return (read_universal(path, columns=options.columns, point=options.point),)
+
+
+FORMAT = SampleFormat("universal", SUFFIXES, _read_format)

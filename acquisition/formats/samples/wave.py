@@ -20,6 +20,10 @@ from jointbench.acquisition.basics.errors import (
 from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
+from jointbench.acquisition.formats.samples.sample_format import (
+    SampleFormat,
+    SampleOptions,
+)
 from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.records.recordings import Recording
 
@@ -143,3 +147,17 @@ def _read(path: Path) -> tuple[int, NDArray[Any]]:
     if values.size == 0:
         raise FormatError(f"{named(path)} holds no samples")
     return int(rate), values
+
+
+def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:
+    return (
+        read_wave(
+            path,
+            columns=options.columns,
+            point=options.point,
+            full_scale=options.full_scale,
+        ),
+    )
+
+
+FORMAT = SampleFormat("wave", (".wav",), _read_format)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Catalogue v1 of lumped dynamics: 22 effects, each in one entry.
 
-To add one, write a `LumpedEffect` (one file, data plus one hook) and hand
-``(*CATALOGUE, MINE)`` to `make_bench`.
+Other packages add theirs, see `installed_effects`.
 """
 
 import difflib

@@ -217,6 +217,7 @@ _LOOSENING = LumpedEffect(
         (Parameter("frac", "-", "one", -0.9, 0.9, off=0.0, far=(0.05, 0.2)),),
         "Junker 1969, SAE 690055: stiffness lost from hit to hit",
         {"preload_stiffness": "repeat the preload sequence backwards"},
+        follows_order=True,
     ),
     ("link",),
     stiffness=_loosening,

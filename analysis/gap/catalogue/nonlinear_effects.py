@@ -4,6 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.catalogue.catalogue_settings import CATALOGUE_SETTINGS
 from jointbench.analysis.gap.model.effect import Effect
 from jointbench.analysis.gap.model.effect_parameter import (
     Parameter,
@@ -15,9 +16,7 @@ from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
 from jointbench.analysis.gap.response.slider_integration import slider_tables
 
 _LOG = Transform.LOG
-_IWAN_SLIDERS = 14
-_SHARPNESS = (14.0, 0.6)
-"""Median and log-sd of the sharpness of real sliders: none is a perfect corner."""
+_SHARPNESS = CATALOGUE_SETTINGS.slider_sharpness
 
 
 def _cubic(v: FloatArray) -> Law:
@@ -73,7 +72,7 @@ def _jenkins_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _iwan(v: FloatArray) -> Law:
-    edges = np.linspace(0.0, 1.0, _IWAN_SLIDERS + 1)
+    edges = np.linspace(0.0, 1.0, CATALOGUE_SETTINGS.iwan_sliders + 1)
     power = float(v[2])
     share = np.diff(edges**power)
     centre = np.diff(edges ** (power + 1.0)) / share * power / (power + 1.0)
@@ -133,7 +132,7 @@ def _hum(
     return np.asarray(model + v[0] * ((found / size).T @ line).reshape(model.shape))
 
 
-_CUBIC = LumpedEffect(
+CUBIC = LumpedEffect(
     Effect(
         "cubic_stiffness",
         "stiffness",
@@ -147,7 +146,7 @@ _CUBIC = LumpedEffect(
     ("link",),
     law=_cubic,
 )
-_QUADRATIC = LumpedEffect(
+QUADRATIC = LumpedEffect(
     Effect(
         "quadratic_stiffness",
         "stiffness",
@@ -188,7 +187,14 @@ JENKINS = LumpedEffect(
                 "slip", "m", "travel", 0.003, 3.0, (0.02, 0.07, 0.15, 0.3, 0.6), _LOG
             ),
             Parameter(
-                "sharpness", "-", "one", 2.0, 200.0, _SHARPNESS[:1], _LOG, _SHARPNESS
+                "sharpness",
+                "-",
+                "one",
+                2.0,
+                200.0,
+                _SHARPNESS[:1],
+                _LOG,
+                _SHARPNESS,
             ),
         ),
         "Jenkins 1962; smooth corner after Wen 1976, eq. (2)",
@@ -212,7 +218,14 @@ IWAN = LumpedEffect(
             Parameter("phimax", "m", "travel", 0.02, 10.0, (0.2, 0.6, 1.5), _LOG),
             Parameter("chi_plus_2", "-", "one", 1.05, 2.2, (1.6,), _LOG, (1.6, 0.3)),
             Parameter(
-                "sharpness", "-", "one", 2.0, 200.0, _SHARPNESS[:1], _LOG, _SHARPNESS
+                "sharpness",
+                "-",
+                "one",
+                2.0,
+                200.0,
+                _SHARPNESS[:1],
+                _LOG,
+                _SHARPNESS,
             ),
         ),
         "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)",
@@ -223,6 +236,8 @@ IWAN = LumpedEffect(
         },
         report=_iwan_report,
         has_sliders=True,
+        # A real element has as many sliders as its maker gave it.
+        model_error=5e-5,
     ),
     ("link",),
     law=_iwan,
@@ -259,6 +274,7 @@ _COULOMB = LumpedEffect(
         "Den Hartog 1931, Trans. ASME 53, APM-107: dry friction in parallel",
         {"jenkins": "small hits: a slider sticks and adds stiffness, Coulomb does not"},
         report=_coulomb_report,
+        model_error=1e-5,
     ),
     ("link",),
     law=_coulomb,
@@ -313,8 +329,8 @@ _HUM = LumpedEffect(
     every_channel=True,
 )
 NONLINEAR: tuple[LumpedEffect, ...] = (
-    _CUBIC,
-    _QUADRATIC,
+    CUBIC,
+    QUADRATIC,
     GAP,
     JENKINS,
     IWAN,

@@ -15,6 +15,7 @@ Source:
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.analysis.gap.catalogue.catalogue_settings import CATALOGUE_SETTINGS
 from jointbench.analysis.gap.catalogue.linear_effects import MAXWELL
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY, Effect
 from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
@@ -28,8 +29,7 @@ from jointbench.analysis.gap.response.effect_hooks import (
 
 SOURCE = "Masri and Caughey 1979, J. Appl. Mech. 46, 433, eq. (9)"
 SERIES = "Taylor series of a transfer function about 1"
-RELAXATION = (0.03, 0.16, 0.8)
-"""Relaxation times [periods of the joint's mode]."""
+RELAXATION = CATALOGUE_SETTINGS.relaxation_times
 
 
 def _effect(name: str, unit: str, scale: str, source: str) -> Effect:

@@ -4,17 +4,12 @@
 import numpy as np
 
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.judgement.winner_judging import far_off
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages, minimise
-
-REFINEMENTS = 12
-SETTLED = 0.5
-"""Change of the cost below which noise, scatter and fit agree with each other."""
-MOSTLY_SCATTER = 0.5
-"""Share of a base's chi2 that settled hits must leave at most to be believed."""
 
 
 @one_thread()
@@ -34,7 +29,7 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
         return found
     expanded = bench.refine(early.base, (), astray=True)
     again = minimise(make_problem(expanded, ()), early.x)
-    if again.chi2 > MOSTLY_SCATTER * found[1].chi2:
+    if again.chi2 > DIAGNOSIS.settled_share * found[1].chi2:
         return found
     settled = settled_base(expanded, again)
     return (expanded, again) if far_off(*settled) else settled
@@ -42,10 +37,10 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
 
 def settled_base(bench: Bench, fit: Fit) -> tuple[Bench, Fit]:
     """Bring a base and the noise estimated at it to agree."""
-    for _ in range(REFINEMENTS):
+    for _ in range(DIAGNOSIS.base_rounds):
         before = fit.cost
         bench = bench.refine(fit.base, ())
         fit = minimise(make_problem(bench, ()), fit.x)
-        if abs(fit.cost - before) < SETTLED:
+        if abs(fit.cost - before) < DIAGNOSIS.base_settled_cost:
             break
     return bench, fit

@@ -9,6 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence import make_exhibit
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
@@ -28,6 +29,7 @@ from jointbench.analysis.gap.model.diagnosis_record import (
 )
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.effect_parameter import Reported
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench, values_of
 from jointbench.analysis.gap.residuals.evaluation_stages import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -38,12 +40,11 @@ from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
-FAR = 1e12
 UNFORETOLD_WORDS = (
-    "; held out, a condition is not foretold by the others: it shows the effect "
+    "; held out, a condition is not predicted by the others: it shows the effect "
     "alone, so add conditions next to it"
 )
-LOOK_CLOSER = "look at the views of the gap; widen levels, points and preloads"
+LOOK_CLOSER = "check the views of the gap; widen levels, points and preloads"
 
 
 @one_thread()
@@ -52,6 +53,7 @@ def diagnose(
     *,
     without: frozenset[str] = frozenset(),
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    policy: Policy = STANDARD,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find, name and add what a model misses.
@@ -60,6 +62,7 @@ def diagnose(
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
+        policy: thresholds of the verdict.
         progress: told what is being tried, one line at a time.
 
     Returns:
@@ -73,12 +76,12 @@ def diagnose(
         Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63, 425, for the question; the
         rules of naming are those of `jointbench.analysis.gap.judgement.naming`.
     """
-    bench = make_bench(campaign, without=without, entries=entries)
+    bench = make_bench(campaign, without=without, entries=entries, policy=policy)
     outcome = investigate(bench, progress or (lambda line: None))
     final = outcome.bench
     if not isinstance(final, LumpedBench):
         raise TypeError("the loop must hand back the bench it was given")
-    return conclude(outcome, final, limits=campaign_limits(campaign))
+    return conclude(outcome, final, limits=campaign_limits(campaign, policy))
 
 
 def conclude(
@@ -125,6 +128,7 @@ def conclude(
         reason=verdict.reason,
         exhibit=exhibit,
         explanations=tuple(_labels(f) for f in outcome.level if outcome.gate.passed),
+        policy=bench.policy,
     )
     if finding is Finding.NAMED and not found.foretold:
         return replace(found, reason=verdict.reason + UNFORETOLD_WORDS)
@@ -165,7 +169,7 @@ def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
         if {c.label for c in f.candidates} != own
         and not own < {c.label for c in f.candidates}
     ]
-    margin = (min(others) if others else FAR) - score(bench, fit)
+    margin = (min(others) if others else DIAGNOSIS.no_rival_score) - score(bench, fit)
     allowed = max(outcome.gate.allowed, 1e-12)
     slack = 1.0 - max(outcome.gate.excess, 0.0) / allowed
     sure = weakest(fit, (outcome.base, *outcome.ranked))

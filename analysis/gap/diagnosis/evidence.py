@@ -7,17 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import gather
 from jointbench.analysis.gap.diagnosis.findings import advise, describe
 from jointbench.analysis.gap.diagnosis.location import (
     counted_samples,
     locate,
-    pulled,
-    relative_misfits,
-    telling_view,
+    most_significant_view,
+    prior_deviation_words,
+    relative_residuals,
 )
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.judgement.naming import PULL_LIMIT
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.evidence_records import (
@@ -37,17 +37,6 @@ _UNITS = {
     Output.VELOCITY: "m/s",
     Output.ACCELERATION: "m/s^2",
 }
-_SHOWN = 0.9
-"""Share of a record's misfit that the window of the picture holds."""
-_LEAD_TIME = 1e-3
-_SHORTEST = 256
-_LONGEST = 2048
-_LINES = 400
-_FORCE_FLOOR = 0.03
-"""Of the largest line of the force, below which a response function is not drawn."""
-_FINEST = 48
-"""Bands per decade that the misfit's spectrum is averaged over."""
-_MOST_TESTS = 8
 
 
 def make_exhibit(
@@ -63,7 +52,7 @@ def make_exhibit(
     """
     best = outcome.best if outcome.best.candidates else base
     residual = _cube(bench, base)
-    relative = relative_misfits(bench, residual)
+    relative = relative_residuals(bench, residual)
     wishes = _wishes(bench, base, best)
     tests = _tests(bench, base, outcome)
     models = (
@@ -72,15 +61,15 @@ def make_exhibit(
     )
     curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
     facts = gather(bench, base, outcome, finding, relative["output"])
-    limits = _limits(outcome)
-    view = telling_view(bench, residual, facts)
+    limits = _limits(outcome, bench)
+    view = most_significant_view(bench, residual, facts)
     where = ""
     look: tuple[str, ...] = ()
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
         where = locate(bench, residual, facts)
         look = describe(bench, residual, relative, facts, wishes, tests)
-    elif not outcome.base_gate.passed and np.abs(base.pulls).max() > PULL_LIMIT:
-        where, view = pulled(bench, base), "sheet"
+    elif not outcome.base_gate.passed and _pulled_off(bench, base):
+        where, view = prior_deviation_words(bench, base), "sheet"
     elif not outcome.base_gate.passed:
         where = locate(bench, residual, facts)
     return Exhibit(
@@ -94,7 +83,7 @@ def make_exhibit(
         spectra=spectra,
         wishes=wishes,
         limits=limits,
-        tests=tests[:_MOST_TESTS],
+        tests=tests[: DIAGNOSIS.figure_tests],
     )
 
 
@@ -103,14 +92,19 @@ def _cube(bench: LumpedBench, fit: Fit) -> FloatArray:
     return fit.residual.reshape(bench.campaign.response.shape)
 
 
-def _limits(outcome: SearchOutcome) -> CampaignLimits:
+def _pulled_off(bench: LumpedBench, base: Fit) -> bool:
+    """Return whether a base parameter lies beyond the limit of its prior."""
+    return bool(np.abs(base.pulls).max() > bench.policy.prior_limit)
+
+
+def _limits(outcome: SearchOutcome, bench: LumpedBench) -> CampaignLimits:
     """Repeat the limits of the gate."""
     return CampaignLimits(
         chi2_per_dof=1.0 + outcome.gate.excess,
         chi2_allowed=1.0 + outcome.gate.allowed,
         remaining=outcome.gate.remaining,
         remaining_allowed=outcome.gate.remaining_allowed,
-        pull_allowed=PULL_LIMIT,
+        pull_allowed=bench.policy.prior_limit,
     )
 
 
@@ -185,12 +179,25 @@ def _window(bench: LumpedBench, residual: FloatArray) -> tuple[int, int]:
     rate, n = bench.campaign.sample_rate, residual.size
     if bench.campaign.continuous:
         peak = int(np.argmax(np.abs(residual)))
-        first = min(max(peak - _LONGEST // 4, 0), max(n - _LONGEST // 2, 0))
-        return first, min(first + _LONGEST // 2, n)
-    first = max(bench.gate[0] - int(_LEAD_TIME * rate), 0)
+        first = min(
+            max(peak - DIAGNOSIS.figure_most_samples // 4, 0),
+            max(n - DIAGNOSIS.figure_most_samples // 2, 0),
+        )
+        return first, min(first + DIAGNOSIS.figure_most_samples // 2, n)
+    first = max(bench.gate[0] - int(DIAGNOSIS.figure_lead * rate), 0)
     power = np.cumsum(residual[first:] ** 2)
-    reach = int(np.searchsorted(power, _SHOWN * power[-1])) if power[-1] > 0 else 0
-    return first, min(first + min(max(reach, _SHORTEST), _LONGEST), n)
+    reach = (
+        int(np.searchsorted(power, DIAGNOSIS.figure_share * power[-1]))
+        if power[-1] > 0
+        else 0
+    )
+    return first, min(
+        first
+        + min(
+            max(reach, DIAGNOSIS.figure_least_samples), DIAGNOSIS.figure_most_samples
+        ),
+        n,
+    )
 
 
 def _spectra(
@@ -209,9 +216,9 @@ def _spectra(
     campaign = bench.campaign
     force = np.fft.rfft(campaign.force[rows], axis=1)
     power = np.sum(np.abs(force) ** 2, axis=0)
-    kept = np.flatnonzero(power > _FORCE_FLOOR**2 * power.max())
+    kept = np.flatnonzero(power > DIAGNOSIS.figure_force_floor**2 * power.max())
     frequency = np.fft.rfftfreq(campaign.force.shape[1], 1 / campaign.sample_rate)
-    kept = kept[frequency[kept] > 0.0][: 4 * _LINES]
+    kept = kept[frequency[kept] > 0.0][: 4 * DIAGNOSIS.figure_lines]
     centres, misfits = _misfit_spectra(bench, whitened)
 
     def ratio(response: FloatArray) -> FloatArray:
@@ -255,7 +262,7 @@ def _misfit_spectra(
 def _bands(frequency: NDArray[np.floating[Any]]) -> IntArray:
     """Number lines from the second on into bands: single lines, then log-spaced."""
     decades = np.log10(frequency[1:] / frequency[1])
-    return np.asarray(np.floor(_FINEST * decades), dtype=np.int64)
+    return np.asarray(np.floor(DIAGNOSIS.figure_bands * decades), dtype=np.int64)
 
 
 def _wishes(bench: LumpedBench, base: Fit, best: Fit) -> Wishes | None:

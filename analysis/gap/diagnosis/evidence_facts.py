@@ -4,6 +4,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.level_evidence import (
     LevelScaling,
     Recurrence,
@@ -15,10 +16,7 @@ from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-UNEVEN = 2.0
-"""Ratio of relative misfits from which a view is worth a word."""
-CHANGING = ("loosening",)
-"""Effects that go with the order of the hits, which may look like their level."""
+UNEVEN = DIAGNOSIS.uneven_ratio
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,6 +88,6 @@ def scaling_by(bench: LumpedBench, fit: Fit) -> LevelScaling:
     entries = [action.entry for action in bench.actions(fit.terms)]
     if any(e.law is not None or e.shape is not None for e in entries):
         return LevelScaling.CHANGES
-    if any(e.effect.name in CHANGING for e in entries):
+    if any(e.effect.follows_order for e in entries):
         return LevelScaling.UNTOLD
     return LevelScaling.PROPORTIONAL

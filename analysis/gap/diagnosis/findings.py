@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Say what a misfit looks like, in sentences with numbers, and what to do about it."""
+"""Describe the signature of a residual in sentences, and advise what to do."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -7,17 +7,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.analysis.gap.catalogue.nonlinear_effects import CUBIC, QUADRATIC
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
 from jointbench.analysis.gap.diagnosis.location import Relative
 from jointbench.analysis.gap.model.evidence_records import DirectedTest, Wishes
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-CLEAR_SD = 4.0
-"""Distance from 0 at which a wish of a record counts."""
-TAKEN = 0.3
-"""Share of the misfit that the joint's own numbers must take to be worth telling."""
-ODD, EVEN = "cubic_stiffness", "quadratic_stiffness"
+ODD, EVEN = CUBIC.effect.name, QUADRATIC.effect.name
 
 
 def describe(
@@ -28,14 +26,14 @@ def describe(
     wishes: Wishes | None,
     tests: Sequence[DirectedTest],
 ) -> tuple[str, ...]:
-    """Say what a misfit looks like, for somebody who must think of its cause.
+    """Describe the signature of a residual for an engineer who seeks its cause.
 
     Args:
         bench: measurement and noise.
         residual: whitened, shape (n_records, n_channels, n_samples).
-        relative: misfit over response by view and slice [-].
-        facts: what is known of the misfit.
-        wishes: of the records for the joint, or None.
+        relative: residual over response by view and slice [-].
+        facts: what is known of the residual.
+        wishes: joint estimates of single records, or None.
         tests: directed tests of the base.
     """
     lines = [
@@ -46,85 +44,90 @@ def describe(
     if facts.guessed and facts.scaling is not LevelScaling.PROPORTIONAL:
         lines.append(symmetry(tests))
     if wishes is not None:
-        lines += _wish_lines(wishes, facts)
+        lines += _record_lines(wishes, facts)
     return tuple(line for line in lines if line)
 
 
 def advise(bench: LumpedBench, facts: Facts) -> str:
-    """Say what would bring light into a misfit that no effect explains.
+    """Advise what would clarify a residual that no effect explains.
 
     Args:
         bench: measurement and noise.
-        facts: what is known of the misfit.
+        facts: what is known of the residual.
     """
     if bench.campaign.continuous:
-        return "shake at levels over a factor of 10; then try a law of your own"
+        return "shake at levels over a factor of 10; then try a user-defined effect"
     if np.unique(bench.campaign.level).size < 2:
-        return "hit at four levels over a factor of 30: one level cannot tell causes"
+        return (
+            "hit at four levels over a factor of 30: one level cannot separate causes"
+        )
     if facts.scaling is LevelScaling.UNTOLD:
-        return "hit harder, or average more repeats: the noise hides the softer hits"
+        return "hit harder, or repeat more often: noise masks the softer hits"
     if facts.scaling is LevelScaling.CHANGES:
         return (
-            "hit at levels in between and from the other side, which tells even from "
-            "odd laws; then try a law of your own with --effects"
+            "hit at intermediate levels and from the other side, which separates even "
+            "from odd laws; then try a user-defined effect with --effects"
         )
     if facts.uneven:
-        return f"swap sensor {facts.uneven} with another, or move it, and hit again"
-    return "hit at more points and preloads; look for a part that the model leaves out"
+        return f"swap sensor {facts.uneven} with another, or move it, and repeat"
+    return "hit at more points and preloads; check for a part missing from the model"
 
 
 def _level_line(bench: LumpedBench, facts: Facts) -> str:
     if bench.campaign.continuous:
         return ""
     if np.unique(bench.campaign.level).size < 2:
-        return "level: seen at one level only; hit harder and softer"
+        return "level: measured at one level only; hit harder and softer"
     if not facts.levels:
-        return "level: the noise hides whether softer hits show it; hit harder"
+        return "level: noise masks the softer hits; hit harder"
     recur = ", ".join(f"{100 * f.share:.0f} % at {f.level:g} N" for f in facts.levels)
     return (
-        "level: with the base fitted to the softer hits, the misfit of the hardest, "
-        f"scaled with the force, recurs in softer ones by {recur}; {_cause(facts)}"
+        "level: with the base model fitted to the softer hits, the residual of the "
+        f"hardest, scaled with the force, recurs in softer hits by {recur}; "
+        f"{_cause(facts)}"
     )
 
 
 def _cause(facts: Facts) -> str:
-    """Say how the misfit goes with the hit, and what it tells where the cause is open.
+    """State how the residual scales with the hit, and what follows for the cause.
 
-    A law that is not linear is so to first order about its preload, so that a misfit
-    in proportion to the hit rules none out.
+    A nonlinear law is linear to first order about its preload, so a residual
+    proportional to the hit excludes none.
     """
-    seen = "in proportion to the hit"
+    seen = "proportional to the hit"
     if facts.seen is not LevelScaling.PROPORTIONAL:
         seen = f"not {seen}"
     if facts.guessed and facts.seen is LevelScaling.PROPORTIONAL:
-        return f"{seen}, so the cause is linear over this travel"
+        return f"{seen}, so the cause is linear over this range of motion"
     if facts.guessed:
-        return f"{seen}, so the cause depends on the level, or on when a hit was made"
+        return f"{seen}, so the cause depends on the level or on the order of the hits"
     if facts.seen is facts.scaling:
         return seen
-    return f"{seen}, unlike what the named effects do by themselves"
+    return f"{seen}, unlike the named effects taken alone"
 
 
 def _channel_line(slices: Mapping[str, float], facts: Facts) -> str:
     if len(slices) < 2:
         return ""
     words = ", ".join(f"{name} {100 * x:.2g} %" for name, x in slices.items())
-    line = f"channel: misfit over response {words}"
+    line = f"channel: residual over response {words}"
     if not facts.guessed:
         return line
     if facts.uneven:
-        return f"{line}; uneven: suspect that sensor or the body it sits on"
-    return f"{line}; alike, so it is in the structure rather than in one sensor"
+        return f"{line}; uneven: check that sensor and the body it is mounted on"
+    return f"{line}; equal, so the cause is in the structure, not in one sensor"
 
 
 def _phase_line(bench: LumpedBench, residual: FloatArray) -> str:
-    """Say whether the misfit comes with the hit or in the ringing after it."""
+    """State which share of the residual falls into the pulse, not the ring-down."""
     if bench.campaign.continuous:
         return ""
     power = np.maximum(np.sum(residual**2 - 1.0, axis=(0, 1)), 0.0)
     total = max(float(power.sum()), 1e-300)
     during = float(power[: bench.gate[1]].sum()) / total
-    return f"time: {100 * during:.0f} % while the force acts, the rest in the ringing"
+    return (
+        f"time: {100 * during:.0f} % during the force pulse, the rest in the ring-down"
+    )
 
 
 def symmetry(tests: Sequence[DirectedTest]) -> str:
@@ -138,20 +141,24 @@ def symmetry(tests: Sequence[DirectedTest]) -> str:
     odd, even = shares[ODD], shares[EVEN]
     if max(odd, even) < 0.1:
         return ""
-    kind = "odd (alike in push and pull)" if odd > even else "even (push unlike pull)"
+    kind = (
+        "odd (equal in tension and compression)"
+        if odd > even
+        else "even (different in tension and compression)"
+    )
     return (
-        f"symmetry: a cubic spring would take {100 * odd:.0f} % of the misfit, a "
+        f"symmetry: a cubic spring would explain {100 * odd:.0f} % of the residual, a "
         f"quadratic one {100 * even:.0f} %: mostly {kind}"
     )
 
 
-def _wish_lines(wishes: Wishes, facts: Facts) -> list[str]:
+def _record_lines(wishes: Wishes, facts: Facts) -> list[str]:
     lines = [
-        "joint: a stiffness and damping of its own for each record would take "
-        f"{100 * wishes.share:.0f} % of the misfit"
+        "joint: separate stiffness and damping for each record would explain "
+        f"{100 * wishes.share:.0f} % of the residual"
     ]
-    if wishes.share < TAKEN:
-        more = ", so more than those is at work" if facts.guessed else ""
+    if wishes.share < DIAGNOSIS.taken_share:
+        more = ", so another cause contributes" if facts.guessed else ""
         return [lines[0] + more]
     views = [
         ("level", wishes.level, wishes.preload),
@@ -171,17 +178,17 @@ def _wish_lines(wishes: Wishes, facts: Facts) -> list[str]:
 
 
 def _alike(x: FloatArray, other: FloatArray) -> BoolArray:
-    """Return the records whose other condition was met at every x.
+    """Return the records whose other condition occurs at every x.
 
-    Else a second preload that only soft hits met would be taken for the cause of what
-    the hard ones do.
+    Otherwise a second preload with soft hits only would be taken for the cause of
+    what the hard hits show.
     """
     met = [set(other[x == value].tolist()) for value in np.unique(x)]
     return np.isin(other, sorted(set.intersection(*met)))
 
 
 def _trend(word: str, view: str, x: FloatArray, y: FloatArray, sd: FloatArray) -> str:
-    """Say how a wish goes from the lowest to the highest x, where that is clear."""
+    """Describe how an estimate changes from the lowest to the highest x, if clear."""
     at = np.unique(x)
     if at.size < 2:
         return ""
@@ -189,7 +196,10 @@ def _trend(word: str, view: str, x: FloatArray, y: FloatArray, sd: FloatArray) -
     means = [float(np.average(y[x == v], weights=weight[x == v])) for v in at]
     errors = [float(np.sqrt(1.0 / weight[x == v].sum())) for v in at]
     change = means[-1] - means[0]
-    if abs(change) < CLEAR_SD * np.hypot(errors[0], errors[-1]) or abs(change) < 1e-3:
+    if (
+        abs(change) < DIAGNOSIS.clear_sd * np.hypot(errors[0], errors[-1])
+        or abs(change) < 1e-3
+    ):
         return ""
     steps = np.diff(means)
     steady = np.all(steps > 0) or np.all(steps < 0)

@@ -22,20 +22,13 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     IntArray,
 )
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.joint_settling import joint_at
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages
-
-_FORCE_FLOOR = 0.05
-"""Of the largest line of a force, below which a ratio to it says nothing."""
-_VAGUE = 0.15
-"""Standard deviation beyond which a recurrence is not told."""
-_LINEAR_WITHIN = 0.35
-_STEP = 1e-4
-"""Difference step of the logarithm of the joint's stiffness."""
 
 
 class LevelScaling(StrEnum):
@@ -117,9 +110,9 @@ def _scatters(
 ) -> tuple[Scatter, ...]:
     """Return how hits scatter: in strength, and in the stiffness of the joint."""
     moved = base.copy()
-    moved[joint_at(bench.campaign.model)] += _STEP
+    moved[joint_at(bench.campaign.model)] += DIAGNOSIS.level_step
     gain, joint = bench.noise.scatter[0], max(bench.noise.scatter[1:], default=0.0)
-    slope = (bench.response(moved, ()) - model) / _STEP
+    slope = (bench.response(moved, ()) - model) / DIAGNOSIS.level_step
     return Scatter(gain, model), Scatter(joint, slope)
 
 
@@ -141,7 +134,9 @@ def recurrences(
         return ()
     forces = np.fft.rfft(bench.campaign.force, axis=1)
     size = np.abs(forces)
-    spoken = np.all(size > _FORCE_FLOOR * size.max(axis=1, keepdims=True), axis=0)
+    spoken = np.all(
+        size > DIAGNOSIS.level_force_floor * size.max(axis=1, keepdims=True), axis=0
+    )
     forces = forces[:, spoken]
 
     def lines(records: FloatArray) -> ComplexArray:
@@ -162,7 +157,7 @@ def recurrences(
             soft = rows[level[rows] == low]
             found.append(_compare(float(low), (spectra, *slopes), forces, hard, soft))
     merged = [_merge(found, x) for x in sorted({f.level for f in found}, reverse=True)]
-    return tuple(f for f in merged if f.sd < _VAGUE)
+    return tuple(f for f in merged if f.sd < DIAGNOSIS.vague_sd)
 
 
 def _pairings(bench: LumpedBench) -> list[IntArray]:
@@ -252,4 +247,4 @@ def scaling_of(found: Sequence[Recurrence]) -> LevelScaling:
 
 def is_linear(found: Sequence[Recurrence]) -> bool:
     """Return whether the misfit recurs whole at every level."""
-    return all(abs(f.share - 1.0) < _LINEAR_WITHIN + 2 * f.sd for f in found)
+    return all(abs(f.share - 1.0) < DIAGNOSIS.linear_within + 2 * f.sd for f in found)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Say where a misfit sits, in one sentence with numbers.
+"""Locate a residual: level, channel, frequency and condition, in one sentence.
 
-A misfit that is linear in the response is large wherever the response is large: its
-chi2 grows with the level of the hit although nothing in it does. So slices are also
-compared by the misfit over the response, which a linear cause leaves alone.
+A residual that is linear in the response is large wherever the response is large: its
+chi2 grows with the level of the hit although the cause does not. Slices are therefore
+also compared by residual over response, which is constant for a linear cause.
 """
 
 from collections.abc import Sequence
@@ -11,22 +11,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import UNEVEN, Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
 from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
-_GROWS = 0.7
-"""Size at the next lower level, over the hardest, below which a misfit grows."""
-_MAINLY = 0.6
-_BAND_SHARE = 0.8
 _CONTROLLED = ("hit point", "preload")
 Relative = dict[str, dict[str, float]]
 
 
-def relative_misfits(bench: LumpedBench, residual: FloatArray) -> Relative:
-    """Return misfit over response by view and slice [-].
+def relative_residuals(bench: LumpedBench, residual: FloatArray) -> Relative:
+    """Return residual over response by view and slice [-].
 
     Args:
         bench: measurement and noise.
@@ -61,7 +58,7 @@ def _ratio(excess: FloatArray, power: FloatArray) -> float:
 
 
 def locate(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
-    """Return one sentence on where the misfit of a fit sits.
+    """Return one sentence that locates the residual of a fit.
 
     Args:
         bench: measurement and noise.
@@ -76,7 +73,7 @@ def locate(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     top = int(np.argmax(channels))
     name = bench.campaign.model.channels[top].name
     several = channels.size > 1
-    if several and channels[top] > _MAINLY:
+    if several and channels[top] > DIAGNOSIS.mainly_share:
         parts.append(f"mainly on {name} ({100 * channels[top]:.0f} %)")
     elif several:
         parts.append("on all channels")
@@ -86,20 +83,21 @@ def locate(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
     parts += [
         words for view in _CONTROLLED if (words := _uneven_words(bench, signed, view))
     ]
-    return f"the misfit {'is ' if bench.campaign.continuous else ''}{', '.join(parts)}"
+    verb = "is " if bench.campaign.continuous else ""
+    return f"the residual {verb}{', '.join(parts)}"
 
 
-def pulled(bench: LumpedBench, base: Fit) -> str:
-    """Say that the misfit hides in the base's own parameters.
+def prior_deviation_words(bench: LumpedBench, base: Fit) -> str:
+    """State that only the prior deviation of a base parameter shows the gap.
 
     Args:
         bench: measurement and noise.
-        base: fit without effects, which meets the records all but for its sheet.
+        base: fit without effects, which meets the records but not its priors.
     """
     worst = int(np.argmax(np.abs(base.pulls)))
     return (
-        "the records are met to nearly their noise, but only with "
-        f"{bench.base_names[worst]} pulled {base.pulls[worst]:+.1f} sd off its sheet"
+        "the base model meets the records nearly within their noise, but only with "
+        f"{bench.base_names[worst]} {base.pulls[worst]:+.1f} sd from its nominal value"
     )
 
 
@@ -110,17 +108,17 @@ def _level_words(bench: LumpedBench, excess: FloatArray, facts: Facts) -> str:
     top = max(shares, key=lambda key: shares[key])
     held = f"{100 * shares[top] / total:.0f} % of it at {top}"
     if len(shares) == 1:
-        return "was seen at one level only"
+        return "was measured at one level only"
     if facts.scaling is LevelScaling.UNTOLD:
         return f"is largest at {top} ({held})"
     if facts.scaling is LevelScaling.PROPORTIONAL:
-        return "is in proportion to the hit at every level"
+        return "is proportional to the hit at every level"
     size = facts.levels[0].size
-    if size < _GROWS:
+    if size < DIAGNOSIS.growth_ratio:
         return f"grows with level ({held})"
-    if size > 1.0 / _GROWS:
-        return f"fades with level, relative to the hit ({held})"
-    return f"changes its shape with level ({held})"
+    if size > 1.0 / DIAGNOSIS.growth_ratio:
+        return f"decreases with level, relative to the hit ({held})"
+    return f"changes shape with level ({held})"
 
 
 def _response_power(bench: LumpedBench) -> FloatArray:
@@ -141,7 +139,7 @@ def _band(bench: LumpedBench, residual: FloatArray) -> tuple[float, float]:
     excess = np.maximum(np.sum(power - 1.0, axis=(0, 1)), 0.0)
     excess[0] = 0.0
     total = np.cumsum(excess)
-    want = _BAND_SHARE * total[-1]
+    want = DIAGNOSIS.band_share * total[-1]
     ends = np.searchsorted(total, np.concatenate([[0.0], total[:-1]]) + want)
     ends = np.where(ends < n // 2, ends, 10 * n)
     first = int(np.argmin(ends - np.arange(ends.size)))
@@ -149,13 +147,15 @@ def _band(bench: LumpedBench, residual: FloatArray) -> tuple[float, float]:
     return first * rate / n, (last + 1) * rate / n
 
 
-def telling_view(bench: LumpedBench, residual: FloatArray, facts: Facts) -> str:
-    """Return the view in which a misfit stands out most.
+def most_significant_view(
+    bench: LumpedBench, residual: FloatArray, facts: Facts
+) -> str:
+    """Return the view in which a residual is most significant.
 
     Args:
         bench: measurement and noise.
         residual: whitened, shape (n_records, n_channels, n_samples).
-        facts: what is known of the misfit.
+        facts: what is known of the residual.
     """
     if facts.scaling is LevelScaling.CHANGES:
         return "level"
@@ -171,7 +171,7 @@ def counted_samples(bench: LumpedBench) -> int:
 
 
 def _unevenness(bench: LumpedBench, excess: FloatArray, view: str) -> tuple[float, str]:
-    """Return by how much misfit over response differs, all other conditions alike.
+    """Return the ratio of residual over response, all other conditions equal.
 
     Returns:
         A lower limit of the ratio [-], and the slice where it is largest.
@@ -196,7 +196,7 @@ def _unevenness(bench: LumpedBench, excess: FloatArray, view: str) -> tuple[floa
 
 
 def _uneven_words(bench: LumpedBench, excess: FloatArray, view: str) -> str:
-    """Say where misfit over response is far larger, all other conditions alike."""
+    """Name the slice with a far larger residual over response, if any."""
     ratio, top = _unevenness(bench, excess, view)
     if ratio < UNEVEN:
         return ""

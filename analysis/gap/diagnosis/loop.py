@@ -7,12 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.judgement.naming import Gate, gate
-from jointbench.analysis.gap.judgement.rivals import (
-    CROWDED_WITHIN,
-    rivals,
-    without_twins,
-)
+from jointbench.analysis.gap.judgement.rivals import rivals, without_twins
 from jointbench.analysis.gap.judgement.winner_judging import Hopes, far_off, judge
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, may_join
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
@@ -36,25 +33,6 @@ from jointbench.analysis.gap.search.selection_round import (
     race_on,
     score,
 )
-
-_MOST_EFFECTS = 3
-_FIRSTS = 3
-_THIRD_LEFT = 0.01
-"""Share of the base's excess chi2 that a pair may leave for a third effect."""
-_HOPEFUL = 4.0
-"""Excess of the cost over the best first's above which a first is given no second."""
-_NOTHING = 0.01
-"""Excess over dof that noise may make of nothing."""
-_WRONG_VALLEY = 2.0
-"""Chi2 over dof above which a base may have stopped in a wrong valley."""
-_SECONDS = 4
-MOST_EFFORT = 3.2e9
-"""Samples predicted after which no further effect is looked for: 75 to 87 s of a core
-of 2.3 GHz."""
-_MOVED = 1000.0
-"""Gain of a winner by being settled after which one of its effects may be needless."""
-_MIN_GAIN = 35.0
-"""Chi2 that a further effect must take, beyond its charge."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,14 +80,14 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
     found = _other_sliders(found, base, progress)
     grown: set[frozenset[str]] = set()
     given_up = False
-    for count in range(1, _MOST_EFFECTS):
-        firsts = found.fits[: _FIRSTS if count == 1 else 1]
+    for count in range(1, DIAGNOSIS.most_effects):
+        firsts = found.fits[: DIAGNOSIS.first_effects if count == 1 else 1]
         known = bool(firsts) and labels_of(firsts[0].candidates) in grown
         if known or not _worth_more(found, base):
             break
         grown |= {labels_of(f.candidates) for f in firsts}
         try:
-            with limited(effort, MOST_EFFORT):
+            with limited(effort, bench.policy.most_samples):
                 after = _one_more(found, firsts, base, progress)
         except SearchExhausted:
             given_up = True
@@ -181,7 +159,7 @@ def judged(
     """
     found = _Round(*judge(bench, fits, base, progress, hopes))
     best = found.fits[0]
-    if len(best.candidates) == 1 or fits[0].cost - best.cost < _MOVED:
+    if len(best.candidates) == 1 or fits[0].cost - best.cost < DIAGNOSIS.needless_gain:
         return found
     merged = _take_back(found.bench, found.fits, progress)
     if merged[0] is best:
@@ -205,8 +183,8 @@ def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
 
     What is not told apart from the best was fitted again when that was judged.
     """
-    best = score(found.bench, found.fits[0])
-    close = [f for f in found.fits if score(found.bench, f) < best + CROWDED_WITHIN]
+    near = score(found.bench, found.fits[0]) + found.bench.policy.rival_score_one_site
+    close = [f for f in found.fits if score(found.bench, f) < near]
     known = {labels_of(f.candidates) for f in close}
     more = exchanged(found.bench, found.fits[0], known, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(found.bench, f))
@@ -228,7 +206,8 @@ def _worth_more(found: _Round, base: Fit) -> bool:
     links = [c.site for c in fit.candidates if c.site.kind == "link"]
     apart = len(set(links)) == len(links)
     dof = found.bench.blocks.dof
-    return apart and fit.chi2 - dof < _THIRD_LEFT * (base.chi2 - dof)
+    share = found.bench.policy.third_effect_share
+    return apart and fit.chi2 - dof < share * (base.chi2 - dof)
 
 
 def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome | None:
@@ -238,11 +217,14 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome |
     wrong valley (3 of 1,500 without an effect). An effect that leads it out looks as
     if it explained all that the base had missed.
     """
-    if not found.fits or base.chi2 < _WRONG_VALLEY * found.bench.blocks.dof:
+    if (
+        not found.fits
+        or base.chi2 < DIAGNOSIS.wrong_minimum_chi2 * found.bench.blocks.dof
+    ):
         return None
     progress("base again")
     fit = minimise(make_problem(found.bench, ()), found.fits[0].base)
-    if fit.chi2 > _WRONG_VALLEY * found.bench.blocks.dof:
+    if fit.chi2 > DIAGNOSIS.wrong_minimum_chi2 * found.bench.blocks.dof:
         return None
     bench, fit = settled_base(found.bench, fit)
     screening = screen(bench, fit, bench.candidates)
@@ -296,16 +278,16 @@ def _addable(bench: Bench, fit: Fit) -> list[Candidate]:
 def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     """Return the fits that a second effect may yet bring ahead of all others."""
     dof = bench.blocks.dof
-    least = max(fits[0].cost - dof, _NOTHING * dof)
-    return [f for f in fits if f.cost - dof < _HOPEFUL * least]
+    least = max(fits[0].cost - dof, DIAGNOSIS.noise_excess * dof)
+    return [f for f in fits if f.cost - dof < DIAGNOSIS.second_cost_ratio * least]
 
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
     """Choose seconds by predicted drop, and those that only the priors see."""
-    pulled = np.abs(first.pulls).max() > 3.5
+    pulled = np.abs(first.pulls).max() > DIAGNOSIS.prior_candidates_sd
     chosen: list[Candidate] = []
     for d in screening.directions:
-        if d.candidate not in chosen and len(chosen) < _SECONDS:
+        if d.candidate not in chosen and len(chosen) < DIAGNOSIS.second_candidates:
             chosen.append(d.candidate)
     for c in _addable(bench, first):
         if pulled and c.effect.by_prior and c not in chosen:
@@ -314,5 +296,6 @@ def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
 
 
 def _worthwhile(bench: Bench, more: Fit, fewer: Fit) -> bool:
-    gain = _MIN_GAIN if len(more.candidates) > len(fewer.candidates) else 0.0
+    added = len(more.candidates) > len(fewer.candidates)
+    gain = bench.policy.least_gain if added else 0.0
     return score(bench, more) + gain < score(bench, fewer)

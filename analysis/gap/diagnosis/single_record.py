@@ -10,6 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData, SamplingError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnose import conclude
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.loop import investigate
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
@@ -19,8 +20,6 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.selection_round import Progress
-
-OVERSAMPLING = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -189,7 +188,7 @@ def diagnose_record(
 
 
 def _error(bench: LumpedBench, fit: Fit) -> float:
-    modelled = bench.response(fit.base, fit.terms, OVERSAMPLING)
+    modelled = bench.response(fit.base, fit.terms, DIAGNOSIS.scored_steps)
     return _rms(bench, modelled - bench.campaign.response)
 
 

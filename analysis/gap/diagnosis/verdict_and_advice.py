@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.location import counted_samples
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.campaign_limits import flat_tops
 from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
-from jointbench.analysis.gap.judgement.naming import GLOBAL_SD
 from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import labels_of, words_of
@@ -17,20 +17,15 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.selection_round import score
 
-MOSTLY = 0.8
-"""Share of the misfit from which one record is suspected by itself."""
-MOST_RIVALS = 3
-"""Explanations that fit alike beyond which nothing is told apart."""
-
 
 @dataclass(frozen=True, slots=True)
 class DiagnosisVerdict:
-    """What an outcome comes to.
+    """The verdict on a search outcome.
 
     Attributes:
         finding: none, named, ambiguous or unknown.
         reason: in one line.
-        step: what to do next; empty where the look of the misfit has to tell.
+        step: what to do next; empty where the residual's signature decides.
     """
 
     finding: Finding
@@ -41,12 +36,12 @@ class DiagnosisVerdict:
 def verdict_on(
     outcome: SearchOutcome, bench: LumpedBench, limits: str
 ) -> DiagnosisVerdict:
-    """Judge an outcome.
+    """Derive the verdict from a search outcome.
 
     Args:
         outcome: of the loop on that bench.
         bench: with its noise as estimated at the end.
-        limits: why the campaign can show no more than `unknown`; empty where it can.
+        limits: reason why the campaign allows no verdict but `unknown`, or empty.
     """
     if limits:
         return DiagnosisVerdict(Finding.UNKNOWN, limits, _way_out(limits))
@@ -55,47 +50,48 @@ def verdict_on(
     if not outcome.best.candidates:
         return DiagnosisVerdict(
             Finding.NONE,
-            "the base explains the records to within their noise",
-            "none needed; to look deeper, hit at more levels and preloads",
+            "the base model explains the records within their noise",
+            "none required; for a lower detection limit, hit at more levels and "
+            "preloads",
         )
     names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) == 1:
         reason = f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}"
         return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
     step = _separates(outcome.level[0], outcome.level[1])
-    if len(outcome.level) > MOST_RIVALS:
-        reason = f"too many explanations fit alike: {names}"
+    if len(outcome.level) > bench.policy.most_rivals:
+        reason = f"too many explanations fit equally well: {names}"
         return DiagnosisVerdict(Finding.UNKNOWN, reason, step)
-    reason = f"{names}: their scores lie too close together"
+    reason = f"{names}: the difference of their scores is not significant"
     return DiagnosisVerdict(Finding.AMBIGUOUS, reason, step)
 
 
 def _unknown(outcome: SearchOutcome, bench: LumpedBench) -> DiagnosisVerdict:
-    """Say why the best fit is no name, and whether more might have been tried."""
+    """Give the reason against the best fit, and whether the search was complete."""
     flat = flat_tops(bench.campaign.response, bench.noise.sigma)
     if flat:
         reason = (
             f"record {flat[0]} has flat tops (and {len(flat) - 1} others): "
-            "a channel is overloaded; lower its gain and hit again"
+            "a channel is overloaded; reduce its gain and repeat the hits"
         )
         return DiagnosisVerdict(Finding.UNKNOWN, reason, _way_out(reason))
     if odd := _odd_record(outcome, bench):
         return DiagnosisVerdict(Finding.UNKNOWN, odd, _way_out(odd))
-    reason = f"no effect explains it: {outcome.gate.reason}"
+    reason = f"no effect of the catalogue explains the records: {outcome.gate.reason}"
     if outcome.given_up:
-        reason += "; the search for a further one was ended for its length"
+        reason += "; the search for a further effect reached its effort limit"
     return DiagnosisVerdict(Finding.UNKNOWN, reason, "")
 
 
 def _way_out(reason: str) -> str:
-    """Return what a reason says last: what to do about it."""
+    """Return the last clause of a reason: the way out."""
     return reason.replace(": ", "; ").rpartition("; ")[2]
 
 
 def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
-    """Return a warning where one record holds nearly all of the misfit.
+    """Return a warning if one record holds nearly all of the residual.
 
-    Its excess must be more than that of noise, or some record always holds most.
+    Its excess must exceed that of noise, since one record always holds most.
     """
     groups = bench.blocks.group
     counted = counted_samples(bench) * bench.blocks.shape[1]
@@ -103,17 +99,19 @@ def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
     worst = int(np.argmax(share))
     total = float(np.clip(share, 0, None).sum())
     noise = noise_sd(bench) * np.sqrt(share.size) * np.mean(np.bincount(groups))
-    if share[worst] < max(MOSTLY * total, GLOBAL_SD * noise):
+    if share[worst] < max(
+        DIAGNOSIS.one_record_share * total, bench.policy.chi2_limit * noise
+    ):
         return ""
     labels = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[worst].items())
     return (
         f"record {worst} ({labels}) holds {100 * share[worst] / total:.0f} % of the "
-        "misfit: check its labels (preload, level, point) or measure it again"
+        "residual: check its labels (preload, level, point) or repeat it"
     )
 
 
 def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
-    """Say how far the nearest rival of a name is behind: no experiment is needed."""
+    """Give the delta score of the nearest rival: no experiment is required."""
     own = labels_of(outcome.best.candidates)
     others = [
         score(bench, f)
@@ -121,16 +119,17 @@ def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
         if not (labels_of(f.candidates) <= own or own <= labels_of(f.candidates))
     ]
     if not others:
-        return "no experiment needed: no other explanation came near"
-    behind = min(others) - score(bench, outcome.best)
+        return "no further experiment required: no other explanation comes close"
+    delta_score = min(others) - score(bench, outcome.best)
+    limit = rival_within(outcome.best, bench.policy)
     return (
-        f"no experiment needed: the nearest rival is {behind:.0f} behind, "
-        f"{rival_within(outcome.best):.0f} tell it apart"
+        f"no further experiment required: the nearest rival has a delta score of "
+        f"{delta_score:.0f} (limit {limit:.0f})"
     )
 
 
 def _separates(first: Fit, second: Fit) -> str:
-    """Return the experiment that tells two fits apart by what one alone holds."""
+    """Return the experiment that distinguishes two fits by what only one contains."""
     own = [c for c in first.candidates if c not in second.candidates]
     other = [c for c in second.candidates if c not in first.candidates]
     for a in own:
@@ -139,4 +138,4 @@ def _separates(first: Fit, second: Fit) -> str:
                 advice = left.effect.separates.get(right.effect.name)
                 if advice:
                     return f"{left.label} or {right.label}: {advice}"
-    return "repeat at more levels, points and preloads to tell the first two apart"
+    return "repeat at more levels, points and preloads to distinguish the best two"

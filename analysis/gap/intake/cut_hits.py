@@ -19,28 +19,12 @@ from jointbench.acquisition.basics.errors import (
     SamplingError,
 )
 from jointbench.acquisition.records.recordings import Hit, Quantity, Recording, Verdict
+from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.residuals.noise_models import high_band_sigma
 
-PRETRIGGER = 112
-"""Samples kept before the trigger: the anti-alias filter rings in the last 48."""
-QUIET = 64
-"""The first of them, which no hit and no filter touches."""
-_LOOK_BACK = 512
-"""Samples before a hit that are searched for what still rings, where there are any."""
-SHORTEST = 512
-_LONGEST = 4096
-_WORK = 100_000
-"""Samples of a channel in all records together, beyond which records are cut short."""
-_DECAYED = 0.05
-"""Share of the largest response at which a record may end [-]."""
-_BLOCK = 64
-_RINGING = 1.25
-"""Rms before a hit over white noise, beyond which something is heard [-]."""
-_DECAYING = 0.8
-"""Rms of the last quarter before a hit over that of the third: it dies away [-]."""
-_LOUD = 0.02
-"""Share of the response to a hit that may be there before it, steadily (hum) [-]."""
-_OFFSET_SD = 5.0
+PRETRIGGER = INTAKE.pretrigger_samples
+QUIET = INTAKE.quiet_samples
+SHORTEST = INTAKE.shortest_record
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +69,7 @@ class _Strike:
 
     @property
     def quiet_from(self) -> int:
-        return max(self.first + QUIET - _LOOK_BACK, self.previous + 1, 0)
+        return max(self.first + QUIET - INTAKE.look_back_samples, self.previous + 1, 0)
 
     @property
     def words(self) -> str:
@@ -214,13 +198,17 @@ def _heard(strike: _Strike, channel: FloatArray, rate: float, what: str) -> str:
     after = channel[strike.hit.trigger : strike.first + strike.room]
     rms, peak = float(np.std(piece)), float(np.abs(after - piece.mean()).max())
     noise = float(high_band_sigma(piece - piece.mean()))
-    if strike.previous >= 0 and rms > _RINGING * noise and _dies_away(strike, channel):
+    if (
+        strike.previous >= 0
+        and rms > INTAKE.ringing_ratio * noise
+        and _dies_away(strike, channel)
+    ):
         wait = (strike.hit.trigger - strike.previous) / rate
         return (
             f"the {strike.words} comes {wait:.3g} s after the one before, while that "
             f"{what} has not decayed; wait longer between hits"
         )
-    if rms > _LOUD * peak and rms > _RINGING * noise:
+    if rms > INTAKE.steady_share * peak and rms > INTAKE.ringing_ratio * noise:
         return (
             f"before the {strike.words} its {what} is not quiet: {rms:.3g} rms against "
             f"a peak of {peak:.3g}; hit only when the bench is at rest"
@@ -238,12 +226,16 @@ def _dies_away(strike: _Strike, channel: FloatArray) -> bool:
         channel[end - quarter : end],
         channel[end - 2 * quarter : end][:quarter],
     )
-    return bool(np.std(last) < _DECAYING * np.std(third))
+    return bool(np.std(last) < INTAKE.decaying_ratio * np.std(third))
 
 
 def _length(strikes: Sequence[_Strike]) -> int:
     """Return how many samples every record gets."""
-    most = int(np.clip(_WORK // len(strikes), 2 * SHORTEST, _LONGEST))
+    most = int(
+        np.clip(
+            INTAKE.channel_samples // len(strikes), 2 * SHORTEST, INTAKE.longest_record
+        )
+    )
     wanted = max(_needed(strike, most) for strike in strikes)
     return max(SHORTEST, min(wanted, min(strike.room for strike in strikes)))
 
@@ -251,14 +243,18 @@ def _length(strikes: Sequence[_Strike]) -> int:
 def _needed(strike: _Strike, most: int) -> int:
     """Return after how many samples the response to a hit has decayed."""
     room = min(strike.room, most)
-    if room < 2 * _BLOCK + PRETRIGGER:
+    if room < 2 * INTAKE.decay_block + PRETRIGGER:
         return room
     span = strike.samples[1:, strike.first : strike.first + room]
-    blocks = room // _BLOCK
-    cut = span[:, : blocks * _BLOCK].reshape(span.shape[0], blocks, _BLOCK)
+    blocks = room // INTAKE.decay_block
+    cut = span[:, : blocks * INTAKE.decay_block].reshape(
+        span.shape[0], blocks, INTAKE.decay_block
+    )
     rms = cut.std(axis=2)
-    loud = np.flatnonzero((rms > _DECAYED * rms.max(axis=1, keepdims=True)).any(axis=0))
-    return min(int(loud[-1] + 2) * _BLOCK, room)
+    loud = np.flatnonzero(
+        (rms > INTAKE.decayed_share * rms.max(axis=1, keepdims=True)).any(axis=0)
+    )
+    return min(int(loud[-1] + 2) * INTAKE.decay_block, room)
 
 
 def _offsets(strikes: Sequence[_Strike]) -> FloatArray:
@@ -272,13 +268,15 @@ def _offsets(strikes: Sequence[_Strike]) -> FloatArray:
     means = np.stack([piece.mean(axis=1) for piece in quiet])
     common = means.mean(axis=0)
     doubt = means.std(axis=0) / np.sqrt(max(len(strikes) - 1, 1))
-    common = np.where(np.abs(common) > _OFFSET_SD * doubt, common, 0.0)
+    common = np.where(np.abs(common) > INTAKE.offset_sd * doubt, common, 0.0)
     offsets = np.tile(common, (len(strikes), 1))
     for row, piece in enumerate(quiet):
         rms = piece.std(axis=1)
         noise = high_band_sigma(piece - means[row][:, None])
-        apart = np.abs(means[row] - common) > _OFFSET_SD * rms / np.sqrt(piece.shape[1])
-        own = apart & (rms <= _RINGING * noise)
+        apart = np.abs(means[row] - common) > INTAKE.offset_sd * rms / np.sqrt(
+            piece.shape[1]
+        )
+        own = apart & (rms <= INTAKE.ringing_ratio * noise)
         offsets[row, own] = means[row, own]
     return offsets
 

@@ -13,14 +13,15 @@ from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFi
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_array, read_attribute
 from jointbench.acquisition.file_access.quoting import named, shown, visible
+from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.two_body_model import two_body_model
 
 SCHEMA = "two-body-campaign/1"
-MAX_RECORDS = 1024
-MAX_SAMPLES = 1 << 20
-MIN_SAMPLES = 512
-DEFAULT_PRELOAD = 4000.0
+MAX_RECORDS = INTAKE.most_records
+MAX_SAMPLES = INTAKE.most_samples
+MIN_SAMPLES = INTAKE.least_samples
+DEFAULT_PRELOAD = INTAKE.default_preload
 BODIES = 2
 SHEET_KEYS = ("m1", "m2", "k0", "kj", "c0", "cj")
 

@@ -10,14 +10,13 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.records.recordings import Hit, Quantity, Recording
 from jointbench.analysis.gap.intake.cut_hits import CutHits, cut_hits
+from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.nominal import Sheet
 from jointbench.analysis.lumped.lumped_model import Output
 
-SAME_LEVEL = 1.6
-"""Ratio between neighbouring peaks up to which hits may share a nominal level."""
-LEVEL_SPAN = 2.5
-"""Largest ratio between two peaks of one nominal level."""
+SAME_LEVEL = INTAKE.same_level_ratio
+LEVEL_SPAN = INTAKE.level_span
 QUANTITIES = {
     Output.DISPLACEMENT: Quantity.DISPLACEMENT,
     Output.VELOCITY: Quantity.VELOCITY,

@@ -6,16 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from jointbench.analysis.gap.model.effect import labels_of
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Fit
 
-AMPLITUDE_SD = 4.0
-_AT_THE_END = 1e-3
-"""Share of its range within which a parameter counts as standing at its end."""
-_LOOSE = 0.3
-"""Sd over the range beyond which a parameter stands nowhere in particular."""
 
-
-def at_the_end(fit: Fit) -> str:
+def at_the_end(fit: Fit, policy: Policy = STANDARD) -> str:
     """Say which shape of a law is driven to the end of its range, if any is.
 
     Such a law is stretched over another one: a Bouc-Wen element of a very sharp corner
@@ -26,8 +21,9 @@ def at_the_end(fit: Fit) -> str:
         for k, p in enumerate(term.candidate.effect.parameters):
             low, high = p.bounds
             span, u = high - low, term.coordinates[k]
-            if k and sd[at + k] < _LOOSE * span and np.isfinite(span):
-                if min(u - low, high - u) < _AT_THE_END * span:
+            known = sd[at + k] < policy.shape_sd_share * span
+            if k and known and np.isfinite(span):
+                if min(u - low, high - u) < policy.shape_end_share * span:
                     return f"{p.name} of {term.candidate.label} is at its limit"
         at += len(term.coordinates)
     return ""

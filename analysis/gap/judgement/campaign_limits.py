@@ -1,45 +1,37 @@
 # SPDX-License-Identifier: MIT
-"""What a campaign cannot show, whatever the fit says: its own limits, in words."""
+"""Limits of a campaign: what it cannot show regardless of the fit."""
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.hit_scatter import repeat_groups
 
-_ONE_LEVEL = 1.5
-"""Ratio of the hardest hit to the softest below which all have one level."""
-_FLAT_SAMPLES = 6
-"""Pairs of neighbours at the common maximum from which a record counts as clipped."""
-_AT_TOP_SD = 5.0
-_NEAR_TOP_SD = 20.0
-_SHARPER = 1.5
-"""Growth of what lies near the maximum, from one to the other of these distances, below
-which it is an edge; the crest of an oscillation doubles."""
-_LOUD_SD = 50.0
-_MIN_RECORDS = 4
 
-
-def campaign_limits(campaign: Campaign) -> str:
+def campaign_limits(campaign: Campaign, policy: Policy = STANDARD) -> str:
     """Return why no verdict but `unknown` can be given, or an empty text."""
     if campaign.continuous:
         return ""
-    if campaign.force.shape[0] < _MIN_RECORDS:
+    least = policy.least_records
+    if campaign.force.shape[0] < least:
         return (
-            f"{campaign.force.shape[0]} records are too few, at least {_MIN_RECORDS} "
-            "are needed: hit each point at three levels, twice"
+            f"{campaign.force.shape[0]} records are too few, at least {least} "
+            "are required: hit each point at three levels, twice"
         )
     level = np.abs(campaign.force).max(axis=1)
-    if level.max() < _ONE_LEVEL * level.min():
+    if level.max() < policy.one_level_ratio * level.min():
         return (
             f"all hits have one level ({level.min():.0f} to {level.max():.0f} N): "
-            "nothing that depends on it can be told apart; hit over 30x in level"
+            "effects that depend on level cannot be distinguished; hit at levels over "
+            "a factor of 30"
         )
     if campaign.repeatability is None and not repeat_groups(
         campaign.hit, campaign.level, campaign.preload
     ):
         return (
-            "no condition was measured twice, so the repeatability is not known; "
+            "no condition was measured twice, so the repeatability is unknown; "
             "repeat at least one point, level and preload"
         )
     return ""
@@ -54,10 +46,12 @@ def flat_tops(response: FloatArray, sigma: FloatArray) -> list[int]:
     """
     size = np.abs(response)
     top = size.max(axis=(0, 2))
-    at_top = _pairs_above(size, top - _AT_TOP_SD * sigma)
-    near_top = _pairs_above(size, top - _NEAR_TOP_SD * sigma)
-    flat = (at_top >= _FLAT_SAMPLES) & (near_top < _SHARPER * at_top)
-    loud = top > _LOUD_SD * sigma
+    at_top = _pairs_above(size, top - JUDGEMENT.at_top_sd * sigma)
+    near_top = _pairs_above(size, top - JUDGEMENT.near_top_sd * sigma)
+    flat = (at_top >= JUDGEMENT.flat_samples) & (
+        near_top < JUDGEMENT.edge_ratio * at_top
+    )
+    loud = top > JUDGEMENT.loud_sd * sigma
     return [int(i) for i in np.flatnonzero((flat & loud).any(axis=1))]
 
 

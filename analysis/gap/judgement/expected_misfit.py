@@ -5,27 +5,22 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect import labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 
-_NOISE_SHARE = 0.2
-"""Share of the samples that the noise estimate is worth: 0.39 of the spectrum, halved
-by the taper."""
 MODEL_ERROR = {
-    "iwan": 5e-5,
-    "coulomb": 1e-5,
     "friction": 1e-6,
     "stiffness": 1e-7,
     "contact": 1e-6,
     "damping": 1e-6,
     "converter": 5e-6,
 }
-"""Share of the base's excess chi2 that a right law may leave, by its name or family:
-an Iwan element has as many sliders as its maker gave it, a stop closes between steps,
-a smooth law is as exact as its march, and linear damping has the share of its family;
-scatter carries samples over the edge of a clip,
-which its slope does not tell."""
+"""Share of the base's excess chi2 that a right law may leave, by its family
+where the effect has no `model_error` of its own: a stop closes between steps, a smooth
+law is as exact as its march, and linear damping has the share of its family; scatter
+carries samples over the edge of a clip, which its slope does not tell."""
 EXACT = 1e-9
 """The same for what is linear or acts on a channel: it is as exact as the base, and
 any more would hide a second effect behind a great first one."""
@@ -47,7 +42,9 @@ def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
     own, allowed = labels_of(fit.candidates), 0.0
     for candidate in fit.candidates:
         effect = candidate.effect
-        share = MODEL_ERROR.get(effect.name, MODEL_ERROR.get(effect.family, EXACT))
+        share = effect.model_error
+        if share is None:
+            share = MODEL_ERROR.get(effect.family, EXACT)
         rest = own - {candidate.label}
         without = [f.chi2 for f in others if labels_of(f.candidates) == rest]
         left = min(without, default=others[0].chi2) - dof
@@ -61,4 +58,4 @@ def noise_sd(bench: Bench) -> float:
     The noise is estimated from a share of the same samples, so that what both hold
     cancels.
     """
-    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / _NOISE_SHARE - 1.0)))
+    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / JUDGEMENT.noise_share - 1.0)))

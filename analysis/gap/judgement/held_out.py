@@ -14,20 +14,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray, freeze
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect_parameter import Transform
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.evaluation_stages import FINE, MIDDLE, Stage
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import minimise
-
-LONG_STEP = 1.5
-"""Growth of a group's chi2 by being held out beyond which it is fitted again."""
-REFIT_STEPS = 8
-SHOWN = 4.0
-"""Size of a parameter, in sd by all groups, above which they show it."""
-UNSHOWN = 1.0
-"""Size of a parameter, in sd by the other groups, below which they do not."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +78,7 @@ def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
         lone = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
         if bare is not None and lone.size and lone.all():
             chi2[c] = float(bare.chi2[c])
-        elif lone.any() or chi2[c] > LONG_STEP * (r @ r):
+        elif lone.any() or chi2[c] > JUDGEMENT.refit_growth * (r @ r):
             left = _fitted_without(fit, bench, rows, lone)
             chi2[c] = float(left @ left)
     return HeldOut(np.array(chi2), np.array(dof))
@@ -120,7 +113,13 @@ def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolA
         ]
         size = np.where(logarithmic, 1.0, np.abs(term.coordinates))
         told = size * np.sqrt(np.maximum([whole[own], others[own]], 0.0))
-        alone.append(bool(np.any((told[0] > SHOWN) & (told[1] < UNSHOWN))))
+        alone.append(
+            bool(
+                np.any(
+                    (told[0] > JUDGEMENT.shown_sd) & (told[1] < JUDGEMENT.unshown_sd)
+                )
+            )
+        )
         at = own.stop
     return np.array(alone, dtype=bool)
 
@@ -143,7 +142,7 @@ def _fitted_without(
         _Without(**known, hidden=rows),
         np.concatenate([fit.base, *(t.coordinates for t in kept)]),
         FINE,
-        iterations=REFIT_STEPS,
+        iterations=JUDGEMENT.refit_iterations,
         jacobian_stage=MIDDLE,
         exact_slopes=False,
     )

@@ -6,28 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.analysis.gap.judgement.amplitudes import (
-    AMPLITUDE_SD,
-    at_the_end,
-    weakest,
-)
+from jointbench.analysis.gap.judgement.amplitudes import at_the_end, weakest
 from jointbench.analysis.gap.judgement.expected_misfit import forgiven, noise_sd
 from jointbench.analysis.gap.judgement.own_parameters import most_unlike
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY
+from jointbench.analysis.gap.model.policy import Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.screening import Direction, Screening
-
-PULL_LIMIT = 4.0
-GLOBAL_SD = 4.5
-UNLIKE_CHANCE = 3e-4
-"""Chance below which parts of the records want parameters of their own."""
-UNLIKE_BASE_CHANCE = 3e-5
-"""The same before anything is named: a base that is complete must stay so."""
-_WIDENED = 1.3
-"""Room over the linearised null quantile, for the shapes between the grid's points."""
-_ELSEWHERE = 2e-5
-"""The most that a law may leave of its error at other places than its own."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,25 +59,27 @@ def gate(
         left: directed tests of the fit; None to pass them over.
         others: what else was fitted, for what the fit would be without an effect.
     """
-    dof = bench.blocks.dof
+    policy, dof = bench.policy, bench.blocks.dof
     excess = fit.chi2 / dof - 1.0
-    model = forgiven(fit, (base, *others), dof)
-    allowed = GLOBAL_SD * noise_sd(bench) + model / dof
+    model = policy.model_error_factor * forgiven(fit, (base, *others), dof)
+    allowed = policy.chi2_limit * noise_sd(bench) + model / dof
     worst, beyond = None, -np.inf
     if left is not None and bench.blocks.white:
-        elsewhere = min(model, _ELSEWHERE * max(base.chi2 - dof, 0.0))
-        worst, beyond = _worst(fit, left, model, elsewhere)
+        bound = policy.model_error_elsewhere * max(base.chi2 - dof, 0.0)
+        limit = policy.null_factor * left.threshold
+        worst, beyond = _worst(fit, left, limit + model, limit + min(model, bound))
     reason = ""
     if excess > allowed:
-        reason = f"chi2/dof is {1 + excess:.4f}, noise allows {1 + allowed:.4f}"
+        reason = f"chi2/dof is {1 + excess:.4f}, the limit is {1 + allowed:.4f}"
     elif worst and beyond > 0.0:
         reason = _looks_like(worst)
     elif unlike := _unlike(bench, fit, model):
         reason = unlike
-    elif np.abs(fit.pulls).max() > PULL_LIMIT:
-        reason = f"the base is pulled {np.abs(fit.pulls).max():.1f} sigma off its sheet"
+    elif np.abs(fit.pulls).max() > policy.prior_limit:
+        worst_prior = np.abs(fit.pulls).max()
+        reason = f"a base parameter is {worst_prior:.1f} sd from its nominal value"
     unexplained = bool(reason)
-    reason = reason or _doubt(fit, (base, *others))
+    reason = reason or _doubt(fit, (base, *others), policy)
     return Gate(
         passed=not reason,
         reason=reason,
@@ -104,21 +92,22 @@ def gate(
     )
 
 
-def _doubt(fit: Fit, others: Sequence[Fit]) -> str:
-    """Say why a fit that explains everything is no name yet, if so."""
-    if fit.candidates and (sure := weakest(fit, others)) < AMPLITUDE_SD:
-        return f"an effect is only {sure:.1f} sigma from off"
-    return at_the_end(fit)
+def _doubt(fit: Fit, others: Sequence[Fit], policy: Policy) -> str:
+    """Give the reason against naming a fit that explains the records, or nothing."""
+    distance = weakest(fit, others) if fit.candidates else np.inf
+    if distance < policy.amplitude_limit:
+        return f"an effect is only {distance:.1f} sd from zero"
+    return at_the_end(fit, policy)
 
 
 def _looks_like(left: Direction) -> str:
-    """Say what a fit leaves, by the directed test that sees most of it."""
+    """Describe the residual of a fit by its largest directed test."""
     if left.candidate.effect.family != PROBE_FAMILY:
-        return f"a further effect would take {left.drop:.0f} units of chi2"
+        return f"a further effect would lower chi2 by {left.drop:.0f}"
     kind = left.candidate.effect.name
     return (
-        f"{left.drop:.0f} units of chi2 are left that look like: {kind}, "
-        f"{left.candidate.site}"
+        f"the residual resembles a {kind} at {left.candidate.site}, which would lower "
+        f"chi2 by {left.drop:.0f}"
     )
 
 
@@ -135,18 +124,18 @@ def _worst(
     for d in left.directions:
         if d.suggested:
             continue
-        model = here if d.candidate.site in own else elsewhere
-        limit = _WIDENED * left.threshold + model
+        limit = here if d.candidate.site in own else elsewhere
         if d.drop - limit > beyond:
             worst, beyond = d, d.drop - limit
     return worst, beyond
 
 
 def _unlike(bench: Bench, fit: Fit, allowed: float) -> str:
-    """Say which parts of the records the fit does not hold for alike, if any."""
+    """Name the parts of the records that need parameters of their own, if any."""
     if not bench.blocks.white:
         return ""
-    worst = most_unlike(bench, fit, allowed)
-    if worst.chance > (UNLIKE_CHANCE if fit.candidates else UNLIKE_BASE_CHANCE):
+    policy, worst = bench.policy, most_unlike(bench, fit, allowed)
+    limit = policy.parts_chance if fit.candidates else policy.parts_chance_base
+    if worst.chance > limit:
         return ""
-    return f"{worst.excess:.0f} units of chi2 are left by {worst.view}"
+    return f"separate parameters by {worst.view} would lower chi2 by {worst.excess:.0f}"

@@ -19,12 +19,9 @@ import scipy.fft
 import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
-
-BANDS = 6
-ALIKE = 1e-10
-"""Share of the largest eigenvalue below which a combination of slopes is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +102,7 @@ def _band_cells(
     r = scipy.fft.rfft(residual.reshape(shape), axis=2) * unit
     j = scipy.fft.rfft(slopes.reshape(*shape, -1), axis=2) * unit
     weight = np.cumsum(np.einsum("rctn,rctn->t", j.conj(), j).real)
-    shares = np.arange(1, BANDS) / BANDS
+    shares = np.arange(1, JUDGEMENT.part_bands) / JUDGEMENT.part_bands
     edges = [0, *np.searchsorted(weight, shares * weight[-1]), weight.size]
     gram, pull = [], []
     for low, high in itertools.pairwise(edges):
@@ -139,7 +136,7 @@ def _test(
     pull = cells.pull.sum(axis=others).reshape(-1, n)
     values, vectors = np.linalg.eigh(gram)
     along = np.einsum("gnk,gn->gk", vectors, pull)
-    seen = values > ALIKE * np.maximum(values[:, -1:], 1e-300)
+    seen = values > JUDGEMENT.least_eigenvalue * np.maximum(values[:, -1:], 1e-300)
     taken = float(np.sum(along[seen] ** 2 / values[seen]))
     free = max(int(seen.sum()) - n, 1)
     chance = float(scipy.stats.chi2.sf(max(taken - allowed, 0.0), free))

@@ -3,24 +3,24 @@
 
 from collections.abc import Sequence
 
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect import labels_of
+from jointbench.analysis.gap.model.policy import Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import score
 
-_RIVAL_WITHIN = 15.0
-"""Score within which a rival is not told apart."""
-CROWDED_WITHIN = 60.0
-"""The same where one site bears two effects: two laws together bend as many do."""
-_TWIN_WITHIN = 0.5
-"""Score within which the same fault at one channel and at all is one statement."""
 _EVERYWHERE = "all"
 
 
-def rival_within(best: Fit) -> float:
-    """Return the score behind the best within which a rival is not told apart."""
+def rival_within(best: Fit, policy: Policy) -> float:
+    """Return the score behind the best within which a rival is not told apart.
+
+    Two laws at one site together bend as many do, so more is asked of them.
+    """
     sites = [c.site for c in best.candidates]
-    return _RIVAL_WITHIN if len(set(sites)) == len(sites) else CROWDED_WITHIN
+    apart = len(set(sites)) == len(sites)
+    return policy.rival_score if apart else policy.rival_score_one_site
 
 
 def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
@@ -32,7 +32,7 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     if not fits:
         return []
     best, own = score(bench, fits[0]), labels_of(fits[0].candidates)
-    near = rival_within(fits[0])
+    near = rival_within(fits[0], bench.policy)
     return [
         f
         for f in fits
@@ -50,7 +50,8 @@ def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
         f
         for f in fits
         if not any(
-            _twin_of(f, c) and abs(score(bench, f) - score(bench, c)) < _TWIN_WITHIN
+            _twin_of(f, c)
+            and abs(score(bench, f) - score(bench, c)) < JUDGEMENT.same_fault_score
             for c in fits
         )
     ]

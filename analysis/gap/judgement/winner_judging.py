@@ -6,11 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.analysis.gap.judgement.amplitudes import AMPLITUDE_SD, weakest_amplitude
+from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
+from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.judgement.naming import Gate, gate
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY, labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FULL
+from jointbench.analysis.gap.residuals.evaluation_stages import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -19,20 +20,7 @@ from jointbench.analysis.gap.search.restarts import caught_up
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, finish, score
 
-_REJUDGED = 30
-_AGREED = 2.0
-"""Change of a winner's cost below which it agrees with the noise estimated at it."""
-_REPEATED = 20.0
-"""Difference of a winner's cost from that of two rounds before, of a to and fro."""
-OVERTAKEN = 2
-_CLOSE = 1000.0
-"""Score behind the winner up to which a rival is fitted again with the new noise."""
-_CLOSE_FAILED = 100.0
-"""The same where the winner itself does not explain the records."""
-_STALE = 0.2
-"""Share of what the winner gains by being settled that may hide a rival."""
-_MOST_STALE = 3
-_MOST_HELD_BACK = 2
+OVERTAKEN = JUDGEMENT.overtaking_rounds
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,7 +83,7 @@ def judge(
 
 def far_off(bench: Bench, fit: Fit) -> bool:
     """Tell whether a fit leaves a misfit of many times the noise."""
-    return fit.chi2 > EVERYDAY * bench.blocks.dof
+    return fit.chi2 > bench.policy.far_chi2 * bench.blocks.dof
 
 
 def _brought_near(
@@ -111,7 +99,7 @@ def _brought_near(
         return bench, fit
     there = bench.refine(fit.base, fit.terms)
     r = there.residual(fit.base, fit.terms, FULL)
-    if float(r @ r) < EVERYDAY * bench.blocks.dof:
+    if float(r @ r) < bench.policy.far_chi2 * bench.blocks.dof:
         return bench, fit
     there = bench.refine(fit.base, fit.terms, astray=True)
     if not there.expanded:
@@ -126,12 +114,16 @@ def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
     What the winner gained by being settled, the next few may gain too: their costs
     are those under a noise that was estimated where less was explained.
     """
-    reach = _CLOSE if found.gate.passed else _CLOSE_FAILED
+    reach = JUDGEMENT.refit_score if found.gate.passed else JUDGEMENT.refit_score_failed
     gained = max(found.first.cost - found.fit.cost, 0.0)
     behind = [score(found.bench, f) - score(found.bench, found.first) for f in rest]
     near = [f for f, b in zip(rest, behind, strict=True) if b < reach]
-    wide = [f for f, b in zip(rest, behind, strict=True) if b < _STALE * gained]
-    return near + wide[:_MOST_STALE]
+    wide = [
+        f
+        for f, b in zip(rest, behind, strict=True)
+        if b < JUDGEMENT.gain_share * gained
+    ]
+    return near + wide[: JUDGEMENT.hidden_rivals]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -173,7 +165,8 @@ def _alike(bench: Bench, fit: Fit, base: Fit) -> Fit:
     effect was in. The base of before, to which there was no scatter, then makes that
     effect look needed, though its amplitude is none.
     """
-    if len(fit.candidates) != 1 or weakest_amplitude(fit) > AMPLITUDE_SD:
+    limit = bench.policy.amplitude_limit
+    if len(fit.candidates) != 1 or weakest_amplitude(fit) > limit:
         return base
     return minimise(make_problem(bench, ()), fit.base)
 
@@ -222,7 +215,7 @@ def _held_back(
         if fair and d.drop > gained and both not in held and both not in tried:
             held[both] = fits.get(both) or started(failed.bench, onto, d)
     fresh = [f for f in held.values() if f is not failed.first]
-    return fresh[:_MOST_HELD_BACK]
+    return fresh[: JUDGEMENT.own_noise_fits]
 
 
 def _part_of(fewer: Fit, more: Fit) -> bool:
@@ -240,12 +233,18 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     Then the fit that leaves more is taken: there the least is called scatter.
     """
     earlier, before = np.inf, fit.cost
-    for _ in range(_REJUDGED):
+    for _ in range(JUDGEMENT.settling_rounds):
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
-        to_and_fro = abs(fit.cost - earlier) < _REPEATED and fit.cost > before
-        if abs(fit.cost - before) < _AGREED or to_and_fro or far_off(bench, fit):
+        to_and_fro = (
+            abs(fit.cost - earlier) < JUDGEMENT.repeated_cost and fit.cost > before
+        )
+        if (
+            abs(fit.cost - before) < JUDGEMENT.settled_cost
+            or to_and_fro
+            or far_off(bench, fit)
+        ):
             break
         earlier, before = before, fit.cost
     return bench, fit

@@ -4,10 +4,10 @@
 from dataclasses import dataclass
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
-TAIL = 64
-"""Last samples without weight: a channel's filter acts on a cut record there."""
+TAIL = CAMPAIGN.tail_samples
 
 
 @dataclass(frozen=True, slots=True, eq=False)

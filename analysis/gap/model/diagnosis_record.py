@@ -6,13 +6,10 @@ from dataclasses import asdict, dataclass
 from enum import StrEnum
 from typing import Any
 
+from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import Exhibit, exhibit_json
-
-_SEEN = 1.0
-"""Gap below which it does not count by what share it shrank."""
-_UNFORETOLD = 0.5
-"""Share of the gap that a name may leave on held-out records before that is said."""
+from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_json
 
 
 class Finding(StrEnum):
@@ -123,6 +120,7 @@ class Diagnosis:
         exhibit: the evidence as curves and sentences; None where none was made.
         explanations: labels of the effects of each explanation that passed and is not
             told apart from the best, that first; ("none",) is the base alone.
+        policy: thresholds that the verdict rests on.
     """
 
     verdict: Finding
@@ -138,12 +136,13 @@ class Diagnosis:
     reason: str
     exhibit: Exhibit | None = None
     explanations: tuple[tuple[str, ...], ...] = ()
+    policy: Policy = STANDARD
 
     @property
     def foretold(self) -> bool:
         """Whether the conditions foretell each that was held out, or need not."""
-        left = _UNFORETOLD * self.gap_before.value
-        return self.gap_before.value < _SEEN or self.gap_after.value < left
+        left = CAMPAIGN.unpredicted_share * self.gap_before.value
+        return self.gap_before.value < CAMPAIGN.seen_gap or self.gap_after.value < left
 
     @property
     def shrink(self) -> float:
@@ -195,6 +194,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "experiment": d.experiment,
         "reason": d.reason,
         "exhibit": None if d.exhibit is None else exhibit_json(d.exhibit),
+        "policy": policy_json(d.policy),
     }
 
 

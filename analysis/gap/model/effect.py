@@ -12,6 +12,8 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.model.effect_parameter import Parameter, Reported
 
+EFFECTS_GROUP = "jointbench.effects"
+"""Entry points by which other packages add effects."""
 PROBE_FAMILY = "probe"
 """Family of what is tested of a fit but never named."""
 
@@ -51,6 +53,10 @@ class Effect:
             residual without the effect peaks: fits start at those peaks as well.
         own_phases: True where the effect finds a phase for itself in each record and
             channel; each is a free number that its comparison with others pays for.
+        follows_order: True where the effect goes with the order of the hits, which a
+            campaign may confuse with their level.
+        model_error: share of the base's excess chi2 that a right law may leave [-];
+            None for that of the family.
     """
 
     name: str
@@ -64,9 +70,16 @@ class Effect:
     has_sliders: bool = False
     starts_at_peaks: bool = False
     own_phases: bool = False
+    follows_order: bool = False
+    model_error: float | None = None
 
     def __post_init__(self) -> None:
-        """Check that what starts at peaks has a frequency."""
+        """Check that what starts at peaks has a frequency, and that shares are some."""
+        if self.model_error is not None and not 0.0 <= self.model_error < 1.0:
+            raise UsageError(
+                f"effect {self.name!r} has a model_error of {self.model_error:g}; it "
+                "is a share: give 0 or more and less than 1, or leave it out"
+            )
         if self.starts_at_peaks and len(self.parameters) < 2:
             raise UsageError(
                 f"effect {self.name!r} starts at peaks but has "

@@ -28,12 +28,12 @@ def two_body_model(
         BadData: a value is missing or not positive.
     """
     for key in ("m1", "m2", "k0", "kj", "c0", "cj"):
-        for sheet, word in ((nominal, "nominal value"), (spread, "1-sigma")):
-            value = sheet.get(key)
+        for table, word in ((nominal, "nominal value"), (spread, "1-sigma")):
+            value = table.get(key)
             if value is None or not (np.isfinite(value) and value > 0):
                 raise BadData(
-                    f"the sheet's {word} of {key!r} is {value!r}, it must be a "
-                    "positive number; complete the sheet"
+                    f"the {word} of {key!r} is {value!r}, it must be a positive "
+                    "number; complete the nominal parameters"
                 )
     return LumpedModel(
         bodies=tuple(Body(key, nominal[key], spread[key]) for key in ("m1", "m2")),

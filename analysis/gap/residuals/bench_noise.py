@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
-from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FULL
+from jointbench.analysis.gap.residuals.evaluation_stages import FULL
 from jointbench.analysis.gap.residuals.fit_records import Settled
 from jointbench.analysis.gap.residuals.hit_scatter import (
     gain_scatter,
@@ -30,24 +30,10 @@ from jointbench.analysis.gap.residuals.noise_models import (
     channel_sigma,
     whitening_basis,
 )
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
 from jointbench.analysis.gap.response.excitation import prepare_excitation
 from jointbench.analysis.gap.response.predict_records import respond
-
-TELLS_NOTHING = 0.3
-"""Misfit over response above which a fit says nothing about the settling."""
-LEAST_FACTOR = 1e-3
-"""Smallest share of a stiffness that a settling may leave."""
-SETTLING_REACH = 40.0
-"""Scatter sd about which a model is expanded at most. A joint that loosens by 17 of
-them is no scatter, but each hit must be met at its own stiffness before its law can
-enter by the slope."""
-ASTRAY_REACH = 4.0
-"""Scatter sd beyond which nothing of it is believed where the solution is far off: of
-some dozens of hits none settles there, but what a trend has moved may lie anywhere."""
-SCATTER_STEP = 1e-6
-"""Difference step of the ways to scatter: at 1e-4 the late record has already bent a
-hundredth away from its slope, and a trend hides in that hundredth."""
 
 
 def refine_noise(
@@ -88,18 +74,22 @@ def refine_noise(
     scatter = _scatter_of(at, coefficients, variances)
     noise = replace(noise, scatter=scatter)
     refined = _with_noise(at, noise, columns, ways)
-    lost = np.linalg.norm(residual) > TELLS_NOTHING * np.linalg.norm(model)
+    lost = np.linalg.norm(residual) > RESIDUALS.uninformative_share * np.linalg.norm(
+        model
+    )
     if len(scatter) < 2 or scatter[1] == 0.0 or lost:
         return settle(refined, None)
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
     off = -coefficients[:, 1] * share / scatter[1]
-    if astray and np.abs(off).max() > ASTRAY_REACH:
+    if astray and np.abs(off).max() > RESIDUALS.diverged_reach:
         return settle(refined, None)
-    off = np.clip(off, -SETTLING_REACH, SETTLING_REACH) * scatter[1]
-    settling = np.log(np.maximum(np.exp(off) * (1.0 + rise) - rise, LEAST_FACTOR))
+    off = np.clip(off, -RESIDUALS.settling_reach, RESIDUALS.settling_reach) * scatter[1]
+    settling = np.log(
+        np.maximum(np.exp(off) * (1.0 + rise) - rise, RESIDUALS.least_stiffness_factor)
+    )
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)
-    if left @ left > EVERYDAY * bench.blocks.dof and not astray:
+    if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not astray:
         return settle(refined, None)
     return expanded
 
@@ -115,7 +105,7 @@ def _centred(bench: SomeBench, base: FloatArray, terms: Sequence[Term]) -> SomeB
     mean = mean_stiffness(model, base, bench.settled)
     hits = hit_stiffness(bench.excitation.conditions, bench.settled)
     kept = np.exp(mean - base[joint_at(model)] + hits)
-    rest = np.maximum(kept - bench.rise(terms), LEAST_FACTOR)
+    rest = np.maximum(kept - bench.rise(terms), RESIDUALS.least_stiffness_factor)
     return settle(bench, np.log(rest))
 
 
@@ -142,9 +132,10 @@ def _scatter_of(
     patterns = _patterns(bench.excitation.conditions)
     return tuple(
         gain_scatter(
-            without_trend(coefficients[:, i], variances[:, i], patterns),
+            without_trend(coefficients[:, i], variances[:, i], patterns, bench.policy),
             variances[:, i],
             groups,
+            bench.policy,
         )
         for i in range(count)
     )
@@ -232,8 +223,8 @@ def _scatter_ways(
     for i, link in enumerate(bench.campaign.model.links):
         if link.joint and not bench.campaign.continuous:
             moved = base.copy()
-            moved[n + i] += SCATTER_STEP
-            ways.append((bench.response(moved, terms) - model) / SCATTER_STEP)
+            moved[n + i] += RESIDUALS.scatter_step
+            ways.append((bench.response(moved, terms) - model) / RESIDUALS.scatter_step)
     stacked = np.stack(ways, axis=1)
     bench.mask(stacked)
     stacked /= sigma[:, None, :, None]
@@ -250,9 +241,9 @@ def _harder(
     entries = [a.entry for a in bench.actions(terms)]
     if all(e.law is None and e.shape is None for e in entries):
         return model.copy()
-    spectrum = bench.excitation.spectrum * (1.0 + SCATTER_STEP)
+    spectrum = bench.excitation.spectrum * (1.0 + RESIDUALS.scatter_step)
     pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))
-    return (pushed.response(base, terms) - model) / SCATTER_STEP
+    return (pushed.response(base, terms) - model) / RESIDUALS.scatter_step
 
 
 def _with_noise(

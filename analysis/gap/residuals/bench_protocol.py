@@ -8,6 +8,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.model.policy import Policy
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 
@@ -46,6 +47,11 @@ class Bench(Scaled, Protocol):
     @property
     def blocks(self) -> Blocks:
         """The groups that are held out one at a time."""
+        ...
+
+    @property
+    def policy(self) -> Policy:
+        """Thresholds that its fits are judged by."""
         ...
 
     @property

@@ -16,16 +16,13 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Term
-from jointbench.analysis.gap.residuals.evaluation_stages import EVERYDAY, FINE, FULL
+from jointbench.analysis.gap.residuals.evaluation_stages import FINE, FULL
 from jointbench.analysis.gap.residuals.lumped_residual import SomeBench
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.excitation import pass_band_end
 
 KNOTS = np.arange(0.37, 0.505, 0.01)
 """Middles of the splines over the sample rate."""
-PRIOR_SD = 0.5
-"""Sd of the filter about its usual end: anything from open to shut."""
-AUDIBLE = 10.0
-"""Chi2 that the law must make up there for the end to matter."""
 
 
 def with_converter_edge(
@@ -47,17 +44,17 @@ def with_converter_edge(
     splines = _splines(_frequency(bench))
     mute = _with_taper(bench, usual * (1.0 - splines.sum(axis=0)))
     heard = residual - mute.residual(base, terms, FULL)
-    if not heard @ heard > AUDIBLE:
+    if not heard @ heard > RESIDUALS.edge_chi2:
         return plain
     raised = [
         _with_taper(bench, usual + s).residual(base, terms, FULL) for s in splines
     ]
     slopes = np.stack([r - residual for r in raised])
-    normal = slopes @ slopes.T + np.eye(len(splines)) / PRIOR_SD**2
+    normal = slopes @ slopes.T + np.eye(len(splines)) / RESIDUALS.edge_prior_sd**2
     left = plain.residual(base, terms, FINE)
     change = np.linalg.solve(normal, -slopes @ left)
     left = left + change @ slopes
-    if not left @ left < EVERYDAY * bench.blocks.dof:
+    if not left @ left < bench.policy.far_chi2 * bench.blocks.dof:
         return plain
     return _with_taper(bench, usual + change @ splines)
 

@@ -3,6 +3,8 @@
 
 from dataclasses import dataclass
 
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+
 
 @dataclass(frozen=True, slots=True)
 class Stage:
@@ -15,12 +17,9 @@ class Stage:
     """
 
     window: float | None = None
-    oversampling: int = 4
+    oversampling: int = RESIDUALS.full_steps
 
 
-MIDDLE = Stage(oversampling=2)
+MIDDLE = Stage(oversampling=RESIDUALS.middle_steps)
 FULL = Stage()
-FINE = Stage(oversampling=8)
-EVERYDAY = 30.0
-"""Chi2 over dof beyond which a misfit is a missing effect of everyday size: directed
-tests may point the wrong way, and nothing can be told of noise, settling or filter."""
+FINE = Stage(oversampling=RESIDUALS.fine_steps)

@@ -7,16 +7,8 @@ import numpy as np
 import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
-
-_SCATTER_MAX = 0.004
-_SCATTER_TRIED = 2e-7
-_SCATTER_MIN = 2e-5
-"""No hand and no joint repeats to better than that: what seems to scatter by less is
-a small effect, or chance, and counts as no scatter."""
-_UNLIKELY = 0.0025
-"""Chance of repeats as close as those seen, below which a scatter is ruled out."""
-_TREND_CHANCE = 3e-4
-"""Chance of a pattern over the records, below which it is a trend and no scatter."""
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 
 
 def repeat_groups(
@@ -33,7 +25,10 @@ def repeat_groups(
 
 
 def gain_scatter(
-    gains: FloatArray, variances: FloatArray, groups: list[IntArray]
+    gains: FloatArray,
+    variances: FloatArray,
+    groups: list[IntArray],
+    policy: Policy = STANDARD,
 ) -> float:
     """Estimate the relative gain scatter from hit to hit.
 
@@ -46,6 +41,7 @@ def gain_scatter(
         gains: regression of each residual on its response [-], shape (n_records,).
         variances: of the gains by noise alone, same shape.
         groups: records that repeat a condition.
+        policy: with the least scatter, and the chance that bounds it.
 
     Returns:
         Standard deviation of the gain [-].
@@ -55,24 +51,27 @@ def gain_scatter(
     wide = float(grid[int(np.argmin(everywhere))])
     pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
     if not pairs:
-        return _believed(np.sqrt(wide))
+        return _believed(np.sqrt(wide), policy)
     first, second = (np.array(x) for x in zip(*pairs, strict=True))
     steps = (gains[first] - gains[second]) / np.sqrt(2.0)
     spread = (variances[first] + variances[second]) / 2
     low = float(grid[int(np.argmin(_deviance(steps, spread, grid)))])
     pivot = np.sum(steps**2 / (spread + grid[:, None]), axis=1)
-    allowed = grid[pivot > scipy.stats.chi2.ppf(_UNLIKELY, steps.size)]
+    allowed = grid[pivot > scipy.stats.chi2.ppf(policy.scatter_chance, steps.size)]
     high = max(float(allowed.max(initial=0.0)), low)
-    return _believed(np.sqrt(np.clip(wide, low, high)))
+    return _believed(np.sqrt(np.clip(wide, low, high)), policy)
 
 
-def _believed(scatter: float) -> float:
+def _believed(scatter: float, policy: Policy) -> float:
     """Return a scatter, 0 where neither hand nor joint repeats so well."""
-    return float(scatter) if scatter >= _SCATTER_MIN else 0.0
+    return float(scatter) if scatter >= policy.least_scatter else 0.0
 
 
 def without_trend(
-    values: FloatArray, variances: FloatArray, patterns: FloatArray
+    values: FloatArray,
+    variances: FloatArray,
+    patterns: FloatArray,
+    policy: Policy = STANDARD,
 ) -> FloatArray:
     """Take out of one value a record the pattern that explains them best, if one does.
 
@@ -86,11 +85,12 @@ def without_trend(
         values: shape (n_records,).
         variances: of the values by noise alone, same shape.
         patterns: what records could depend on, shape (n_patterns, n_records).
+        policy: with the chance below which a pattern is a trend.
 
     Returns:
         Values less their dependence on one pattern, shape (n_records,).
     """
-    best, least = values, _TREND_CHANCE
+    best, least = values, policy.trend_chance
     for pattern in patterns:
         q = pattern - pattern.mean()
         if q @ q < 1e-12 or values.size < 4:
@@ -131,7 +131,12 @@ def _trend(
 
 def _scatter_grid() -> FloatArray:
     """Return the scatters that are tried [-], the first none at all."""
-    return np.concatenate([[0.0], np.geomspace(_SCATTER_TRIED, _SCATTER_MAX, 360)])
+    return np.concatenate(
+        [
+            [0.0],
+            np.geomspace(RESIDUALS.smallest_scatter, RESIDUALS.largest_scatter, 360),
+        ]
+    )
 
 
 def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:

@@ -7,12 +7,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.fit_records import Settled
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
 from jointbench.analysis.lumped.lumped_model import LumpedModel
-
-LEAST_RISE = -0.999
-"""Smallest share that laws may add to a stiffness: less would be none at all."""
 
 
 def joint_at(model: LumpedModel) -> int:
@@ -42,7 +40,7 @@ def stiffness_rise(
     for action in actions:
         if changes_joint(model, action) and action.entry.rise is not None:
             total += action.entry.rise(conditions, action.values)
-    return np.maximum(total, LEAST_RISE)
+    return np.maximum(total, RESIDUALS.least_rise)
 
 
 def hit_stiffness(conditions: HitConditions, settled: Settled) -> FloatArray:

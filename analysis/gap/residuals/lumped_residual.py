@@ -2,7 +2,7 @@
 """Whitened residuals of a lumped model: what a campaign and a noise make of a fit."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 import numpy as np
@@ -13,6 +13,7 @@ from jointbench.analysis.gap.catalogue.catalogue import site_index
 from jointbench.analysis.gap.catalogue.probes import PROBES
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled
@@ -24,14 +25,12 @@ from jointbench.analysis.gap.residuals.joint_settling import (
     stiffness_rise,
 )
 from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import HitConditions, LumpedEffect
 from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation
 from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.gap.response.search_effort import spend
-
-WINDOW_REACH = 3.5
-"""Decay times after which a windowed record is cut."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,6 +49,7 @@ class LumpedResidual:
         blocks: records as groups.
         short: the same with fewer samples, by length.
         settled: where the model is expanded about the settling of each hit, or None.
+        policy: thresholds that fits of the bench are judged by.
     """
 
     campaign: Campaign
@@ -63,6 +63,7 @@ class LumpedResidual:
     blocks: Blocks
     short: dict[int, "LumpedResidual"]
     settled: Settled | None
+    policy: Policy = field(default=STANDARD, kw_only=True)
 
     @property
     def expanded(self) -> bool:
@@ -192,7 +193,9 @@ def _windowed(
 ) -> FloatArray:
     """Return the residual under an exponential window, cut where it has decayed."""
     decay = stage.window or 1.0
-    reach = bench.gate[1] + int(WINDOW_REACH * decay * bench.campaign.sample_rate)
+    reach = bench.gate[1] + int(
+        RESIDUALS.window_reach * decay * bench.campaign.sample_rate
+    )
     short = _shortened(bench, scipy.fft.next_fast_len(reach, real=True))
     r = short.response(base, terms, stage.oversampling)
     r -= short.campaign.response

@@ -13,16 +13,15 @@ from jointbench.analysis.gap.catalogue.catalogue import (
 )
 from jointbench.analysis.gap.catalogue.probes import PROBES
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Blocks
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.lumped_residual import gated_excitation
 from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.dynamic_stiffness import dynamic_stiffness, invert
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.response.predict_records import motion, undamped
-
-PAD = 48
-"""Samples kept on each side of a hit: the anti-alias filter rings that far."""
 
 
 def make_bench(
@@ -30,6 +29,7 @@ def make_bench(
     *,
     without: frozenset[str] = frozenset(),
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    policy: Policy = STANDARD,
 ) -> LumpedBench:
     """Prepare a campaign for the engine.
 
@@ -37,6 +37,7 @@ def make_bench(
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
+        policy: thresholds that its fits are judged by.
 
     Raises:
         UsageError: `without` holds a name that no entry has.
@@ -66,6 +67,7 @@ def make_bench(
         blocks=_blocks(campaign),
         short={},
         settled=None,
+        policy=policy,
     )
     return replace(bench, scales=_scales(bench))
 
@@ -75,13 +77,14 @@ def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
     n = force.shape[1]
     sigma = float(np.std(force[:, n // 2 :]))
     loud = np.abs(force) > np.maximum(
-        8 * sigma, 3e-3 * np.abs(force).max(axis=1, keepdims=True)
+        RESIDUALS.hit_noise_sd * sigma,
+        RESIDUALS.hit_share * np.abs(force).max(axis=1, keepdims=True),
     )
     where = np.flatnonzero(loud.any(axis=0))
     if where.size == 0 or np.ptp(where) > n // 2:
         return (0, n), 0.0
-    first = max(int(where[0]) - PAD, 0)
-    last = min(int(where[-1]) + PAD, n)
+    first = max(int(where[0]) - RESIDUALS.force_padding, 0)
+    last = min(int(where[-1]) + RESIDUALS.force_padding, n)
     outside = np.concatenate([force[:, :first], force[:, last:]], axis=1)
     return (first, last), float(np.sqrt(np.mean(outside**2)))
 

@@ -7,11 +7,9 @@ import numpy as np
 import scipy.fft
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 
-_HIGH_BAND = (0.30, 0.497)
-"""Band of pure noise, over the sample rate: above any response to a hammer."""
-_SMALLEST_SHARE = 0.03
-FORCE_SHAPES = 8
+FORCE_SHAPES = RESIDUALS.force_directions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,7 +39,7 @@ def high_band_sigma(residual: FloatArray) -> FloatArray:
     n = residual.shape[-1]
     taper = np.hanning(n)
     spectrum = scipy.fft.rfft(residual * taper, axis=-1)
-    low, high = (int(edge * n) for edge in _HIGH_BAND)
+    low, high = (int(edge * n) for edge in RESIDUALS.noise_band)
     power = np.mean(np.abs(spectrum[..., low:high]) ** 2, axis=-1)
     return np.asarray(np.sqrt(power / np.sum(taper**2)))
 
@@ -58,7 +56,7 @@ def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
     """
     variance = high_band_sigma(residual) ** 2
     n = residual.shape[-1]
-    relative = np.sqrt(2.0 / ((_HIGH_BAND[1] - _HIGH_BAND[0]) * n))
+    relative = np.sqrt(2.0 / ((RESIDUALS.noise_band[1] - RESIDUALS.noise_band[0]) * n))
     pooled = np.empty_like(variance)
     for c in range(variance.shape[1]):
         v, x = variance[:, c], peak[:, c] ** 2
@@ -89,7 +87,7 @@ def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:
     """
     gram = columns @ columns.T
     values, vectors = np.linalg.eigh(gram)
-    keep = values > _SMALLEST_SHARE**2
+    keep = values > RESIDUALS.least_direction**2
     s = np.sqrt(values[keep])
     basis = (vectors[:, keep] / s).T @ columns
     return basis, 1.0 - 1.0 / np.sqrt(1.0 + s**2)

@@ -10,8 +10,7 @@ import scipy.fft
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.residuals.fit_records import Blocks
-
-BANDS = 8
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 
 
 def slice_views(
@@ -46,7 +45,7 @@ def _by_label(name: str, power: FloatArray, labels: Sequence[str]) -> View:
 
 def _time(power: FloatArray, sample_rate: float) -> View:
     n = power.shape[-1]
-    edges = np.linspace(0, n, BANDS + 1).astype(int)
+    edges = np.linspace(0, n, RESIDUALS.view_bands + 1).astype(int)
     return _view(
         "time",
         {
@@ -62,7 +61,7 @@ def _frequency(residual: FloatArray, sample_rate: float) -> View:
     n = residual.shape[-1]
     spectrum = scipy.fft.rfft(residual, axis=-1)
     power = np.abs(spectrum) ** 2 / n
-    edges = np.concatenate([[0.0], np.geomspace(0.01, 0.5, BANDS)]) * n
+    edges = np.concatenate([[0.0], np.geomspace(0.01, 0.5, RESIDUALS.view_bands)]) * n
     return _view(
         "frequency",
         {

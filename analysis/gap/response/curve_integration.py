@@ -15,13 +15,12 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.gap.response.response_settings import RESPONSE
 
-_POINTS = 8193
-GRADE = 16.0
-REACH = 0.01
-"""Largest motion across a link that a table holds [m]; beyond, the value stays."""
-FASTEST = 100.0
-"""Largest speed across a link that a table holds [m/s]."""
+_POINTS = RESPONSE.table_points
+GRADE = RESPONSE.table_grading
+REACH = RESPONSE.table_motion
+FASTEST = RESPONSE.table_speed
 
 Curve = Callable[[FloatArray], FloatArray]
 

@@ -116,6 +116,11 @@ class LumpedEffect:
     rise: _Rise | None = None
     every_channel: bool = False
 
+    @property
+    def name(self) -> str:
+        """Name of the effect, under which the catalogue knows the entry."""
+        return self.effect.name
+
 
 def one_row(values: ComplexArray) -> ComplexArray:
     """Return a line array as one row that every record shares."""

@@ -9,13 +9,11 @@ import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
+from jointbench.analysis.gap.response.response_settings import RESPONSE
 
-DAMPING_EXPONENT = 16.0
-PADDED = 1.5
-"""Length of a transform over that of the record."""
-_PASS_BAND = 0.42
-FADED = 0.01
-"""Last part of the band, over the sample rate, in which the force fades out."""
+DAMPING_EXPONENT = RESPONSE.damping_exponent
+PADDED = RESPONSE.transform_length
+FADED = RESPONSE.faded_band
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +80,7 @@ def pass_band_end(frequency: FloatArray) -> FloatArray:
     Args:
         frequency: over the sample rate [-].
     """
-    return _end_of_band(frequency, 0.5 - _PASS_BAND)
+    return _end_of_band(frequency, 0.5 - RESPONSE.pass_band)
 
 
 def _end_of_band(frequency: FloatArray, width: float) -> FloatArray:

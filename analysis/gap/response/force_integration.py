@@ -20,6 +20,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.analysis.gap.response.curve_integration import curve_force
+from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.gap.response.slider_integration import (
     Bank,
     Sliders,
@@ -32,8 +33,7 @@ SLIDERS = 2
 COULOMB = 3
 QUADRATIC_DAMPING = 4
 CURVES = 5
-LANES = 8
-"""Records that are marched side by side."""
+LANES = RESPONSE.lanes
 
 # What a march keeps of its lanes lies in two plain arrays, each quantity at a place
 # that the compiler knows: with an array for each, a step takes twice as long.
@@ -274,8 +274,11 @@ def march(
         count = min(LANES, n_records - first)
         own_poles = np.full((n_modes, LANES), -1.0 + 0.0j)
         own_residues = np.zeros((n_modes, LANES), dtype=np.complex128)
-        own_poles[:, :count] = poles[:, first : first + count]
-        own_residues[:, :count] = residues[:, first : first + count]
+        # One by one: the check of shapes behind a slice takes seconds to compile.
+        for m in range(n_modes):
+            for k in range(count):
+                own_poles[m, k] = poles[m, first + k]
+                own_residues[m, k] = residues[m, first + k]
         w = _made_ready(own_poles, own_residues, dt)
         _march_lanes(displacement, velocity, w, laws, needs_velocity, first, out)
     return out

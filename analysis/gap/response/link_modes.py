@@ -14,11 +14,9 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.response.dynamic_stiffness import Action, state_of
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
+from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.lumped.lumped_matrices import incidence
 from jointbench.analysis.lumped.lumped_model import LumpedModel
-
-REAL = 1e-9
-"""Imaginary part over the modulus of a pole, below which it is real."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,8 +82,10 @@ def _one_of_each_pair(
 ) -> tuple[ComplexArray, ComplexArray]:
     """Keep upper poles, their residues doubled, and real ones; pad with nothing."""
     size = np.abs(poles) + 1e-300
-    upper = poles.imag > REAL * size
-    weight = np.where(upper, 2.0, np.where(poles.imag < -REAL * size, 0.0, 1.0))
+    upper = poles.imag > RESPONSE.real_pole_share * size
+    weight = np.where(
+        upper, 2.0, np.where(poles.imag < -RESPONSE.real_pole_share * size, 0.0, 1.0)
+    )
     order = np.argsort(-weight, axis=1, kind="stable")
     count = int((weight > 0).sum(axis=1).max())
     rows = np.arange(poles.shape[0])[:, None]

@@ -36,12 +36,11 @@ from jointbench.analysis.gap.response.force_integration import (
 )
 from jointbench.analysis.gap.response.link_modes import link_modes
 from jointbench.analysis.gap.response.packed_laws import pack_laws
+from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 _MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
 """Laws that look at the velocity."""
-_EXTRAPOLATED = 4
-"""Steps a sample from which on the march is extrapolated to a step of nothing."""
 
 
 def respond(
@@ -142,7 +141,9 @@ def _link_force(
     modes = link_modes(model, theta, excitation.conditions, link, actions)
     fine = _between_samples(excitation, x, laws, oversampling)
     force = _marched(excitation, fine, modes, laws, oversampling)
-    if oversampling >= _EXTRAPOLATED and all(law.kind != COULOMB for law in laws):
+    if oversampling >= RESPONSE.extrapolated_steps and all(
+        law.kind != COULOMB for law in laws
+    ):
         coarse = fine[:, ::2]
         half = _marched(excitation, coarse, modes, laws, oversampling // 2)
         force = (4.0 * force - half) / 3.0

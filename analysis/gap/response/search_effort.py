@@ -13,8 +13,9 @@ from threading import Lock
 
 import numpy as np
 
-MARCHED = 2.5
-"""What a step of a nonlinear march costs, in samples of a linear response."""
+from jointbench.analysis.gap.response.response_settings import RESPONSE
+
+MARCHED = RESPONSE.step_effort
 
 
 class SearchExhausted(Exception):

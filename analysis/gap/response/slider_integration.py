@@ -12,10 +12,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.compiled import compiled
+from jointbench.analysis.gap.response.response_settings import RESPONSE
 
-_TABLE_SIZE = 4096
-_IDENTITY = 1e-7
-"""Departure of a slider from elasticity that is passed over."""
+_TABLE_SIZE = RESPONSE.slider_table_points
+_IDENTITY = RESPONSE.slider_elastic_error
 _STALE = 1e30
 """Loading coordinate of a slider that has unloaded since it was last known."""
 

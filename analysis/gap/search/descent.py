@@ -10,37 +10,14 @@ from jointbench.analysis.gap.residuals.evaluation_stages import FULL, Stage
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
 from jointbench.analysis.gap.response.threads import each
-
-_EXCESS_TOLERANCE = 1e-3
-"""Stop below this share of the excess of chi2 over its degrees of freedom: a share
-of chi2 itself would hide an effect of a hundred units among 60,000."""
-_ABSOLUTE_TOLERANCE = 0.03
-_BASE_STEP = 1e-7
-"""Difference step of a logarithm. A record holds some hundred radians, so that a step
-of 1e-5 would already bend its end away from the slope."""
-_EFFECT_STEP = 1e-6
-_PATIENCE = 12.0
-"""Steps of the last size that a descent may still need to come down to a rival."""
-_LONGEST = 1.5
-"""Longest step of a coordinate; most are logarithms."""
-_CORRECTIONS = 2
-"""Steps back into the valley, by the slopes at hand, before a step is shortened."""
-_LEAST_DAMPING = 1e-11
-"""A first step is all but Gauss and Newton's: where hits scatter, the scale of all
-masses and stiffnesses is so soft that a damping of 1e-6 would hold it."""
-_STIFF = 1e-3
-"""Damping under which only what the data fix well moves."""
-_OLDEST = 2
-"""Steps in a row for which slopes are updated by the secant instead of differenced."""
-_TRUSTED = 0.6
-"""Share of the foretold drop below which the slopes are differenced again."""
+from jointbench.analysis.gap.search.search_settings import SEARCH
 
 
 def _steps_of(problem: FitProblem, x: FloatArray) -> FloatArray:
     """Return the difference steps of x, turned inwards at a bound."""
-    step = np.full(x.size, _BASE_STEP)
+    step = np.full(x.size, SEARCH.base_step)
     tail = slice(problem.n_base, None)
-    step[tail] = _EFFECT_STEP * np.maximum(np.abs(x[tail]), 1e-2)
+    step[tail] = SEARCH.effect_step * np.maximum(np.abs(x[tail]), 1e-2)
     return np.where(x + step > problem.upper, -step, step)
 
 
@@ -106,7 +83,7 @@ def minimise(
     r, cost = _looked_at(problem, x, stage)
     if not np.isfinite(cost):
         return _hopeless(problem, x, r)
-    damping, age, j = _LEAST_DAMPING, 0, slopes(x, r)
+    damping, age, j = SEARCH.least_damping, 0, slopes(x, r)
     for k in range(iterations):
         moved, damping = _step(problem, x, r, j, cost, damping, stage)
         if moved is None:
@@ -115,15 +92,23 @@ def minimise(
             j, age, damping = slopes(x, r), 0, 1e-3
             continue
         drop = cost - moved[2]
-        small = drop < _EXCESS_TOLERANCE * _excess(problem, cost) + _ABSOLUTE_TOLERANCE
+        small = (
+            drop
+            < SEARCH.excess_tolerance * _excess(problem, cost)
+            + SEARCH.absolute_tolerance
+        )
         guessed = _predicted_drop(problem, x, r, j, moved[0])
         change, before = moved[0] - x, r
         x, r, cost = moved
         if small and age == 0:
             break
-        if rival is not None and k >= 1 and cost - rival > _PATIENCE * drop:
+        if rival is not None and k >= 1 and cost - rival > SEARCH.patience * drop:
             break
-        if not small and age < _OLDEST and drop > _TRUSTED * guessed:
+        if (
+            not small
+            and age < SEARCH.secant_steps
+            and drop > SEARCH.trusted_share * guessed
+        ):
             j, age = _secant(j, change, r - before), age + 1
         else:
             j, age = slopes(x, r), 0
@@ -208,16 +193,16 @@ def _step(
         step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
         trial = _moved(problem, x, step / size)
         try_r, try_cost = _looked_at(problem, trial, stage)
-        for _ in range(_CORRECTIONS):
+        for _ in range(SEARCH.corrections):
             if try_cost < cost or not np.isfinite(try_cost):
                 break
             pull = j.T @ try_r + problem.prior * (trial - problem.centre)
-            stiff = h + _STIFF * np.eye(h.shape[0])
+            stiff = h + SEARCH.stiff_damping * np.eye(h.shape[0])
             step[free] = -_solve(stiff, (pull / size)[free])
             trial = _moved(problem, trial, step / size)
             try_r, try_cost = _looked_at(problem, trial, stage)
         if np.isfinite(try_cost) and try_cost < cost:
-            return (trial, try_r, try_cost), max(damping / 10, _LEAST_DAMPING)
+            return (trial, try_r, try_cost), max(damping / 10, SEARCH.least_damping)
         damping = max(damping * 8, 1e-6)
         if damping > 1e7:
             break
@@ -230,7 +215,7 @@ def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def _moved(problem: FitProblem, x: FloatArray, step: FloatArray) -> FloatArray:
-    bounded = np.clip(step, -_LONGEST, _LONGEST)
+    bounded = np.clip(step, -SEARCH.longest_step, SEARCH.longest_step)
     return np.clip(x + bounded, problem.lower, problem.upper)
 
 
@@ -262,10 +247,8 @@ def _looked_at(
 
 _Stages = Sequence[tuple[Stage, int]]
 BASE_STAGES: _Stages = (
-    (Stage(0.002), 6),
-    (Stage(0.006), 6),
-    (Stage(0.020), 6),
-    (FULL, 20),
+    *((Stage(decay), SEARCH.window_iterations) for decay in SEARCH.base_windows),
+    (FULL, SEARCH.base_iterations),
 )
 
 

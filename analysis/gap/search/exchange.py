@@ -9,10 +9,8 @@ from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.far_pairs import without
 from jointbench.analysis.gap.search.screening import screen
+from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress, race
-
-TRIED = 4
-"""Effects that are tried in each place, by what their directed tests foretell."""
 
 
 def exchanged(
@@ -46,7 +44,7 @@ def exchanged(
         screening = screen(bench, kept, others)
         tried = [
             c
-            for c in screening.leaders(TRIED)
+            for c in screening.leaders(SEARCH.exchange_candidates)
             if labels_of((*kept.candidates, c)) not in known
         ]
         found += race(bench, kept, screening, tried, progress)

@@ -20,16 +20,11 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import fit_stages, minimise
 from jointbench.analysis.gap.search.race_starts import along
 from jointbench.analysis.gap.search.screening import screen
+from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress
 
-_SHORT = Stage(0.005, 2)
-_LONGER = Stage(0.016, 2)
-_STEPS = 6
-_SINGLES = 8
-_FIRSTS = 3
-_SECONDS = 5
-_PASSES = 3
-_KEPT = 5
+_SHORT = Stage(SEARCH.short_window, SEARCH.screening_steps)
+_LONGER = Stage(SEARCH.longer_window, SEARCH.screening_steps)
 
 
 def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
@@ -44,18 +39,22 @@ def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
         modes: starts for a race over the whole records.
     """
     problem = make_problem(bench, ())
-    base = fit_stages(problem, np.zeros(problem.n_base), ((_SHORT, _STEPS),))
-    singles = _best(_with_one_more(bench, base, _SINGLES, progress), _FIRSTS)
+    base = fit_stages(
+        problem, np.zeros(problem.n_base), ((_SHORT, SEARCH.pair_iterations),)
+    )
+    singles = _best(
+        _with_one_more(bench, base, SEARCH.pair_singles, progress), SEARCH.pair_firsts
+    )
     pairs: list[Fit] = []
     for first in singles:
-        pairs += _with_one_more(bench, first, _SECONDS, progress)
-    pairs = _best(pairs, _KEPT)
-    for _ in range(_PASSES if pairs else 0):
+        pairs += _with_one_more(bench, first, SEARCH.pair_seconds, progress)
+    pairs = _best(pairs, SEARCH.pairs_kept)
+    for _ in range(SEARCH.pair_exchanges if pairs else 0):
         leader = pairs[0]
         for k in range(len(leader.candidates)):
             kept = without(bench, leader, k, _SHORT)
-            pairs += _with_one_more(bench, kept, _SECONDS, progress)
-        pairs = _best(pairs, _KEPT)
+            pairs += _with_one_more(bench, kept, SEARCH.pair_seconds, progress)
+        pairs = _best(pairs, SEARCH.pairs_kept)
         if pairs[0] is leader:
             break
     return [_longer(bench, f) for f in pairs]
@@ -86,13 +85,17 @@ def _with_one_more(bench: Bench, fit: Fit, count: int, progress: Progress) -> li
         progress(f"{words_of(problem.candidates)} (first milliseconds)")
         starts = [along(problem, fit, d, _SHORT) for d in screening.best(candidate, 2)]
         start = min(starts, key=lambda r: r.cost)
-        found.append(minimise(problem, start.x, _SHORT, iterations=_STEPS))
+        found.append(
+            minimise(problem, start.x, _SHORT, iterations=SEARCH.pair_iterations)
+        )
     return found
 
 
 def _longer(bench: Bench, fit: Fit) -> Fit:
     problem = make_problem(bench, fit.candidates)
-    return minimise(problem, fit.x, _LONGER, iterations=_STEPS, exact_slopes=False)
+    return minimise(
+        problem, fit.x, _LONGER, iterations=SEARCH.pair_iterations, exact_slopes=False
+    )
 
 
 def _best(fits: Sequence[Fit], count: int) -> list[Fit]:

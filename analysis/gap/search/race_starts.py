@@ -16,10 +16,10 @@ from jointbench.analysis.gap.search.descent import (
     minimise,
 )
 from jointbench.analysis.gap.search.screening import Direction
+from jointbench.analysis.gap.search.search_settings import SEARCH
 
-MOST_STEPS = 16
-SHARES = (1.0, 0.3, 0.1)
-"""Shares of a foretold step that are tried as starts."""
+MOST_STEPS = SEARCH.middle_iterations
+SHARES = SEARCH.start_shares
 
 
 @dataclass(frozen=True, slots=True, eq=False)

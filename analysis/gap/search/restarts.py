@@ -13,16 +13,8 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.race_starts import MOST_STEPS
+from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress, finish
-
-ASTRAY = 4.0
-"""Sd off its sheet from which a base has lost its way."""
-SLIPS = (0.6, 1.0, 1.6)
-"""Factors between the slip displacements of two laws of friction."""
-LEVEL = 1000.0
-"""Cost above that of a law at which another in its place is fitted to the end."""
-BETTER = 0.5
-"""Share of a fit's cost below which another start is worth a descent."""
 
 
 def crossed(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
@@ -71,13 +63,13 @@ def other_sliders(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
         progress(f"{candidate.label} (from {own.effect.name})")
         problem = make_problem(bench, (candidate,))
         costs = {}
-        for factor in SLIPS:
+        for factor in SEARCH.slip_factors:
             x = _slider_start(fit, candidate, factor)
             x = np.clip(x, problem.lower, problem.upper)
             costs[cost_at(problem, x, MIDDLE)] = x
         x = costs[min(costs)]
         middle = minimise(problem, x, MIDDLE, iterations=MOST_STEPS, rival=fit.cost)
-        if middle.cost < fit.cost + LEVEL:
+        if middle.cost < fit.cost + SEARCH.slider_cost_above:
             found.append(finish(problem, middle.x, progress))
     return found
 
@@ -108,7 +100,7 @@ def caught_up(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
 def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
     """Return the better of a fit and what it becomes from the best's base."""
     pull, least = np.abs(fit.pulls).max(), np.abs(best.pulls).max()
-    if pull < ASTRAY or pull < least:
+    if pull < SEARCH.diverged_sd or pull < least:
         return fit
     problem = make_problem(bench, fit.candidates)
     start = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
@@ -116,14 +108,14 @@ def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
         return fit
     progress(f"{words_of(fit.candidates)} (again)")
     middle = minimise(problem, start, MIDDLE, iterations=MOST_STEPS, rival=best.cost)
-    if middle.cost > BETTER * fit.cost:
+    if middle.cost > SEARCH.restart_share * fit.cost:
         return fit
     return finish(problem, middle.x, progress)
 
 
 def _hope(fit: Fit, best: Fit) -> float:
     """Return the cost at which a start is no better than nothing."""
-    return 10.0 * max(fit.cost, best.cost)
+    return SEARCH.restart_cost_ratio * max(fit.cost, best.cost)
 
 
 def _borrowed(fit: Fit, best: Fit) -> FloatArray:

@@ -18,17 +18,15 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
+from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.response.threads import each
+from jointbench.analysis.gap.search.search_settings import SEARCH
 
-PROBE = 1e-6
-_SEEN = 1e-10
-"""Share of a direction's squared length that the fit must leave for it to count."""
-SCREEN = Stage(oversampling=2)
-_DRAWS = 4000
-_QUANTILE = 0.995
+PROBE = SEARCH.probe_amplitude
+SCREEN = Stage(oversampling=SEARCH.screening_steps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -190,7 +188,9 @@ def _judge(
     gram = (tested.left @ tested.left.T).astype(np.float64)
     score = tested.left @ tangent.residual
     left = np.diag(gram).copy()
-    left = np.where(left > _SEEN * np.maximum(tested.norm, 1e-300), left, np.inf)
+    left = np.where(
+        left > SEARCH.least_direction * np.maximum(tested.norm, 1e-300), left, np.inf
+    )
     amplitude = -score / left
     minimum = tangent.q.T @ tangent.residual
     directions = []
@@ -219,7 +219,8 @@ def _judge(
     counted = np.array([bench.phases(c) == 0 for c, _ in starts])
     counted[tested.fixed :] = False
     left = np.where(counted, left, np.inf)
-    threshold = null_threshold(gram, one_sided & np.isfinite(left), left, seed)
+    sided = one_sided & np.isfinite(left)
+    threshold = null_threshold(gram, sided, left, seed, chance=bench.policy.null_chance)
     largest = max((d.drop for d in directions[: tested.fixed]), default=0.0)
     directions.sort(key=lambda d: -d.drop)
     return Screening(tuple(directions), threshold, largest)
@@ -241,7 +242,12 @@ def _phase_drop(drop: float, phases: int) -> float:
 
 
 def null_threshold(
-    gram: FloatArray, one_sided: BoolArray, left: FloatArray, seed: int
+    gram: FloatArray,
+    one_sided: BoolArray,
+    left: FloatArray,
+    seed: int,
+    *,
+    chance: float = STANDARD.null_chance,
 ) -> float:
     """Draw the largest drop under the null and return its upper quantile.
 
@@ -250,6 +256,7 @@ def null_threshold(
         one_sided: where only one sign counts, shape (n,).
         left: their squared norms, inf where the base hides them, shape (n,).
         seed: of the draws.
+        chance: that a draw exceeds the quantile [-].
     """
     keep = np.isfinite(left)
     if not keep.any():
@@ -259,6 +266,6 @@ def null_threshold(
     values, vectors = np.linalg.eigh(correlation)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     rng = np.random.default_rng(seed)
-    draws = rng.standard_normal((_DRAWS, root.shape[1])) @ root.T
+    draws = rng.standard_normal((SEARCH.null_draws, root.shape[1])) @ root.T
     draws = np.where(one_sided[keep] & (draws < 0), 0.0, draws)
-    return float(np.quantile(np.max(draws**2, axis=1), _QUANTILE))
+    return float(np.quantile(np.max(draws**2, axis=1), 1.0 - chance))

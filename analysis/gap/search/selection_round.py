@@ -9,7 +9,6 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.evaluation_stages import (
-    EVERYDAY,
     FINE,
     FULL,
     MIDDLE,
@@ -25,39 +24,24 @@ from jointbench.analysis.gap.search.descent import (
 )
 from jointbench.analysis.gap.search.race_starts import MOST_STEPS, Runner, along
 from jointbench.analysis.gap.search.screening import Direction, Screening
+from jointbench.analysis.gap.search.search_settings import SEARCH
 
 Progress = Callable[[str], None]
 
-_COST_PER_PARAMETER = 10.0
-"""Chi2 that one more parameter must earn: far above chance, far below any name."""
-_COST_PER_PHASE = 2.0
 _COARSE_ROUNDS: tuple[tuple[Stage, int], ...] = (
-    (Stage(0.005, 2), 5),
-    (Stage(0.016, 2), 6),
+    (Stage(SEARCH.short_window, SEARCH.screening_steps), SEARCH.coarse_iterations[0]),
+    (Stage(SEARCH.longer_window, SEARCH.screening_steps), SEARCH.coarse_iterations[1]),
 )
-_SURVIVORS = (14, 8)
-_FINALISTS = 5
-_HOPELESS = 6.0
-"""Cost over the best's above which a finalist is not fitted to the end."""
-HUGE = 100.0
-"""Chi2 over dof of the base above which a flipped sign is worth a start."""
-_ROUNDS = ((3, 12, 2), (5, 8, 1))
-"""Steps of every start still in the race, how many go on, and how many of one set."""
-_LEAST = 0.04
-"""Share of the largest directed drop below which an effect is no candidate."""
-STARTS = 3
-"""Starts of a candidate that has a shape of its own."""
-_SWAP_PROBE = 1e-4
-_MARCH_ERROR = 50.0
-"""Chi2 between two step sizes above which the finer one is taken."""
+HUGE = SEARCH.nominal_restart_chi2
+STARTS = SEARCH.shape_starts
 
 
 def score(bench: Bench, fit: Fit) -> float:
     """Return the cost of a fit with a charge for every parameter."""
-    charge = 0.0
+    charge, policy = 0.0, bench.policy
     for candidate in fit.candidates:
-        charge += _COST_PER_PARAMETER * len(candidate.effect.parameters)
-        charge += _COST_PER_PHASE * bench.phases(candidate)
+        charge += policy.parameter_charge * len(candidate.effect.parameters)
+        charge += policy.phase_charge * bench.phases(candidate)
     return fit.cost + charge
 
 
@@ -81,7 +65,7 @@ def race(
         One fit for each candidate that came far enough, best score first.
     """
     runners = _near(bench, fit, screening, candidates)
-    if fit.chi2 > EVERYDAY * bench.blocks.dof:
+    if fit.chi2 > bench.policy.far_chi2 * bench.blocks.dof:
         runners += _far(bench, fit, screening, candidates, progress)
     return _run_out(bench, runners, progress)
 
@@ -107,7 +91,7 @@ def race_on(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
 
 def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fit]:
     """Run starts to the end, the hopeless dropped on the way."""
-    for iterations, keep, alike in _ROUNDS:
+    for iterations, keep, alike in SEARCH.selection_rounds:
         runners = _best_of_each(
             _keep(_heat(runners, iterations, progress), keep), alike
         )
@@ -118,8 +102,8 @@ def _run_out(bench: Bench, runners: list[Runner], progress: Progress) -> list[Fi
         middle = minimise(r.problem, r.x, MIDDLE, iterations=MOST_STEPS, rival=best)
         done.append(Runner(r.problem, middle.x, middle.cost, middle))
         best = min(best or np.inf, middle.cost)
-    runners = _keep(done, _FINALISTS)
-    hopeful = [r for r in runners if r.cost < _HOPELESS * runners[0].cost]
+    runners = _keep(done, SEARCH.final_fits)
+    hopeful = [r for r in runners if r.cost < SEARCH.pruning_ratio * runners[0].cost]
     fits = [finish(r.problem, r.x, progress) for r in hopeful]
     fits += [r.fit for r in runners if r not in hopeful and r.fit is not None]
     return sorted(fits, key=lambda f: score(bench, f))
@@ -145,7 +129,11 @@ def _step_for(problem: FitProblem, x: FloatArray) -> Stage:
     A stop of 75,000 times the noise is marched too coarsely by four, and a second law
     makes up for the error.
     """
-    return FINE if chi2_between(problem, x, FULL, FINE) > _MARCH_ERROR else FULL
+    return (
+        FINE
+        if chi2_between(problem, x, FULL, FINE) > SEARCH.integration_error
+        else FULL
+    )
 
 
 def _heat(
@@ -166,7 +154,7 @@ def _near(
 ) -> list[Runner]:
     """Start where the directed tests point to, on the whole record."""
     runners: list[Runner] = []
-    least = _LEAST * max(screening.largest, 1e-9)
+    least = SEARCH.least_drop_share * max(screening.largest, 1e-9)
     for candidate in candidates:
         problem = make_problem(bench, (*fit.candidates, candidate))
         shaped = len(candidate.effect.parameters) > 2
@@ -196,9 +184,11 @@ def _far(
             x = np.concatenate([fit.x, [amplitude]])
             runners.append(_started(problem, x))
         if candidate.effect.refit_nominal and fit.chi2 > HUGE * bench.blocks.dof:
-            progress(f"{candidate.label} from the sheet")
+            progress(f"{candidate.label} from nominal values")
             runners.append(_from_nominal(problem, fit, directions))
-    for (stage, iterations), keep in zip(_COARSE_ROUNDS, _SURVIVORS, strict=True):
+    for (stage, iterations), keep in zip(
+        _COARSE_ROUNDS, SEARCH.coarse_survivors, strict=True
+    ):
         done: list[Runner] = []
         for r in runners:
             progress(_trying(r, done))
@@ -225,9 +215,9 @@ def _swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
     """
     first = candidate.effect.parameters[0]
     plain = bench.residual(fit.base, fit.terms, MIDDLE)
-    tail = np.array([_SWAP_PROBE])
+    tail = np.array([SEARCH.exchange_probe])
     moved = bench.residual(fit.base, (*fit.terms, Term(candidate, tail)), MIDDLE)
-    d = (moved - plain) / _SWAP_PROBE
+    d = (moved - plain) / SEARCH.exchange_probe
     hessian = fit.jacobian.T @ fit.jacobian + 1e-6 * np.diag(fit.prior)
     way = -np.linalg.solve(hessian, fit.jacobian.T @ d)
     off = fit.x - fit.centre
@@ -251,7 +241,7 @@ def _from_nominal(
 
 
 def _trying(runner: Runner, done: Sequence[Runner]) -> str:
-    """Say what is tried, and what explains most so far."""
+    """Name the candidate of the moment, and the best so far."""
     if not done:
         return runner.label
     best = min(done, key=lambda r: r.cost)

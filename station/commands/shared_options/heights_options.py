@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Options of the fit of surfaces: form, outliers, directions, profiles as one."""
+"""Options of the fit of surfaces: form, outliers, directions, pooled profiles."""
 
 from typing import Annotated
 
@@ -7,38 +7,41 @@ import typer
 
 Form = Annotated[
     int | None,
-    typer.Option(metavar="N", help="Remove a polynomial form of degree N (1 to 8)."),
+    typer.Option(
+        metavar="N",
+        help="Remove a polynomial form of degree N, 1 to 8, before the fit.",
+    ),
 ]
 Outliers = Annotated[
     float | None,
     typer.Option(
         metavar="LIMIT",
-        help="Mask points this far off their neighbours, in robust standard "
-        "deviations; 6 is usual.",
+        help="Mask points that deviate from their neighbours by more than LIMIT "
+        "robust standard deviations [-], for example 6.",
     ),
 ]
 Direction = Annotated[
     float | None,
     typer.Option(
-        metavar="DEG",
-        help="Maps: fit the lines in this direction, from the rows (0) towards the "
-        "columns (90).",
+        metavar="ANGLE",
+        help="Maps: fit the lines in this direction [deg], from the rows (0) to the "
+        "columns (90), for example 45.",
     ),
 ]
 Directions = Annotated[
     bool,
-    typer.Option("--directions", help="Maps: compare directions, is there a lay?"),
+    typer.Option("--directions", help="Maps: compare all directions and report a lay."),
 ]
 Pool = Annotated[
     bool,
-    typer.Option("--pool", help="Profiles of one surface: all of them as one, too."),
+    typer.Option("--pool", help="Profiles of one surface: fit them together as well."),
 ]
 WaveRatio = Annotated[
     float | None,
     typer.Option(
         "--weierstrass",
         metavar="GAMMA",
-        help="Profiles: fit a Weierstrass-Mandelbrot profile of this frequency ratio, "
-        "too; 1.5 in the papers.",
+        help="Profiles: fit a Weierstrass-Mandelbrot profile of this frequency ratio "
+        "[-] as well, for example 1.5.",
     ),
 ]

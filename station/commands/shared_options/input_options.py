@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Arguments and options that say what is read, and what is known of it."""
+"""Arguments and options that name the input and describe it."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,17 +7,50 @@ from typing import Annotated
 import typer
 
 _COLUMNS_HELP = (
-    "Roles and units of a plain table's columns, for example "
+    "Quantity and unit of each column of a plain table, for example "
     "'time:s,force:N,acceleration:m/s^2' or 'x:um,z:um'."
 )
-Files = Annotated[list[Path], typer.Argument(help="Files to read.", show_default=False)]
-Columns = Annotated[str | None, typer.Option("--columns", help=_COLUMNS_HELP)]
-Point = Annotated[str, typer.Option(help="Where the hammer struck.")]
-Preload = Annotated[
-    str | None, typer.Option(help="On the joint, '4 kN', where no session says.")
+Files = Annotated[
+    list[Path],
+    typer.Argument(metavar="FILE", help="Files to read.", show_default=False),
 ]
-Sessions = Annotated[list[Path] | None, typer.Argument(help="Session files.")]
+HitFiles = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="FILE",
+        help="Session (.h5), or files of hits (.csv, .npy, .mat, .uff, .tdms, .wav).",
+        show_default=False,
+    ),
+]
+SurfaceFiles = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="FILE",
+        help="Session (.h5), table of heights, or file of a surface instrument.",
+        show_default=False,
+    ),
+]
+Columns = Annotated[
+    str | None, typer.Option("--columns", metavar="ROLE:UNIT,...", help=_COLUMNS_HELP)
+]
+Point = Annotated[
+    str,
+    typer.Option(metavar="NAME", help="Hit point, for files that do not name one."),
+]
+Preload = Annotated[
+    str | None,
+    typer.Option(
+        metavar="QUANTITY",
+        help="Preload on the joint, where the file gives none, for example '4 kN'.",
+    ),
+]
+Sessions = Annotated[
+    list[Path] | None, typer.Argument(metavar="SESSION", help="Session files (.h5).")
+]
 FullScale = Annotated[
     float | None,
-    typer.Option(help="WAV: what its largest number stands for, in the columns' unit."),
+    typer.Option(
+        metavar="NUMBER",
+        help="WAV: full scale [unit of --columns], for example 500.",
+    ),
 ]

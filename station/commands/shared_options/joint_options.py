@@ -1,15 +1,33 @@
 # SPDX-License-Identifier: MIT
-"""Arguments and options that say which joint and which model of it."""
+"""Arguments and options that name a joint and its model."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-GAP_HELP = "Sessions or campaign (.h5), record (.mat), model with data (.toml), URL."
-Model = Annotated[Path | None, typer.Option(help="Bench model (TOML), with priors.")]
-Cache = Annotated[Path | None, typer.Option(help="Folder of reduced structures.")]
-Faces = Annotated[
+GapSources = Annotated[
+    list[str],
+    typer.Argument(
+        metavar="SOURCE",
+        help="Sessions or a campaign (.h5), record (.mat), model with data (.toml) "
+        "or URL of a simulator (sim:).",
+        show_default=False,
+    ),
+]
+Model = Annotated[
+    Path | None,
+    typer.Option(metavar="PATH", help="Bench model (TOML): parameters and priors."),
+]
+Cache = Annotated[
+    Path | None,
+    typer.Option(metavar="FOLDER", help="Folder that keeps reduced structures."),
+]
+ContactSurfaces = Annotated[
     list[Path] | None,
-    typer.Option("--surface", help="Face of the joint, for [contact]; once or twice."),
+    typer.Option(
+        "--surface",
+        metavar="PATH",
+        help="Measured contact surface for the table [contact]; give one or both.",
+    ),
 ]

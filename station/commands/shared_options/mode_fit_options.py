@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Options of the fit of modes: band, order, estimator, choices by hand."""
+"""Options of modal extraction: band, order, estimator, manual selection."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,32 +7,51 @@ from typing import Annotated
 import typer
 
 Band = Annotated[
-    str | None, typer.Option(help="Band to fit, for example '50:5000' [Hz].")
+    str | None,
+    typer.Option(
+        metavar="LOW:HIGH", help="Frequency band to fit [Hz], for example 50:5000."
+    ),
 ]
 Order = Annotated[
-    int | None, typer.Option(help="Highest model order; chosen when left out.")
+    int | None,
+    typer.Option(
+        metavar="N", help="Highest model order; chosen from the data by default."
+    ),
 ]
 OutputOnly = Annotated[
     bool,
-    typer.Option("--output-only", help="No force channel: from responses alone."),
+    typer.Option(
+        "--output-only", help="Operational modal analysis: no force channel is used."
+    ),
 ]
 Keep = Annotated[
     list[float] | None,
-    typer.Option(help="Frequency [Hz] that is a mode, whatever is chosen; repeatable."),
+    typer.Option(
+        metavar="FREQUENCY",
+        help="Keep the pole next to this frequency [Hz] as a mode, for example 5031.",
+    ),
 ]
 Drop = Annotated[
     list[float] | None,
-    typer.Option(help="Frequency [Hz] that is none, whatever is chosen; repeatable."),
+    typer.Option(
+        metavar="FREQUENCY",
+        help="Drop the mode next to this frequency [Hz], for example 3007.",
+    ),
 ]
 EstimatorName = Annotated[
     str,
     typer.Option(
         "--estimator",
         metavar="H1|H2|Hv",
-        help="H1 reads low where the force is noisy, H2 high where the response is.",
+        help="FRF estimator: H1 is biased low by noise in the force, H2 is biased "
+        "high by noise in the response, Hv lies between.",
     ),
 ]
 GeometryFile = Annotated[
     Path | None,
-    typer.Option("--geometry", help="Points and lines to draw shapes on (TOML)."),
+    typer.Option(
+        "--geometry",
+        metavar="PATH",
+        help="Points and lines (TOML) on which mode shapes are drawn.",
+    ),
 ]

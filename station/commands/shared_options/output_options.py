@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Options that say what is written, where, and whether over what is there."""
+"""Options of the output: files to write, and their format."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,15 +8,31 @@ import typer
 
 Json = Annotated[
     str | None,
-    typer.Option("--json", metavar="PATH", help="Write results as JSON; '-' = stdout."),
+    typer.Option(
+        "--json",
+        metavar="PATH",
+        help="Write the results as JSON; '-' for standard output.",
+    ),
 ]
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite existing output.")]
+SessionOut = Annotated[
+    Path, typer.Option("--out", metavar="PATH", help="Session file to write (.h5).")
+]
 Results = Annotated[
-    Path | None, typer.Option(help="Results file; beside a session by default.")
+    Path | None,
+    typer.Option(
+        metavar="PATH",
+        help="Results file to write (.h5); next to a session by default.",
+    ),
 ]
 Universal = Annotated[
     Path | None,
-    typer.Option(help="Universal file for FRFs (58) and mode shapes (55)."),
+    typer.Option(
+        metavar="PATH",
+        help="Universal file to write: FRFs (data set 58) and mode shapes (55).",
+    ),
 ]
-Page = Annotated[Path | None, typer.Option(help="HTML page to write.")]
+HtmlReport = Annotated[
+    Path | None, typer.Option(metavar="PATH", help="HTML report to write.")
+]

@@ -76,7 +76,7 @@ def hits_file(folder: Path) -> Path:
 
 
 def test_a_source_that_does_not_answer_costs_no_earlier_session(earlier: Path) -> None:
-    """Nobody is at port 9; the file is the same to the last byte, and alone."""
+    """No server is at port 9; the file is the same to the last byte, and alone."""
     before = earlier.read_bytes()
     with pytest.raises(InstrumentError, match="does not answer"):
         forced(earlier.parent, "ni+grpc://127.0.0.1:9")
@@ -114,7 +114,7 @@ def test_a_session_that_came_to_its_end_takes_the_place_of_the_earlier_one(
 def test_a_session_that_was_stopped_leaves_the_earlier_one_and_lies_beside_it(
     earlier: Path,
 ) -> None:
-    """Told on the screen; both are whole, and no lock is left."""
+    """Reported on the screen; both are whole, and no lock is left."""
     before, folder = earlier.read_bytes(), earlier.parent
     plan = plan_file(folder, repeats=30)
     arguments = ["measure", str(plan), "--out", str(earlier), "--force"]
@@ -232,7 +232,7 @@ def test_recover_never_writes_over_the_recording_it_reads(tmp_path: Path) -> Non
     path = tmp_path / "live.h5"
     path.write_bytes(fixture.read_bytes())
     before = path.read_bytes()
-    with pytest.raises(UsageError, match="an input"):
+    with pytest.raises(UsageError, match="the input file"):
         run_recover(path, out=path, overwrite=True, json_target=None)
     assert path.read_bytes() == before
 

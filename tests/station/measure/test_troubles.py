@@ -20,8 +20,8 @@ from jointbench.station.measure.session_record import Record
 from jointbench.station.screen.interrupt import (
     hold_window,
     interruptible,
+    interruptible_wait,
     patient_interrupt,
-    restless,
 )
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "plates.toml"
@@ -211,9 +211,9 @@ def test_a_hangup_that_is_ignored_stays_ignored() -> None:
 
 
 def test_who_waits_for_a_lost_device_hears_of_a_kill() -> None:
-    """Nobody looks at a note while the device is away."""
+    """No one reads a note while the device is away."""
     record = Record()
-    wait = restless(record, sleep=lambda seconds: None)
+    wait = interruptible_wait(record, sleep=lambda seconds: None)
     wait(0.2)
     record.interrupted = True
     with pytest.raises(KeyboardInterrupt):

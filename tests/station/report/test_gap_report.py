@@ -14,6 +14,8 @@ from jointbench.analysis.gap.model.diagnosis_record import (
     Finding,
     diagnosis_json,
 )
+from jointbench.analysis.gap.model.policy import STANDARD, policy_digest
+from jointbench.analysis.gap.model.setting import settings_of
 from jointbench.station.gap import gap_output
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.report.gap_report import gap_report
@@ -48,7 +50,7 @@ def found(verdict: str) -> Diagnosis:
 
 @pytest.mark.parametrize("verdict", VERDICTS)
 def test_a_page_has_the_picture_first_and_loads_nothing(verdict: str) -> None:
-    """The hero comes before any other figure; no address is asked for anything."""
+    """The summary figure comes first; no address is requested."""
     report = gap_report(found(verdict), title="made")
     plots = [i for s in report.sections for i in s.items if isinstance(i, Plot)]
     assert plots[0].identifier == "hero"
@@ -58,34 +60,34 @@ def test_a_page_has_the_picture_first_and_loads_nothing(verdict: str) -> None:
     assert not re.search(r"<(script|link|img)[^>]+(src|href)=", page)
 
 
-def test_the_title_says_in_words_what_was_found_and_how_much_it_takes() -> None:
+def test_the_title_states_the_finding_and_its_share_of_the_gap() -> None:
     """Effect, place and share of the gap."""
     title = gap_report(found("named"), title="made").title
     assert title.startswith("Delay on channel a1 explains ")
     assert "of the gap" in title or "the whole gap" in title
 
 
-def test_rivals_that_are_not_told_apart_are_both_in_the_title() -> None:
-    """An ambiguous verdict names both and says so."""
+def test_rivals_that_are_not_distinguished_are_both_in_the_title() -> None:
+    """An ambiguous verdict names both."""
     title = headline(found("ambiguous"))
     assert "Delay on channel a1 or sensor lowpass on channel a1" in title
-    assert "do not tell which" in title
+    assert "cannot distinguish them" in title
 
 
-def test_an_unknown_for_what_the_campaign_cannot_show_blames_no_effect() -> None:
-    """One level only: the delay fits, but no headline says that nothing does."""
+def test_an_unknown_for_the_limits_of_the_campaign_names_no_effect() -> None:
+    """One level only: the delay fits, so the headline must not deny a fit."""
     outcome, bench = outcomes.outcome_of([LATE], DELAY, LOWPASS)
     diagnosis = conclude(outcome, bench, limits="all hits have one level")
     assert diagnosis.verdict is Finding.UNKNOWN
-    assert headline(diagnosis).startswith("These records cannot show what is missing")
+    assert headline(diagnosis).startswith("These records cannot show whether")
     assert why_lost(diagnosis.candidates[0], diagnosis).startswith("fits, but")
 
 
-def test_an_unknown_among_many_rivals_says_that_they_fit_alike() -> None:
-    """Four or more explanations are no answer, and none of them was refused."""
+def test_an_unknown_among_many_rivals_states_that_they_fit_equally_well() -> None:
+    """Four or more explanations are no answer, and none of them was rejected."""
     labels = tuple((f"{name}@channel:a1",) for name in ("a", "b", "c", "d"))
     diagnosis = replace(found("unknown"), explanations=labels)
-    assert headline(diagnosis).startswith("Several explanations fit alike")
+    assert headline(diagnosis).startswith("Several explanations fit equally well")
 
 
 def test_rival_pairs_are_joined_by_or_and_their_effects_by_and() -> None:
@@ -101,36 +103,38 @@ def test_rival_pairs_are_joined_by_or_and_their_effects_by_and() -> None:
     )
 
 
-def test_what_one_condition_alone_shows_is_not_told_by_a_shrink() -> None:
+def test_an_effect_that_only_one_condition_shows_has_no_reduction_in_its_title() -> (
+    None
+):
     """A gap that stays when held out is no share of a gap explained."""
     named = found("named")
     diagnosis = replace(named, gap_before=named.gap_before, gap_after=named.gap_before)
-    assert "one condition alone shows it" in headline(diagnosis)
+    assert "only one condition shows it" in headline(diagnosis)
     assert "%" not in headline(diagnosis)
 
 
-def test_an_unknown_says_what_it_looks_like_and_what_to_do() -> None:
-    """Level, channel and time; the refused try is called refused."""
+def test_an_unknown_describes_its_signature_and_the_next_step() -> None:
+    """Level, channel and time; the best fit is called rejected."""
     report = gap_report(found("unknown"), title="made")
     page = render(report)
-    assert "closest try" in page and "refused" in page
-    assert "recurs in softer ones by 10" in page
+    assert "best fit: " in page and "(rejected)" in page
+    assert "recurs in softer hits by 10" in page
     assert next_step(found("unknown")) == found("unknown").exhibit.advice  # type: ignore[union-attr]
 
 
-def test_a_rival_far_behind_needs_no_experiment() -> None:
-    """Only what is not told apart is worth one; a name says how far the next is."""
+def test_a_rival_with_a_large_delta_score_needs_no_experiment() -> None:
+    """Only rivals that are not distinguished need one; a name gives the delta score."""
     far = next_step(found("named"))
     assert re.fullmatch(
-        r"use it; no experiment needed: the nearest rival is \d+ behind, 15 tell it "
-        "apart",
+        r"use it; no further experiment required: the nearest rival has a delta score "
+        r"of \d+ \(limit 15\)",
         far,
     )
     assert next_step(found("ambiguous")).startswith(("delay@", "sensor_lowpass@"))
 
 
 def test_every_explanation_that_was_tried_has_its_reason() -> None:
-    """No row of the ranking ends without a word."""
+    """Every row of the ranking has a reason."""
     diagnosis = found("named")
     reasons = [why_lost(one, diagnosis) for one in diagnosis.candidates]
     assert all(reasons)
@@ -170,19 +174,19 @@ def test_the_terminal_never_runs_over_its_width(
     assert any(line.startswith("next:") for line in lines)
 
 
-def test_an_effect_that_only_the_sheet_sees_is_told_by_its_pull() -> None:
-    """An added mass leaves no gap: the title tells the pulls instead."""
+def test_an_effect_that_only_the_priors_show_is_titled_by_prior_deviation() -> None:
+    """An added mass leaves no gap: the title gives the prior deviation instead."""
     hidden = [("added_mass", "body:m2", [0.3])]
     outcome, bench = outcomes.outcome_of(hidden, ("added_mass", "body:m2"))
     diagnosis = conclude(outcome, bench)
     assert diagnosis.verdict is Finding.NAMED
-    assert "brings the model back to its sheet" in headline(diagnosis)
+    assert "parameters back to their nominal values" in headline(diagnosis)
     labels = [tile.label for tile in gap_report(diagnosis, title="made").tiles]
-    assert "shrinks by" not in labels
+    assert "reduced by" not in labels
 
 
-def test_a_weak_effect_is_told_by_the_test_that_sees_it() -> None:
-    """A delay of 0.2 us leaves hardly a gap and the sheet in peace."""
+def test_a_weak_effect_is_titled_by_its_directed_test() -> None:
+    """A delay of 0.2 us leaves hardly a gap and no prior deviation."""
     outcome, bench = outcomes.outcome_of(
         [("delay", "channel:a0", [2e-7])], ("delay", "channel:a0")
     )
@@ -190,8 +194,9 @@ def test_a_weak_effect_is_told_by_the_test_that_sees_it() -> None:
     assert diagnosis.gap_before.value < 0.3
     largest, limit = diagnosis.null_statistic
     assert largest > limit
-    assert f"a directed test takes {largest:.0f} units" in headline(diagnosis)
-    assert "off its sheet" not in (diagnosis.exhibit.where if diagnosis.exhibit else "")
+    assert f"lowers chi2 by {largest:.0f}" in headline(diagnosis)
+    where = diagnosis.exhibit.where if diagnosis.exhibit else ""
+    assert "from its nominal value" not in where
 
 
 def test_names_out_of_a_file_cannot_break_out_of_the_page() -> None:
@@ -200,7 +205,7 @@ def test_names_out_of_a_file_cannot_break_out_of_the_page() -> None:
     assert "<script>alert(1)" not in render(gap_report(diagnosis, title="<b>x</b>"))
 
 
-def test_a_diagnosis_without_an_exhibit_still_makes_a_page() -> None:
+def test_a_diagnosis_without_evidence_still_makes_a_report() -> None:
     """The picture is left out, the rest stays."""
     report = gap_report(replace(found("named"), exhibit=None), title="made")
     assert report.sections[0].anchor == "effects"
@@ -211,3 +216,19 @@ def test_pairs_are_put_into_words() -> None:
     """Names lose their underscores, sites become places."""
     words = effect_words("preload_stiffness@link:joint + hidden_mode@body:m2")
     assert words == "preload stiffness in the joint and hidden mode on body m2"
+
+
+def test_the_provenance_holds_the_policy_of_the_verdict() -> None:
+    """Every decision setting is listed, and a varied policy is marked as such."""
+    diagnosis = found("named")
+    section = gap_report(diagnosis, title="made").sections[-1]
+    assert section.anchor == "provenance"
+    table = next(item for item in section.items if isinstance(item, DataTable))
+    names = [row[0] for row in table.rows]
+    assert names == [setting.name for setting in settings_of(STANDARD)]
+    page = render(gap_report(diagnosis, title="made"))
+    assert f"digest {policy_digest(STANDARD)[:16]}" in page
+    varied = replace(diagnosis, policy=replace(STANDARD, rival_score=20.0))
+    page = render(gap_report(varied, title="made"))
+    assert "a varied policy" in page
+    assert "a delta score of 20 (" in page

@@ -1,4 +1,4 @@
-"""Digests of content: accidents to results are found, refused and made anew."""
+"""Digests of content: accidents to results are found, refused and made again."""
 
 import json
 import os
@@ -79,7 +79,7 @@ def test_a_frequency_that_was_overwritten_is_not_done_and_is_made_anew(
     overwrite(path)
     outcome = process_task(Task(session, path), PLAIN)
     assert outcome.state is State.DONE
-    assert "corrupted" in outcome.rotten
+    assert "corrupted" in outcome.corrupted
     with h5py.File(path, "r") as file:
         assert file[FREQUENCY][0] == before
     assert process_task(Task(session, path), PLAIN).state is State.SKIPPED
@@ -138,12 +138,12 @@ def test_process_says_what_it_made_anew(make_session, tmp_path: Path, capsys) ->
     overwrite(target)
     capsys.readouterr()
     run_process(session, **where, json_target=str(tmp_path / "p.json"))
-    assert "made anew" in " ".join(capsys.readouterr().out.split())
+    assert "computed again" in " ".join(capsys.readouterr().out.split())
     page = json.loads((tmp_path / "p.json").read_text(encoding="utf-8"))
     assert "corrupted" in page["ledger"][0]["rotten"]
 
 
-def test_reprocess_makes_a_rotten_result_anew_and_says_so(
+def test_reprocess_makes_a_corrupted_result_again_and_reports_it(
     make_session, tmp_path: Path
 ) -> None:
     """One of two: the other is left as it is."""
@@ -153,7 +153,7 @@ def test_reprocess_makes_a_rotten_result_anew_and_says_so(
     overwrite(tmp_path / "a.plain.results.h5")
     again = run(tmp_path)
     assert (again.counts[State.DONE], again.counts[State.SKIPPED]) == (1, 1)
-    assert [one.path.name for one in again.rotten] == ["a.h5"]
+    assert [one.path.name for one in again.corrupted] == ["a.h5"]
     lines = [x for x in read_ledger(tmp_path / "plain.ledger.jsonl") if x.get("rotten")]
     assert len(lines) == 1
 
@@ -164,7 +164,7 @@ def test_a_result_that_is_cut_short_is_made_anew_and_said(make_session) -> None:
     path = made(session)
     path.write_bytes(path.read_bytes()[:-2000])
     outcome = process_task(Task(session, path), PLAIN)
-    assert (outcome.state, bool(outcome.rotten)) == (State.DONE, True)
+    assert (outcome.state, bool(outcome.corrupted)) == (State.DONE, True)
 
 
 def test_nothing_to_do_opens_neither_sessions_nor_results(
@@ -176,10 +176,10 @@ def test_nothing_to_do_opens_neither_sessions_nor_results(
     first = run(tmp_path)
     assert (first.counts[State.DONE], first.counts[State.FAILED]) == (1, 1)
 
-    def nobody(tasks, recipe):
+    def no_one(tasks, recipe):
         raise AssertionError("nothing is to be done")
 
-    again = run(tmp_path, backend=nobody)
+    again = run(tmp_path, backend=no_one)
     assert (again.counts[State.SKIPPED], again.counts[State.FAILED]) == (1, 1)
     assert again.failed[0].reason == first.failed[0].reason
 
@@ -204,7 +204,7 @@ def test_where_a_time_moved_the_digests_decide(
     assert len(looked) == 1
 
 
-def test_results_from_before_digests_are_unsigned_and_not_rotten(
+def test_results_from_before_digests_are_unsigned_and_not_corrupted(
     make_session,
 ) -> None:
     """Skipped, exported and shown as before, whatever became of them."""
@@ -213,7 +213,7 @@ def test_results_from_before_digests_are_unsigned_and_not_rotten(
     unsign(path)
     assert check_file(path).state is Seal.UNSIGNED
     outcome = process_task(Task(session, path), PLAIN)
-    assert (outcome.state, outcome.rotten) == (State.SKIPPED, "")
+    assert (outcome.state, outcome.corrupted) == (State.SKIPPED, "")
     assert run_export(path, kind="csv", folder=None, json_target=None)
 
 
@@ -225,7 +225,7 @@ def test_results_that_are_kept_from_2026_are_unsigned(name: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["csv", "mat", "uff"])
-def test_export_refuses_a_rotten_result(make_session, kind: str) -> None:
+def test_export_refuses_a_corrupted_result(make_session, kind: str) -> None:
     """No number of it leaves."""
     path = made(make_session("s.h5"))
     overwrite(path)
@@ -234,7 +234,7 @@ def test_export_refuses_a_rotten_result(make_session, kind: str) -> None:
     assert not list(path.parent.glob(f"s.plain.results*.{kind}"))
 
 
-def test_archive_and_compare_refuse_rotten_results(
+def test_archive_and_compare_refuse_corrupted_results(
     make_session, tmp_path: Path
 ) -> None:
     """By themselves as bad data; among others they are named and left out."""
@@ -249,7 +249,7 @@ def test_archive_and_compare_refuse_rotten_results(
     assert run_compare(both, both, json_target=None)[1] == 2
 
 
-def test_report_refuses_a_rotten_result(make_session) -> None:
+def test_report_refuses_a_corrupted_result(make_session) -> None:
     """The modes beside the session are not what the run wrote."""
     session = make_session("s.h5")
     run_modal([session])
@@ -292,7 +292,7 @@ def test_verify_takes_an_archive_and_counts_each_state(
 
 
 def test_a_line_of_the_ledger_that_was_changed_is_passed_over(tmp_path: Path) -> None:
-    """A refusal that nobody wrote refuses nothing; verify tells of it."""
+    """A refusal without a writer refuses nothing; verify reports it."""
     path = tmp_path / "x.ledger.jsonl"
     with open_ledger(path, {}) as ledger:
         ledger.write(

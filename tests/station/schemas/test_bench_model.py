@@ -14,7 +14,7 @@ from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.pipeline.link_stage import mode_model
 from jointbench.station.schemas.bench_model import BenchModel, lumped_model
-from jointbench.station.schemas.gap_model import gap_sheet
+from jointbench.station.schemas.gap_model import nominal_parameters
 
 GOOD = """\
 [bodies.base]
@@ -96,7 +96,7 @@ def test_identify_and_gap_take_one_and_the_same_model(tmp_path: Path) -> None:
     """Values in SI, priors relative, the ground below whatever stands on it."""
     bench = read(tmp_path, PRIORS)
     model = lumped_model(bench)
-    assert gap_sheet(bench).model == model
+    assert nominal_parameters(bench).model == model
     assert model.spread == pytest.approx([1e-3, 1e-3, 0.2, 0.1, 0.25, 0.5])
     assert (model.ends(0), model.ends(1)) == ((-1, 0), (0, 1))
     assert incidence(model).tolist() == [[1.0, 0.0], [-1.0, 1.0]]
@@ -111,7 +111,7 @@ def test_a_missing_prior_is_none_for_modes_and_refused_by_gap(tmp_path: Path) ->
     with pytest.raises(UsageError, match=r"prior sd of base is 0\.0"):
         _ = model.spread
     with pytest.raises(BadData, match=r"bodies\.base\.mass_sd is missing"):
-        gap_sheet(bench)
+        nominal_parameters(bench)
 
 
 def test_modes_weigh_damping_by_what_was_measured_alone(tmp_path: Path) -> None:

@@ -20,10 +20,10 @@ from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.commands.record_command import run_record
 from jointbench.station.commands.verify_command import run_recover, run_verify
-from jointbench.station.sources.open_source import Visit, open_visit
+from jointbench.station.sources.open_source import RunSequence, open_runs
 from jointbench.station.sources.record_live import record_live
-from jointbench.station.sources.record_source import record_visit
-from jointbench.station.sources.visit_file import write_visit
+from jointbench.station.sources.record_source import record_runs
+from jointbench.station.sources.recorded_session import record_session_file
 
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="signals: POSIX")
 LONG = "sim:two-body?seed=1&hits=120"
@@ -106,17 +106,17 @@ class Steps:
             yield np.full((2, 100), self.number + block / 10)
 
 
-def visit(*runs: Steps) -> Visit:
-    """Return a visit of a few runs."""
-    return Visit("steps", True, runs)
+def recorded(*runs: Steps) -> RunSequence:
+    """Return a sequence of a few runs."""
+    return RunSequence("steps", True, runs)
 
 
-def test_what_is_recorded_live_is_what_a_visit_recorded_in_memory_is(
+def test_what_is_recorded_live_is_what_runs_recorded_in_memory_is(
     tmp_path: Path,
 ) -> None:
     """Samples in single precision; names, times, preloads, points and hits alike."""
-    write_visit(CAMPAIGN, tmp_path / "s.h5")
-    live, whole = read_session(tmp_path / "s.h5"), record_visit(open_visit(CAMPAIGN))
+    record_session_file(CAMPAIGN, tmp_path / "s.h5")
+    live, whole = read_session(tmp_path / "s.h5"), record_runs(open_runs(CAMPAIGN))
     assert live.source == whole.source
     assert live.joint == whole.joint
     assert len(live.recordings) == len(whole.recordings)
@@ -146,7 +146,7 @@ def test_a_recording_that_is_killed_can_be_recovered_with_its_hits(
     )
     (recording,) = recovered.recordings
     assert recording.samples.shape[1] >= seen >= 300_000
-    first = next(iter(open_visit(LONG).runs[0].blocks()))
+    first = next(iter(open_runs(LONG).runs[0].blocks()))
     size = first.shape[1]
     np.testing.assert_array_equal(
         recording.samples[:, :size], first.astype(np.float32).astype(float)
@@ -173,7 +173,7 @@ def test_a_recording_that_is_stopped_is_finished(tmp_path: Path, name: str) -> N
 
 def test_runs_keep_their_own_times_and_points(tmp_path: Path) -> None:
     """Blocks of one run are joined, those of two never."""
-    assert record_live(visit(Steps(1), Steps(2)), tmp_path / "s.h5")
+    assert record_live(recorded(Steps(1), Steps(2)), tmp_path / "s.h5")
     one, two = read_session(tmp_path / "s.h5").recordings
     assert (one.start_time, two.start_time) == (10.0, 20.0)
     assert (one.channels[0].point, two.channels[0].point) == ("1", "2")
@@ -184,7 +184,7 @@ def test_runs_keep_their_own_times_and_points(tmp_path: Path) -> None:
 def test_a_stop_in_the_second_run_keeps_the_block_in_hand(tmp_path: Path) -> None:
     """One whole run and one block of the next."""
     runs = Steps(1), Steps(2, stop_after=0), Steps(3)
-    assert not record_live(visit(*runs), tmp_path / "s.h5")
+    assert not record_live(recorded(*runs), tmp_path / "s.h5")
     session = read_session(tmp_path / "s.h5")
     assert [r.samples.shape[1] for r in session.recordings] == [300, 100]
     assert ends(session) == [True]
@@ -201,7 +201,7 @@ def test_a_run_that_delivers_nothing_leaves_the_runs_before_it(tmp_path: Path) -
     """An error of the instrument, and a finished file."""
     runs = Steps(1), Steps(2, blocks_made=0)
     with pytest.raises(InstrumentError, match="no sample"):
-        record_live(visit(*runs), tmp_path / "s.h5")
+        record_live(recorded(*runs), tmp_path / "s.h5")
     assert run_verify(tmp_path / "s.h5", json_target=None)
     assert stored(tmp_path / "s.h5") == 300
 
@@ -210,7 +210,7 @@ def test_a_run_with_other_channels_is_refused(tmp_path: Path) -> None:
     """One file has the channels of its first run."""
     runs = Steps(1), Steps(2, channel="hammer")
     with pytest.raises(InstrumentError, match="session of its own"):
-        record_live(visit(*runs), tmp_path / "s.h5")
+        record_live(recorded(*runs), tmp_path / "s.h5")
 
 
 def test_an_earlier_session_is_replaced_by_a_whole_one_alone(tmp_path: Path) -> None:
@@ -230,11 +230,11 @@ def test_an_earlier_session_is_replaced_by_a_whole_one_alone(tmp_path: Path) -> 
     assert [p.name for p in tmp_path.iterdir()] == ["s.h5"]
 
 
-def test_a_model_of_ones_own_is_not_replaced_by_a_sheet(tmp_path: Path) -> None:
+def test_an_own_model_is_not_replaced(tmp_path: Path) -> None:
     """It is refused before anything is recorded."""
     mine = tmp_path / "s.toml"
     mine.write_text("# my plan\n", encoding="utf-8")
-    with pytest.raises(UsageError, match="no sheet"):
+    with pytest.raises(UsageError, match="no bench model"):
         run_record(CAMPAIGN, tmp_path / "s.h5", overwrite=True, json_target=None)
     assert mine.read_text(encoding="utf-8") == "# my plan\n"
     assert not (tmp_path / "s.h5").exists()

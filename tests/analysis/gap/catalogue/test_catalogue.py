@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: MIT
 """Every effect of the catalogue: off is off, and it grows from there in a line."""
 
+import ast
 from dataclasses import replace
+from pathlib import Path
 
 import gap_bench as made
 import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.analysis.gap.catalogue import catalogue
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.residuals.evaluation_stages import FULL
@@ -112,3 +115,35 @@ def test_an_effect_without_a_frequency_cannot_start_at_peaks() -> None:
     delay = next(e.effect for e in CATALOGUE if e.effect.name == "delay")
     with pytest.raises(UsageError, match=r"'delay' starts at peaks but has 1 param"):
         replace(delay, starts_at_peaks=True)
+
+
+def test_no_module_of_the_engine_but_the_catalogue_knows_an_effect_by_its_name() -> (
+    None
+):
+    """What an effect does to the search or to the wording is declared on its record."""
+    root = Path(catalogue.__file__).parents[1]
+    names = {entry.effect.name for entry in CATALOGUE}
+    found = [
+        f"{path.relative_to(root)}:{node.lineno} {node.value!r}"
+        for path in sorted(root.rglob("*.py"))
+        if path.parent.name != "catalogue"
+        for node in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(node, ast.Constant) and node.value in names
+    ]
+    assert not found
+
+
+def test_model_errors_and_order_are_those_that_the_effects_declare() -> None:
+    """Two laws allow for more model error than their family; one follows the order."""
+    effects = [entry.effect for entry in CATALOGUE]
+    errors = {e.name: e.model_error for e in effects if e.model_error is not None}
+    assert errors == {"iwan": 5e-5, "coulomb": 1e-5}
+    assert {e.name for e in effects if e.follows_order} == {"loosening"}
+
+
+@pytest.mark.parametrize("share", [-1e-6, 1.0, float("nan")])
+def test_a_model_error_that_is_no_share_is_refused(share: float) -> None:
+    """The message names the effect, the value and the rule."""
+    delay = next(e.effect for e in CATALOGUE if e.effect.name == "delay")
+    with pytest.raises(UsageError, match=r"'delay' has a model_error of .* a share"):
+        replace(delay, model_error=share)

@@ -71,13 +71,13 @@ def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
     assert [e.name for e in found.effects] == ["preload_stiffness"]
     assert found.gap_before.value > 100.0
     assert 0.5 < found.gap_after.value / found.gap_before.value <= 1.0
-    assert "not foretold by the others" in found.reason
+    assert "not predicted by the others" in found.reason
 
 
 def test_what_all_conditions_show_is_foretold(late: Diagnosis) -> None:
     """The reason is silent of what it would say of a lone condition."""
     assert late.gap_after.value < 0.1 * late.gap_before.value
-    assert "foretold" not in late.reason
+    assert "not predicted" not in late.reason
 
 
 def test_a_delay_outside_the_catalogue_is_not_called_by_another_name() -> None:
@@ -119,7 +119,7 @@ def test_what_all_rivals_hold_is_as_sure_as_all_of_them() -> None:
     assert "delay" not in found.experiment
     named = replace(both, ranked=(pairs[0], delay, pairs[1]), level=(pairs[0],))
     alone = conclude(named, bench).experiment
-    assert alone.startswith("no experiment needed: the nearest rival is ")
+    assert alone.startswith("no further experiment required: the nearest rival")
 
 
 def pair_with(bench: LumpedBench, first: Fit, name: str) -> Fit:

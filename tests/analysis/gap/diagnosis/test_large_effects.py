@@ -5,7 +5,7 @@ import gap_bench as made
 import numpy as np
 
 from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
-from jointbench.analysis.gap.judgement.naming import GLOBAL_SD
+from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.bench_noise import refine_noise
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
@@ -38,7 +38,7 @@ def test_a_great_stop_is_marched_as_finely_as_it_needs() -> None:
     """Four steps a sample leave more than noise allows, those that are taken do not."""
     problem, four, needed = fits_of_a_stop(4e7)
     dof = problem.bench.blocks.dof
-    allowed = GLOBAL_SD * noise_sd(problem.bench)
+    allowed = STANDARD.chi2_limit * noise_sd(problem.bench)
     assert four.chi2 / dof - 1.0 > allowed
     assert needed.chi2 / dof - 1.0 < allowed
 
@@ -56,4 +56,4 @@ def test_clipped_samples_do_not_scatter_with_the_force() -> None:
     noisy = refine_noise(bench, BASE, [clip])
     problem = make_problem(noisy, (clip.candidate,))
     fit = finish(problem, np.concatenate([BASE, clip.coordinates]), lambda line: None)
-    assert fit.chi2 / noisy.blocks.dof - 1.0 < GLOBAL_SD * noise_sd(noisy)
+    assert fit.chi2 / noisy.blocks.dof - 1.0 < STANDARD.chi2_limit * noise_sd(noisy)

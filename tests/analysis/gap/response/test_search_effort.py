@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 """A search that is too long ends, says so, and gives the same answer anywhere."""
 
+from dataclasses import replace
+
 import gap_bench as made
 import pytest
 
 from jointbench.analysis.gap.catalogue.linear_effects import LINEAR
-from jointbench.analysis.gap.diagnosis import loop
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.model.diagnosis_record import Finding
+from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.response.search_effort import (
     SearchExhausted,
     counted,
@@ -38,16 +40,14 @@ def test_what_is_spent_beyond_a_limit_ends_the_search() -> None:
     spend(10**9, 8)
 
 
-def test_a_second_effect_that_may_not_be_looked_for_is_unknown(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_second_effect_that_may_not_be_looked_for_is_unknown() -> None:
     """Two faults are named; with no effort allowed for the second, none is."""
     campaign = made.made_campaign(TWO)
     found = diagnose(campaign, entries=LINEAR)
     assert found.verdict is Finding.NAMED
     assert {e.name for e in found.effects} == {"delay", "cross_talk"}
-    monkeypatch.setattr(loop, "MOST_EFFORT", 1.0)
-    found = diagnose(campaign, entries=LINEAR)
+    policy = replace(STANDARD, most_samples=1.0)
+    found = diagnose(campaign, entries=LINEAR, policy=policy)
     assert found.verdict is Finding.UNKNOWN
     assert "ended for its length" in found.reason
     assert found.effects == ()

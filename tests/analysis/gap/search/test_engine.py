@@ -22,6 +22,7 @@ from jointbench.analysis.gap.model.effect import (
     labels_of,
 )
 from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
+from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.evaluation_stages import Stage
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -48,6 +49,7 @@ class Curve:
     candidates: tuple[Candidate, ...]
     base_names: tuple[str, ...] = ("slope",)
     probes: tuple[Candidate, ...] = ()
+    policy: Policy = STANDARD
 
     @property
     def base_sd(self) -> FloatArray:

@@ -10,16 +10,16 @@ from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.station.files.output_paths import check_outputs, write_text
 from jointbench.station.files.session_place import session_place
-from jointbench.station.sources.campaign_sheet import HEAD
-from jointbench.station.sources.open_source import Visit, open_visit
+from jointbench.station.sources.campaign_model import HEAD
+from jointbench.station.sources.open_source import RunSequence, open_runs
 from jointbench.station.sources.record_live import record_live
 
 MODEL, TRUTH = ".toml", ".truth.json"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class WrittenVisit:
-    """What a visit left behind.
+class RecordedSession:
+    """Files written by a recording.
 
     Attributes:
         session: as written.
@@ -38,50 +38,52 @@ class WrittenVisit:
     stays: str = ""
 
 
-def write_visit(url: str, path: Path, *, overwrite: bool = False) -> WrittenVisit:
+def record_session_file(
+    url: str, path: Path, *, overwrite: bool = False
+) -> RecordedSession:
     """Record the bench that `url` names into a session file.
 
     Args:
         url: of the bench.
-        path: of the session file; a sheet goes beside it as ``.toml``, the truth of a
-            simulated bench as ``.truth.json``.
-        overwrite: replace an earlier session and its sheets, once all is recorded.
+        path: of the session file; the model is written next to it as ``.toml``, the
+            truth of a simulated bench as ``.truth.json``.
+        overwrite: replace an earlier session and its model, once all is recorded.
 
     Raises:
         UsageError: the URL makes no sense, a file is there and `overwrite` is off, or
             what is there is no earlier session.
     """
-    visit = open_visit(url)
+    sequence = open_runs(url)
     with session_place(path, overwrite=overwrite) as place:
-        for own in _sheets(visit, path):
+        for own in _side_files(sequence, path):
             _require_free(own, overwrite=overwrite)
-        whole = record_live(visit, place.own)
+        whole = record_live(sequence, place.own)
         path = place.settle(whole=whole)
-    for own, text in _sheets(visit, path).items():
+    for own, text in _side_files(sequence, path).items():
         write_text(own, text)
     model, truth = path.with_suffix(MODEL), path.with_suffix(TRUTH)
-    return WrittenVisit(
+    return RecordedSession(
         session=read_session(path),
         path=path,
-        model=None if visit.sheet is None else model,
-        truth=None if visit.truth is None else truth,
+        model=None if sequence.model is None else model,
+        truth=None if sequence.truth is None else truth,
         whole=whole,
         stays="" if path == place.asked else place.stays,
     )
 
 
-def _sheets(visit: Visit, path: Path) -> dict[Path, str]:
+def _side_files(sequence: RunSequence, path: Path) -> dict[Path, str]:
     """Return what goes beside a session, as texts by their paths."""
     found = {}
-    if visit.sheet is not None:
-        found[path.with_suffix(MODEL)] = visit.sheet
-    if visit.truth is not None:
-        found[path.with_suffix(TRUTH)] = json.dumps(visit.truth, indent=1) + "\n"
+    if sequence.model is not None:
+        found[path.with_suffix(MODEL)] = sequence.model
+    if sequence.truth is not None:
+        found[path.with_suffix(TRUTH)] = json.dumps(sequence.truth, indent=1) + "\n"
     return found
 
 
 def _require_free(path: Path, *, overwrite: bool) -> None:
-    """Refuse a sheet that is there, unless it is an earlier one and may be replaced."""
+    """Refuse an existing model, unless it is an earlier one and may be replaced."""
     if not path.exists():
         return
     if not overwrite:
@@ -90,6 +92,6 @@ def _require_free(path: Path, *, overwrite: bool) -> None:
         check_outputs([], [path])
     elif not path.is_file() or not path.read_bytes().startswith(HEAD.encode()):
         raise UsageError(
-            f"'{path}' is there already and no sheet of a bench; choose another name "
+            f"'{path}' exists already and is no bench model; choose another name "
             "for the session, or move it away"
         )

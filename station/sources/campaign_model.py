@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The sheet of a simulated campaign as a bench model file: nominal values, 1-sigma."""
+"""The bench model of a simulated campaign as a file: nominal values with 1-sigma."""
 
 from jointbench.simulators.hidden.campaign_design import NOMINAL_SIGMA, CampaignDesign
 
 HEAD = "# Two bodies, weighed, on a support and a joint known from their drawings."
-"""How every sheet begins."""
+"""First line of every model file."""
 TEMPLATE = (
     f"{HEAD}\n"
     + """\
@@ -43,7 +43,7 @@ preload_reference = "{preload:.6g} N"
 )
 
 
-def sheet_text(design: CampaignDesign) -> str:
+def model_text(design: CampaignDesign) -> str:
     """Write what an operator would know of the specimen of a design.
 
     Args:

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the catalogue: shapes of its laws that are not fitted."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogueSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    iwan_sliders: int = numerical(
+        14,
+        "sliders",
+        "sliders of the Iwan element of the catalogue",
+        "development cases 26 and 50: leaves 4e-5 of the excess of an element "
+        "with more sliders",
+    )
+    slider_sharpness: tuple[float, float] = numerical(
+        (14.0, 0.6),
+        "-",
+        "median and log-sd of the prior of the sharpness of a slider",
+    )
+    relaxation_times: tuple[float, float, float] = numerical(
+        (0.03, 0.16, 0.8),
+        "periods",
+        "relaxation times of the probes, in periods of the mode of the joint",
+        "one per factor of five over the range that a record shows",
+    )
+
+
+CATALOGUE_SETTINGS = CatalogueSettings()

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the diagnosis: rounds of the loop, and what the evidence shows."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class DiagnosisSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    most_effects: int = numerical(
+        3,
+        "effects",
+        "most effects that are put together",
+        "three at one link explain anything",
+    )
+    first_effects: int = numerical(
+        3,
+        "fits",
+        "single effects to which a second is added",
+        "development campaigns",
+    )
+    second_cost_ratio: float = numerical(
+        4.0,
+        "-",
+        "excess of the cost over the smallest above which a single effect is "
+        "given no second",
+        "development campaigns",
+    )
+    noise_excess: float = numerical(
+        0.01,
+        "of dof",
+        "excess of the cost that noise alone may make",
+        "closed form",
+    )
+    wrong_minimum_chi2: float = numerical(
+        2.0,
+        "-",
+        "chi2/dof above which a base may have stopped in a wrong minimum",
+        "3 of 1,500 null draws (docs/gap-null.md), null 80290",
+    )
+    second_candidates: int = numerical(
+        4,
+        "effects",
+        "second effects tried on each first, by their directed tests",
+        "development campaigns",
+    )
+    needless_gain: float = numerical(
+        1000.0,
+        "chi2",
+        "gain of the best fit by its noise after which one of its effects may be "
+        "needless",
+        "hidden 96060",
+    )
+    base_rounds: int = numerical(
+        12,
+        "rounds",
+        "most rounds in which the base and its noise are brought to agree",
+        "nulls of docs/gap-null.md",
+    )
+    base_settled_cost: float = numerical(
+        0.5,
+        "chi2",
+        "change of the cost below which base and noise agree",
+        "nulls of docs/gap-null.md",
+    )
+    settled_share: float = numerical(
+        0.5,
+        "of chi2",
+        "chi2 that a base about the settled hits may leave to be taken",
+        "26 of 36 quiet draws: all end between 0.97 and 1.03",
+    )
+    no_rival_score: float = numerical(
+        1e12,
+        "chi2",
+        "score of a rival where none was fitted",
+        "larger than any cost",
+    )
+    one_record_share: float = numerical(
+        0.8,
+        "of the residual",
+        "share of one record from which that record is suspected",
+    )
+    scored_steps: int = numerical(
+        8,
+        "steps/sample",
+        "steps of the time integration on parts of a record that no fit has seen",
+        "Silverbox",
+    )
+    clear_sd: float = numerical(
+        4.0,
+        "sd",
+        "distance from zero at which the estimate of a record counts",
+        "closed form: one test in 16,000 by chance",
+    )
+    taken_share: float = numerical(
+        0.3,
+        "of the residual",
+        "share that the estimates of the records must explain to be stated alone",
+    )
+    uneven_ratio: float = numerical(
+        2.0,
+        "-",
+        "ratio of relative residuals between channels from which it is stated",
+    )
+    growth_ratio: float = numerical(
+        0.7,
+        "-",
+        "relative residual at the next lower level, over the highest, below which "
+        "it grows with level",
+    )
+    mainly_share: float = numerical(
+        0.6,
+        "of the residual",
+        "share of a channel from which the residual is mainly on it",
+    )
+    band_share: float = numerical(
+        0.8,
+        "of the residual",
+        "share of the residual that the band which is stated holds",
+    )
+    level_force_floor: float = numerical(
+        0.05,
+        "of the largest line",
+        "line of a force below which a ratio to it is not used",
+    )
+    vague_sd: float = numerical(
+        0.15,
+        "-",
+        "sd above which a recurrence is not stated",
+    )
+    linear_within: float = numerical(
+        0.35,
+        "-",
+        "departure of a ratio of levels from 1 within which the residual is "
+        "linear in level",
+    )
+    level_step: float = numerical(
+        1e-4,
+        "-",
+        "difference step of the joint stiffness in the evidence",
+    )
+    figure_share: float = numerical(
+        0.9,
+        "of the residual",
+        "share of the residual of a record that the window of the figure holds",
+    )
+    figure_lead: float = numerical(
+        1e-3,
+        "s",
+        "time before the hit in the figure",
+    )
+    figure_least_samples: int = numerical(
+        256,
+        "samples",
+        "shortest window of the figure",
+    )
+    figure_most_samples: int = numerical(
+        2048,
+        "samples",
+        "longest window of the figure",
+    )
+    figure_lines: int = numerical(
+        400,
+        "lines",
+        "lines of a response function in the figure",
+    )
+    figure_force_floor: float = numerical(
+        0.03,
+        "of the largest line",
+        "line of the force below which a response function is not drawn",
+    )
+    figure_bands: int = numerical(
+        48,
+        "bands/decade",
+        "bands that the spectrum of the residual is averaged over",
+    )
+    figure_tests: int = numerical(
+        8,
+        "tests",
+        "directed tests that the evidence keeps",
+    )
+    prior_candidates_sd: float = numerical(
+        3.5,
+        "sd",
+        "prior deviation above which effects that only priors show are tried as a "
+        "second effect",
+        "below the limit of 4 sd at which a fit is rejected",
+    )
+
+
+DIAGNOSIS = DiagnosisSettings()

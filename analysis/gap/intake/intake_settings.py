@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the intake: limits of files, and how hits are cut from sessions."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class IntakeSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    most_records: int = numerical(
+        1024,
+        "records",
+        "most records of a campaign file that are read",
+        "memory: far above any campaign",
+    )
+    most_samples: int = numerical(
+        1 << 20,
+        "samples",
+        "most samples of a record of a campaign file that are read",
+        "memory: far above any campaign",
+    )
+    least_samples: int = numerical(
+        512,
+        "samples",
+        "fewest samples of a record that show a resonance",
+    )
+    default_preload: float = numerical(
+        4000.0,
+        "N",
+        "reference preload of a campaign file that states none",
+        "the campaigns of the contract",
+    )
+    same_level_ratio: float = numerical(
+        1.6,
+        "-",
+        "ratio between neighbouring peaks up to which hits may share a nominal level",
+        "an operator repeats a level to 20 %; levels differ by a factor of 2 or more",
+    )
+    level_span: float = numerical(
+        2.5,
+        "-",
+        "largest ratio between two peaks of one nominal level",
+    )
+    pretrigger_samples: int = numerical(
+        112,
+        "samples",
+        "samples kept before the trigger",
+        "the anti-alias filter rings in the last 48 of them",
+    )
+    quiet_samples: int = numerical(
+        64,
+        "samples",
+        "first samples of a record, which no hit and no filter touches",
+        "the rest of the pretrigger",
+    )
+    look_back_samples: int = numerical(
+        512,
+        "samples",
+        "samples before a hit that are searched for a response that still decays",
+    )
+    shortest_record: int = numerical(
+        512,
+        "samples",
+        "shortest record that is cut",
+        "as for campaign files",
+    )
+    longest_record: int = numerical(
+        4096,
+        "samples",
+        "longest record that is cut",
+        "computing time",
+    )
+    channel_samples: int = numerical(
+        100_000,
+        "samples",
+        "samples of a channel in all records together above which records are cut "
+        "short",
+        "computing time",
+    )
+    decayed_share: float = numerical(
+        0.05,
+        "of the peak",
+        "response at which a record may end",
+    )
+    decay_block: int = numerical(
+        64,
+        "samples",
+        "samples over which the decay is averaged",
+    )
+    ringing_ratio: float = numerical(
+        1.25,
+        "-",
+        "rms before a hit over white noise above which the channel is not at rest",
+        "chi2 spread of an rms over 512 samples is 3 %",
+    )
+    decaying_ratio: float = numerical(
+        0.8,
+        "-",
+        "rms of the last quarter before a hit over that of the third below which "
+        "it decays",
+    )
+    steady_share: float = numerical(
+        0.02,
+        "of the peak",
+        "steady signal (hum) before a hit that is accepted",
+    )
+    offset_sd: float = numerical(
+        5.0,
+        "sd",
+        "change of the mean before a hit above which the channel has an offset",
+        "closed form: one record in 1.7 million by chance",
+    )
+
+
+INTAKE = IntakeSettings()

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the judgement: caps, tolerances and limits of what a record shows."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class JudgementSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    flat_samples: int = numerical(
+        6,
+        "pairs",
+        "pairs of neighbours at the common maximum from which a record counts as "
+        "clipped",
+    )
+    at_top_sd: float = numerical(
+        5.0,
+        "sd of the noise",
+        "distance from the maximum within which a sample lies at it",
+    )
+    near_top_sd: float = numerical(
+        20.0,
+        "sd of the noise",
+        "distance from the maximum within which a sample lies near it",
+    )
+    edge_ratio: float = numerical(
+        1.5,
+        "-",
+        "growth of the number of samples between these distances below which the "
+        "maximum is an edge",
+        "the crest of an oscillation doubles it",
+    )
+    loud_sd: float = numerical(
+        50.0,
+        "sd of the noise",
+        "maximum from which a record is checked for clipping",
+    )
+    noise_share: float = numerical(
+        0.2,
+        "of the samples",
+        "samples that the noise estimate is worth",
+        "0.39 of the spectrum, halved by the taper",
+    )
+    refit_growth: float = numerical(
+        1.5,
+        "-",
+        "growth of the chi2 of a held-out group in the linear step above which "
+        "the others are fitted again",
+        "single 96253",
+    )
+    refit_iterations: int = numerical(
+        8,
+        "steps",
+        "most steps of that fit",
+    )
+    shown_sd: float = numerical(
+        4.0,
+        "sd",
+        "size of a parameter above which all groups together show it",
+        "single 105025; no verdict depends on it",
+    )
+    unshown_sd: float = numerical(
+        1.0,
+        "sd",
+        "size of a parameter below which the groups left do not show it",
+        "single 105025; no verdict depends on it",
+    )
+    part_bands: int = numerical(
+        6,
+        "bands",
+        "bands of frequency that may have parameters of their own",
+        "a low-pass named for a delay: six bands disagree by 48 units",
+    )
+    least_eigenvalue: float = numerical(
+        1e-10,
+        "of the largest",
+        "eigenvalue below which a combination of slopes counts as zero",
+        "rounding of double precision",
+    )
+    same_fault_score: float = numerical(
+        0.5,
+        "chi2",
+        "score difference within which a fault at one channel and at all channels "
+        "is one statement",
+    )
+    settling_rounds: int = numerical(
+        30,
+        "rounds",
+        "most rounds in which a fit and the noise estimated at it are brought to agree",
+        "hidden 96060 crept for more than 12",
+    )
+    settled_cost: float = numerical(
+        2.0,
+        "chi2",
+        "change of the cost of the best fit below which it agrees with its noise",
+        "development campaigns",
+    )
+    repeated_cost: float = numerical(
+        20.0,
+        "chi2",
+        "difference from the cost of two rounds before below which a fit alternates",
+        "pair 107076: 105 s to be unknown",
+    )
+    overtaking_rounds: int = numerical(
+        2,
+        "rounds",
+        "times that a rival which overtakes the best fit is judged in its turn",
+        "development campaigns",
+    )
+    refit_score: float = numerical(
+        1000.0,
+        "chi2",
+        "score difference up to which a rival is fitted again with the new noise",
+        "development campaigns",
+    )
+    refit_score_failed: float = numerical(
+        100.0,
+        "chi2",
+        "the same where the best fit does not explain the records",
+        "development campaigns",
+    )
+    gain_share: float = numerical(
+        0.2,
+        "of the gain",
+        "score difference, over what the best fit gained with its noise, that may "
+        "hide a rival",
+        "development campaigns",
+    )
+    hidden_rivals: int = numerical(
+        3,
+        "fits",
+        "most rivals that are fitted again for that reason",
+        "a low-pass and a preload law 7 % of the cost from the best",
+    )
+    own_noise_fits: int = numerical(
+        2,
+        "fits",
+        "most fits that are judged with noise of their own where the best fit fails",
+        "a maxwell that a delay had beaten",
+    )
+
+
+JUDGEMENT = JudgementSettings()

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the records: what of a record counts, and when a name is doubted."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class CampaignSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    tail_samples: int = numerical(
+        64,
+        "samples",
+        "last samples of a record that are not compared: the anti-alias filter "
+        "has no data after them",
+    )
+    seen_gap: float = numerical(
+        1.0,
+        "-",
+        "held-out gap below which its reduction is not looked at",
+    )
+    unpredicted_share: float = numerical(
+        0.5,
+        "-",
+        "share of the held-out gap that a named effect may leave before the "
+        "reason says that other conditions do not predict it",
+    )
+
+
+CAMPAIGN = CampaignSettings()

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the predicted response: transforms, tables and time integration."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class ResponseSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    step_effort: float = numerical(
+        2.5,
+        "samples",
+        "cost of one step of the time integration, in samples of a linear response",
+        "timed on a core of 2.3 GHz",
+    )
+    damping_exponent: float = numerical(
+        16.0,
+        "-",
+        "damping of the transform times its length: the response that wraps "
+        "around is reduced by exp(-16)",
+        "a test with a transform of six record lengths",
+    )
+    transform_length: float = numerical(
+        1.5,
+        "of the record",
+        "length of a transform",
+        "nine campaigns: at most 0.5 units of chi2 against six lengths, and two "
+        "thirds of the time of length 2",
+    )
+    pass_band: float = numerical(
+        0.42,
+        "of the sample rate",
+        "end of the pass band of an anti-alias filter that is not known otherwise",
+        "the filter assumed by the simulators; the end is estimated where it matters",
+    )
+    faded_band: float = numerical(
+        0.01,
+        "of the sample rate",
+        "last part of the band, in which the force is tapered to zero",
+        "nine campaigns; without it single 94001 (a low-pass) ended unknown",
+    )
+    table_points: int = numerical(
+        8193,
+        "points",
+        "points of the table of a force curve",
+        "tests against the curve itself",
+    )
+    table_grading: float = numerical(
+        16.0,
+        "-",
+        "arc sinh of the largest motion over the finest spacing of a table",
+        "tests against the curve itself",
+    )
+    table_motion: float = numerical(
+        0.01,
+        "m",
+        "largest motion across a link that a table holds; the value is constant beyond",
+        "above any motion of a machine joint under a hammer",
+    )
+    table_speed: float = numerical(
+        100.0,
+        "m/s",
+        "largest speed across a link that a table holds; the value is constant beyond",
+        "above any speed of a machine joint under a hammer",
+    )
+    lanes: int = numerical(
+        8,
+        "records",
+        "records that are integrated side by side",
+        "timed: 13 ns a record and step, 24 before",
+    )
+    real_pole_share: float = numerical(
+        1e-9,
+        "of the modulus",
+        "imaginary part below which a pole is real",
+        "rounding of double precision",
+    )
+    extrapolated_steps: int = numerical(
+        4,
+        "steps/sample",
+        "steps from which the time integration is extrapolated to a step of zero",
+        "convergence tests of the second method (tests/judges)",
+    )
+    slider_table_points: int = numerical(
+        4096,
+        "points",
+        "points of the table of a slider",
+        "tests against the closed form",
+    )
+    slider_elastic_error: float = numerical(
+        1e-7,
+        "-",
+        "departure of a slider from elasticity that is neglected",
+        "tests against the closed form",
+    )
+
+
+RESPONSE = ResponseSettings()

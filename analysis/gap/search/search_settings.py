@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: MIT
+"""Settings of the search: descent, directed tests, starts and selection rounds."""
+
+from dataclasses import dataclass
+
+from jointbench.analysis.gap.model.setting import numerical
+
+
+@dataclass(frozen=True, slots=True)
+class SearchSettings:
+    """Numbers of the algorithms; unit, purpose and basis are with each field."""
+
+    excess_tolerance: float = numerical(
+        1e-3,
+        "of the excess",
+        "drop of the cost, as a share of the excess of chi2, below which a "
+        "descent ends",
+        "a share of chi2 itself would hide an effect of 100 units among 60,000",
+    )
+    absolute_tolerance: float = numerical(
+        0.03,
+        "chi2",
+        "drop of the cost added to that",
+        "far below any threshold of a verdict",
+    )
+    base_step: float = numerical(
+        1e-7,
+        "-",
+        "difference step of the logarithm of a base parameter",
+        "a step of 1e-5 bends the end of a record of hundreds of radians; a "
+        "maxwell of 0.4 % was lost",
+    )
+    effect_step: float = numerical(
+        1e-6,
+        "of the value",
+        "difference step of a parameter of an effect",
+        "as the base step",
+    )
+    patience: float = numerical(
+        12.0,
+        "steps",
+        "steps of the last size that a descent may still need to reach a rival",
+        "development campaigns",
+    )
+    longest_step: float = numerical(
+        1.5,
+        "-",
+        "longest step of a coordinate; most are logarithms",
+        "development campaigns",
+    )
+    corrections: int = numerical(
+        2,
+        "steps",
+        "steps back into the valley before a step is shortened",
+        "development campaigns",
+    )
+    least_damping: float = numerical(
+        1e-11,
+        "-",
+        "first damping of Levenberg and Marquardt",
+        "where hits scatter, the common scale of masses and stiffnesses is so "
+        "soft that 1e-6 would hold it",
+    )
+    stiff_damping: float = numerical(
+        1e-3,
+        "-",
+        "damping under which only well determined parameters move",
+        "development campaigns",
+    )
+    secant_steps: int = numerical(
+        2,
+        "steps",
+        "steps in a row for which slopes are updated by the secant",
+        "halves the time of a diagnosis",
+    )
+    trusted_share: float = numerical(
+        0.6,
+        "of the predicted drop",
+        "drop below which slopes are differenced again",
+        "development campaigns",
+    )
+    probe_amplitude: float = numerical(
+        1e-6,
+        "-",
+        "amplitude at which the direction of an effect is differenced",
+        "as the step of a descent",
+    )
+    least_direction: float = numerical(
+        1e-10,
+        "of the squared length",
+        "part of a direction that the fit must leave for it to count",
+        "rounding of single precision",
+    )
+    screening_steps: int = numerical(
+        2,
+        "steps/sample",
+        "steps of the time integration in a directed test and under a window",
+        "as in a search",
+    )
+    null_draws: int = numerical(
+        4000,
+        "draws",
+        "draws of the largest drop under the null",
+        "a quantile of 0.5 % is known to 22 % of its chance",
+    )
+    middle_iterations: int = numerical(
+        16,
+        "steps",
+        "most steps of a descent at the middle step",
+        "development campaigns",
+    )
+    start_shares: tuple[float, float, float] = numerical(
+        (1.0, 0.3, 0.1),
+        "of the predicted step",
+        "steps along a directed test that are tried as starts",
+        "development campaigns",
+    )
+    short_window: float = numerical(
+        0.005,
+        "s",
+        "decay of the first window: nothing is out of phase in it",
+        "development campaigns",
+    )
+    longer_window: float = numerical(
+        0.016,
+        "s",
+        "decay of the second window, of several periods of the first modes",
+        "development campaigns",
+    )
+    coarse_survivors: tuple[int, int] = numerical(
+        (14, 8),
+        "starts",
+        "starts kept after each window",
+        "development campaigns",
+    )
+    final_fits: int = numerical(
+        5,
+        "fits",
+        "fits kept for the final step",
+        "development campaigns",
+    )
+    pruning_ratio: float = numerical(
+        6.0,
+        "of the best cost",
+        "cost above which a fit is not carried to the end",
+        "development campaigns",
+    )
+    nominal_restart_chi2: float = numerical(
+        100.0,
+        "-",
+        "chi2/dof of the base above which an effect that may flip a sign also "
+        "starts from the nominal values",
+        "development campaigns",
+    )
+    selection_rounds: tuple[tuple[int, int, int], tuple[int, int, int]] = numerical(
+        ((3, 12, 2), (5, 8, 1)),
+        "steps, starts, starts of one set",
+        "steps of every start in a selection round, starts kept, and starts kept "
+        "of one set of effects",
+        "timed on the development campaigns: two of one set after three steps, "
+        "one after eight",
+    )
+    least_drop_share: float = numerical(
+        0.04,
+        "of the largest drop",
+        "directed drop below which an effect is no candidate",
+        "development campaigns",
+    )
+    shape_starts: int = numerical(
+        3,
+        "starts",
+        "starts of a candidate that has a shape of its own",
+        "docs/gap-ablations.md",
+    )
+    exchange_probe: float = numerical(
+        1e-4,
+        "-",
+        "amplitude at which the exchange between an effect and the base is differenced",
+    )
+    integration_error: float = numerical(
+        50.0,
+        "chi2",
+        "difference between two steps of the integration above which the finer "
+        "one is taken",
+        "a fourteenth of the noise of chi2 with 16 records",
+    )
+    exchange_candidates: int = numerical(
+        4,
+        "effects",
+        "effects tried in each place of a pair, by their directed tests",
+        "development campaigns",
+    )
+    pair_iterations: int = numerical(
+        6,
+        "steps",
+        "steps of a descent in the search for pairs",
+        "case 01: both effects named in 56 s",
+    )
+    pair_singles: int = numerical(
+        8,
+        "effects",
+        "single effects that are fitted under the first window",
+        "case 01",
+    )
+    pair_firsts: int = numerical(
+        3,
+        "effects",
+        "single effects to which a second is added",
+        "case 01",
+    )
+    pair_seconds: int = numerical(
+        5,
+        "effects",
+        "second effects tried on each",
+        "case 01",
+    )
+    pair_exchanges: int = numerical(
+        3,
+        "passes",
+        "passes of exchanges in the best pair",
+        "case 01",
+    )
+    pairs_kept: int = numerical(
+        5,
+        "pairs",
+        "pairs kept after each pass",
+        "case 01",
+    )
+    diverged_sd: float = numerical(
+        4.0,
+        "sd",
+        "distance from its nominal values above which a base starts again from "
+        "that of the best fit",
+        "development campaigns",
+    )
+    slip_factors: tuple[float, float, float] = numerical(
+        (0.6, 1.0, 1.6),
+        "-",
+        "factors between the slip displacements of two laws of friction",
+        "hidden 96033: a Jenkins slider 11,600 units from a Bouc-Wen element",
+    )
+    slider_cost_above: float = numerical(
+        1000.0,
+        "chi2",
+        "cost above that of a law of sliders at which another one is carried to "
+        "the end",
+        "hidden 96033",
+    )
+    restart_share: float = numerical(
+        0.5,
+        "of the cost",
+        "cost below which another start is worth a descent",
+        "development campaigns",
+    )
+    base_windows: tuple[float, float, float] = numerical(
+        (0.002, 0.006, 0.02),
+        "s",
+        "decays of the windows under which a base is fitted, coarse to fine",
+        "development campaigns",
+    )
+    window_iterations: int = numerical(
+        6,
+        "steps",
+        "most steps of the fit of a base under a window",
+        "development campaigns",
+    )
+    base_iterations: int = numerical(
+        20,
+        "steps",
+        "most steps of the fit of a base to whole records",
+        "development campaigns",
+    )
+    coarse_iterations: tuple[int, int] = numerical(
+        (5, 6),
+        "steps",
+        "steps of every start under each of two windows",
+        "development campaigns",
+    )
+    restart_cost_ratio: float = numerical(
+        10.0,
+        "-",
+        "cost of a start, over that of the fits, above which it is not used",
+    )
+
+
+SEARCH = SearchSettings()

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""Commands on joints and machines: their names and options."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from jointbench.station.commands.shared_options.input_options import Preload, Sessions
+from jointbench.station.commands.shared_options.joint_options import (
+    Cache,
+    ContactSurfaces,
+    GapSources,
+    Model,
+)
+from jointbench.station.commands.shared_options.mode_fit_options import Band
+from jointbench.station.commands.shared_options.output_options import (
+    Debug,
+    HtmlReport,
+    Json,
+)
+from jointbench.station.screen.exit_codes import EXIT_QUALITY
+
+
+def identify_command(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL",
+            help="Model (TOML): rigid bodies with [links], or meshed bodies with "
+            "[joints].",
+        ),
+    ],
+    sessions: Sessions = None,
+    band: Band = None,
+    cache: Cache = None,
+    surface: ContactSurfaces = None,
+    report: HtmlReport = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> int:
+    """Identify stiffness and damping of joints from modes.
+
+    Stiffness [N/m] and damping [N s/m] have standard deviations. A parameter that
+    the measurement does not determine is reported with the reason.
+
+    Examples:
+        jointbench identify bench.toml session.h5 --json joint.json
+        jointbench identify plates.toml session.h5 --surface surface-a.csv
+        --surface surface-b.csv --report joints.html
+    """
+    from jointbench.station.commands.identify_links_command import identify_any
+
+    fits = identify_any(
+        model,
+        sessions or [],
+        band=band,
+        cache=cache,
+        report=report,
+        json_target=json,
+        surfaces=surface or [],
+    )
+    return 0 if fits else EXIT_QUALITY
+
+
+def gap_command(
+    sources: GapSources,
+    model: Model = None,
+    preload: Preload = None,
+    without: Annotated[
+        str | None,
+        typer.Option(metavar="NAME,...", help="Effects to leave out of the catalogue."),
+    ] = None,
+    effects: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="PATH", help="Python file with effects of your own; it is executed."
+        ),
+    ] = None,
+    report: HtmlReport = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Find the effect that a model lacks to explain the hits.
+
+    The verdict is 'named', 'none', 'ambiguous' with an experiment that separates the
+    candidates, or 'unknown'.
+
+    Examples:
+        jointbench gap session.h5 --model bench.toml --report gap.html
+        jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
+    """
+    from jointbench.station.commands.gap_command import run_gap
+
+    run_gap(
+        sources[0],
+        more=sources[1:],
+        model=model,
+        preload=preload,
+        without=without,
+        effects=effects or [],
+        report=report,
+        json_target=json,
+    )
