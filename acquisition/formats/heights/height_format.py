@@ -78,7 +78,7 @@ class HeightFormat:
         recognise: whether a file has this format; cheap, and never an error for a
             file of another format.
         read: returns the surface of a file, heights in metres; raises `BadData`.
-        with_columns: whether it is asked as well where the user says what the columns
+        with_columns: whether it is asked as well where the user states what the columns
             hold, which overrules what the content looks like.
         longest: largest length of a trace, or side of a map, that is believed [m].
     """

@@ -204,7 +204,7 @@ def _recognise(file: HeightFile) -> bool:
 
 
 def _is_plain(path: Path) -> bool:
-    """Tell whether a file with a maker's ending is but a table, as .dat often is."""
+    """Return whether a file with a maker's ending is but a table, as .dat often is."""
     head = read_head(path, _PLAIN_BYTES)
     return path.suffix.lower() == ".dat" and b"\x00" not in head
 
