@@ -286,3 +286,17 @@ def test_help_imports_nothing_heavy() -> None:
     subprocess.run(
         [sys.executable, "-c", code], cwd=ROOT, check=True, capture_output=True
     )
+
+
+def test_no_module_assigns_a_name_twice() -> None:
+    """A second value would replace the first without an error, as a rename once did."""
+    found = [
+        f"{path.relative_to(ROOT)}: {name}"
+        for room in ROOMS
+        for path in sources(room)
+        for name, count in Counter(
+            name for node in tree(path).body for name in assigned(node)
+        ).items()
+        if count > 1
+    ]
+    assert found == []

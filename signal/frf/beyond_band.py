@@ -79,7 +79,7 @@ class Beyond:
         top = min(self.reach, _round_up(1.05 * self.peaks[-1].frequency))
         return (
             f"{end} peaks stand out, the highest at {_hertz(highest.frequency)}, "
-            f"{highest.height:.2g} times as high as the highest within; to fit them as "
+            f"{highest.height:.2g} times as high as the highest within; to fit them "
             f"too: --band {self.begin:.3g}:{top:g}"
         )
 

@@ -17,7 +17,7 @@ _MEDIAN_OF_POWER = float(np.log(2.0))
 _ROUGHNESS_LINES = 41
 _RESIDUAL_LINES = 164
 _LEVEL_LINES = 11
-_RESIDUAL_LINES = 41
+_LOCAL_LINES = 41
 # Least sd of an FRF as a share of its own level: converters, cables.
 _BEST = 1e-7
 
@@ -81,7 +81,7 @@ def local_level(response: ComplexArray) -> FloatArray:
 def local_residual(residual: ComplexArray) -> FloatArray:
     """Return |residual|^2 averaged over neighbouring lines, same shape."""
     return np.asarray(
-        uniform_filter1d(np.abs(residual) ** 2, _RESIDUAL_LINES, axis=1, mode="nearest")
+        uniform_filter1d(np.abs(residual) ** 2, _LOCAL_LINES, axis=1, mode="nearest")
     )
 
 
