@@ -216,7 +216,7 @@ def public_names(path: Path) -> set[str]:
 
 
 def test_no_folder_holds_more_than_twenty_five_modules() -> None:
-    """A folder that nobody can take in at a glance is several folders."""
+    """A larger folder should be several folders."""
     over = {folder: n for folder, n in folders().items() if n > MOST_MODULES}
     assert not over
 
@@ -257,7 +257,7 @@ def test_few_modules_offer_more_than_eight_names() -> None:
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_no_module_takes_its_local_names_as_data(room: str) -> None:
-    """Options that pass through `locals()` are checked by nobody."""
+    """Options that pass through `locals()` are not checked."""
     called = [
         path.name
         for path in sources(room)

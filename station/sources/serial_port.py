@@ -21,7 +21,9 @@ def line_name(name: str) -> Iterator[str]:
     if not name.startswith("sim:"):
         yield name
         return
-    from jointbench.simulators.twins.twin_url import twin_from_url
+    from jointbench.simulators.serial_instruments.simulator_url import (
+        simulator_from_url,
+    )
 
-    with twin_from_url(name) as simulator:
+    with simulator_from_url(name) as simulator:
         yield simulator.name

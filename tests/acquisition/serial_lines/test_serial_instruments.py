@@ -9,13 +9,13 @@ from jointbench.acquisition.basics.errors import FormatError, InstrumentError
 from jointbench.acquisition.serial_lines import diavite, mark10, mitutoyo
 from jointbench.acquisition.serial_lines.line import Line, SerialLine
 from jointbench.acquisition.serial_lines.line_faults import LineBroken
-from jointbench.simulators.twins.dialogue import (
-    DiaviteTwin,
-    Mark10Twin,
-    MitutoyoTwin,
+from jointbench.simulators.serial_instruments.dialogue import (
+    DiaviteSimulator,
+    Mark10Simulator,
+    MitutoyoSimulator,
     wave_counts,
 )
-from jointbench.simulators.twins.twin import Twin
+from jointbench.simulators.serial_instruments.serial_simulator import SerialSimulator
 
 
 class Dialogue:
@@ -161,7 +161,9 @@ def test_a_mark10_error_is_an_instrument_error() -> None:
 def test_the_simulated_dh8_delivers_9600_points_exactly(over_socket: bool) -> None:
     """Through pyserial, on a pseudo-terminal and on a socket, nothing left over."""
     counts = wave_counts(9600)
-    with Twin(DiaviteTwin(counts).answer, over_socket=over_socket) as device:
+    with SerialSimulator(
+        DiaviteSimulator(counts).answer, over_socket=over_socket
+    ) as device:
         line = SerialLine(device.name, baud=diavite.BAUD)
         profile = diavite.read_profile(line, name="face", traverse=4.8e-3)
         assert line.waiting() == 0
@@ -180,8 +182,8 @@ def _read_mitutoyo(line: Line) -> object:
 @pytest.mark.parametrize(
     ("answer", "read", "after"),
     [
-        (DiaviteTwin(wave_counts(500)).answer, _read_dh8, 300),
-        (MitutoyoTwin((1.0, 2.0, 3.0)).answer, _read_mitutoyo, 27),
+        (DiaviteSimulator(wave_counts(500)).answer, _read_dh8, 300),
+        (MitutoyoSimulator((1.0, 2.0, 3.0)).answer, _read_mitutoyo, 27),
     ],
 )
 def test_a_disconnection_keeps_the_received_part(
@@ -190,7 +192,7 @@ def test_a_disconnection_keeps_the_received_part(
     after: int,
 ) -> None:
     """The error is one line, and holds the bytes of the answer that broke off."""
-    with Twin(answer, over_socket=True, unplug_after=after) as device:
+    with SerialSimulator(answer, over_socket=True, unplug_after=after) as device:
         line = SerialLine(device.name, baud=9600, timeout=1.0)
         with pytest.raises(LineBroken) as broken:
             read(line)
@@ -201,7 +203,7 @@ def test_a_disconnection_keeps_the_received_part(
 
 def test_the_simulated_mark10_answers_through_pyserial() -> None:
     """A torque tester on a pseudo-terminal."""
-    with Twin(Mark10Twin("20.02 Nm").answer) as device:
+    with SerialSimulator(Mark10Simulator("20.02 Nm").answer) as device:
         line = SerialLine(device.name, baud=mark10.BAUD)
         assert mark10.read_gauge(line).value == pytest.approx(20.02)
         line.close()

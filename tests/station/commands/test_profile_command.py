@@ -10,8 +10,11 @@ from jointbench.acquisition.formats.heights.read_surfaces import read_surface
 from jointbench.acquisition.records.session import new_session
 from jointbench.acquisition.records.surfaces import Profile
 from jointbench.acquisition.session_file.store import read_session, write_session
-from jointbench.simulators.twins.dialogue import DiaviteTwin, wave_counts
-from jointbench.simulators.twins.simulator import Twin
+from jointbench.simulators.serial_instruments.dialogue import (
+    DiaviteSimulator,
+    wave_counts,
+)
+from jointbench.simulators.serial_instruments.simulator import SerialSimulator
 from jointbench.station.sources.read_profile import ProfileRequest, run_profile
 
 
@@ -73,8 +76,8 @@ def test_a_plug_removed_mid_profile_leaves_the_points_that_came_in_a_table(
 ) -> None:
     """1007 bytes hold two answers' frames and 500 whole heights; all 500 are there."""
     counts = wave_counts(900)
-    simulator = Twin(
-        DiaviteTwin(counts).answer, over_socket=over_socket, unplug_after=1007
+    simulator = SerialSimulator(
+        DiaviteSimulator(counts).answer, over_socket=over_socket, unplug_after=1007
     )
     with simulator, pytest.raises(InstrumentError, match="500 heights are in"):
         fetch(simulator.name, tmp_path / "face.csv")
@@ -138,7 +141,9 @@ def test_a_table_of_ones_own_is_not_replaced_by_a_profile(tmp_path: Path) -> Non
 def test_points_of_an_earlier_break_are_kept(tmp_path: Path) -> None:
     """The second table of a profile that broke off has a number."""
     for _ in range(2):
-        simulator = Twin(DiaviteTwin(wave_counts(90)).answer, unplug_after=100)
+        simulator = SerialSimulator(
+            DiaviteSimulator(wave_counts(90)).answer, unplug_after=100
+        )
         with simulator, pytest.raises(InstrumentError, match="heights are in"):
             fetch(simulator.name, tmp_path / "face.csv")
     names = {path.name for path in tmp_path.iterdir()}

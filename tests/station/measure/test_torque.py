@@ -10,8 +10,11 @@ from jointbench.acquisition.basics.errors import BadData, InstrumentError
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.serial_lines.mark10 import Reading
 from jointbench.acquisition.session_file.store import read_session
-from jointbench.simulators.twins.dialogue import Mark10Twin, WrenchTwin
-from jointbench.simulators.twins.simulator import Twin
+from jointbench.simulators.serial_instruments.dialogue import (
+    Mark10Simulator,
+    WrenchSimulator,
+)
+from jointbench.simulators.serial_instruments.simulator import SerialSimulator
 from jointbench.station.measure.bench_session import Measured, run_measure
 from jointbench.station.measure.bolt_torques import PeakHold
 from jointbench.station.measure.plan import read_plan
@@ -38,7 +41,7 @@ def plan_file(folder: Path, line: str, hits: str = HITS) -> Path:
     return path
 
 
-def run(folder: Path, simulator: Twin, wait: str = "20 s") -> Measured:
+def run(folder: Path, simulator: SerialSimulator, wait: str = "20 s") -> Measured:
     """Measure two torques with a tester."""
     return run_measure(
         plan_file(folder, simulator.name, HITS.replace("20 s", wait)),
@@ -60,8 +63,8 @@ def test_every_bolt_is_in_the_session_and_the_preload_is_theirs(
     tmp_path: Path, over_socket: bool
 ) -> None:
     """Bolts at +2, -1, 0, +3 %: P is 1.01 times 25 kN at 20 N m, hands-free."""
-    wrench = WrenchTwin((20.0, 50.0), 4, (0.02, -0.01, 0.0, 0.03))
-    with Twin(wrench.answer, over_socket=over_socket) as simulator:
+    wrench = WrenchSimulator((20.0, 50.0), 4, (0.02, -0.01, 0.0, 0.03))
+    with SerialSimulator(wrench.answer, over_socket=over_socket) as simulator:
         measured = run(tmp_path, simulator)
     found = list(bolts(tmp_path))
     assert measured.whole
@@ -76,7 +79,7 @@ def test_a_bolt_beside_its_target_is_asked_for_again_and_both_are_kept_in_the_fi
 ) -> None:
     """The second bolt is 30 % loose, then right: nine readings for eight bolts."""
     errors = (0.0, -0.3, 0.0, 0.0, 0.0)
-    with Twin(WrenchTwin((20.0,), 4, errors).answer) as simulator:
+    with SerialSimulator(WrenchSimulator((20.0,), 4, errors).answer) as simulator:
         run_measure(
             plan_file(tmp_path, simulator.name, HITS.replace(', "50 N m"', "")),
             tmp_path / "s.h5",
@@ -90,8 +93,10 @@ def test_a_bolt_beside_its_target_is_asked_for_again_and_both_are_kept_in_the_fi
 
 def test_a_tester_unplugged_between_bolts_is_waited_for(tmp_path: Path) -> None:
     """It breaks off in an answer and comes back; nothing is lost, the plan is done."""
-    wrench = WrenchTwin((20.0, 50.0), 4)
-    simulator = Twin(wrench.answer, over_socket=True, unplug_after=131, comes_back=True)
+    wrench = WrenchSimulator((20.0, 50.0), 4)
+    simulator = SerialSimulator(
+        wrench.answer, over_socket=True, unplug_after=131, comes_back=True
+    )
     with simulator:
         measured = run(tmp_path, simulator)
     assert measured.whole
@@ -102,7 +107,7 @@ def test_a_tester_unplugged_between_bolts_is_waited_for(tmp_path: Path) -> None:
 class NoisyWrench:
     """A wrench of which every fifth answer is what noise made of it."""
 
-    wrench: WrenchTwin
+    wrench: WrenchSimulator
     noise: bytes
     turn: int = 0
 
@@ -122,8 +127,8 @@ def test_a_reading_that_is_none_ends_nothing_and_is_no_torque(
     tmp_path: Path, noise: bytes
 ) -> None:
     """Junk bytes, numbers that are none, five hundred times the target, half a line."""
-    wrench = NoisyWrench(WrenchTwin((20.0, 50.0), 4), noise)
-    with Twin(wrench.answer, over_socket=True) as simulator:
+    wrench = NoisyWrench(WrenchSimulator((20.0, 50.0), 4), noise)
+    with SerialSimulator(wrench.answer, over_socket=True) as simulator:
         measured = run(tmp_path, simulator, "60 s")
     found = list(bolts(tmp_path))
     assert measured.whole
@@ -135,7 +140,7 @@ def test_a_bolt_that_is_not_tightened_ends_in_one_line_and_a_valid_file(
 ) -> None:
     """The display stays at nothing for longer than the plan waits."""
     with (
-        Twin(Mark10Twin("0.000 Nm").answer) as simulator,
+        SerialSimulator(Mark10Simulator("0.000 Nm").answer) as simulator,
         pytest.raises(InstrumentError, match="bolt 1 was not tightened"),
     ):
         run(tmp_path, simulator, "0.2 s")
@@ -145,7 +150,7 @@ def test_a_bolt_that_is_not_tightened_ends_in_one_line_and_a_valid_file(
 def test_a_gauge_that_shows_a_force_is_no_torque_tester(tmp_path: Path) -> None:
     """The reason is in the line."""
     with (
-        Twin(Mark10Twin("12.5 N").answer) as simulator,
+        SerialSimulator(Mark10Simulator("12.5 N").answer) as simulator,
         pytest.raises(InstrumentError, match="a torque is needed"),
     ):
         run(tmp_path, simulator, "0.2 s")

@@ -15,13 +15,13 @@ from contextlib import suppress
 from types import TracebackType
 
 from jointbench.acquisition.serial_lines.serial_instrument import Answer
-from jointbench.simulators.twins.dialogue import answer_all
+from jointbench.simulators.serial_instruments.dialogue import answer_all
 
 _POLL = 0.05  # [s]
 _LONGEST_DRAIN = 2.0  # [s]
 
 
-class Twin:
+class SerialSimulator:
     """An instrument on a separate line; pyserial opens `name`."""
 
     def __init__(
@@ -50,7 +50,7 @@ class Twin:
         self._thread = threading.Thread(target=self._serve, daemon=True)
         self._thread.start()
 
-    def __enter__(self) -> "Twin":
+    def __enter__(self) -> "SerialSimulator":
         """Return the instrument."""
         return self
 

@@ -13,7 +13,7 @@ _WRENCH = (0.0, 0.18, 0.55, 0.83, 1.0, 0.97, 0.31, 0.02)
 
 
 @dataclass(frozen=True, slots=True)
-class DiaviteTwin:
+class DiaviteSimulator:
     """A DH-8 that has measured.
 
     Attributes:
@@ -50,7 +50,7 @@ class DiaviteTwin:
 
 
 @dataclass(frozen=True, slots=True)
-class MitutoyoTwin:
+class MitutoyoSimulator:
     """An SJ-410 that has measured.
 
     Attributes:
@@ -84,7 +84,7 @@ class MitutoyoTwin:
 
 
 @dataclass(frozen=True, slots=True)
-class Mark10Twin:
+class Mark10Simulator:
     """A gauge that shows a reading.
 
     Attributes:
@@ -103,7 +103,7 @@ class Mark10Twin:
 
 
 @dataclass(slots=True)
-class WrenchTwin:
+class WrenchSimulator:
     """A Mark-10 torque tester on a wrench that tightens bolt after bolt.
 
     Attributes:

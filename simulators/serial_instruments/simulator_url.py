@@ -11,12 +11,12 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.serial_lines.instruments import SERIAL_INSTRUMENTS
 from jointbench.acquisition.serial_lines.serial_instrument import Answer
 from jointbench.simulators.rough_surfaces.rough_surface import rough_profile
-from jointbench.simulators.twins.dialogue import (
-    DiaviteTwin,
-    MitutoyoTwin,
-    WrenchTwin,
+from jointbench.simulators.serial_instruments.dialogue import (
+    DiaviteSimulator,
+    MitutoyoSimulator,
+    WrenchSimulator,
 )
-from jointbench.simulators.twins.twin import Twin
+from jointbench.simulators.serial_instruments.serial_simulator import SerialSimulator
 
 INSTRUMENTS = ("diavite", "mitutoyo", "mark10")
 _WRENCH_ERROR = 0.02  # relative standard deviation of a good wrench
@@ -26,7 +26,7 @@ _DIMENSION, _ROUGHNESS = 1.45, 5e-11  # [-], [m] of the measured ground surface
 _KEYS = "seed, torques, bolts, points, unplug"
 
 
-def twin_from_url(url: str) -> Twin:
+def simulator_from_url(url: str) -> SerialSimulator:
     """Connect the instrument of a URL.
 
     Args:
@@ -46,7 +46,7 @@ def twin_from_url(url: str) -> Twin:
     return _of_package(url, instrument, values)
 
 
-def _built_in(url: str, instrument: str, values: dict[str, str]) -> Twin:
+def _built_in(url: str, instrument: str, values: dict[str, str]) -> SerialSimulator:
     """Plug in one of jointbench's own."""
 
     def take(key: str, default: str) -> tuple[float, ...]:
@@ -69,10 +69,12 @@ def _built_in(url: str, instrument: str, values: dict[str, str]) -> Twin:
         "mitutoyo": lambda: _mitutoyo(seed, points),
         "mark10": lambda: _wrench(seed, torques, bolts),
     }
-    return Twin(made[instrument](), unplug_after=int(unplug[0]) if unplug else None)
+    return SerialSimulator(
+        made[instrument](), unplug_after=int(unplug[0]) if unplug else None
+    )
 
 
-def _of_package(url: str, instrument: str, values: dict[str, str]) -> Twin:
+def _of_package(url: str, instrument: str, values: dict[str, str]) -> SerialSimulator:
     """Plug in the simulator that a package brings along with its instrument."""
     unplug = _numbers(url, "unplug", values.pop("unplug", ""))
     entries = {
@@ -87,7 +89,7 @@ def _of_package(url: str, instrument: str, values: dict[str, str]) -> Twin:
     assert entry.value.simulate is not None, "chosen for it"
     with entry.running(UsageError):
         answer = entry.value.simulate(values)
-    return Twin(answer, unplug_after=int(unplug[0]) if unplug else None)
+    return SerialSimulator(answer, unplug_after=int(unplug[0]) if unplug else None)
 
 
 def _numbers(url: str, key: str, text: str) -> tuple[float, ...]:
@@ -112,17 +114,17 @@ def _heights(seed: int, points: int) -> FloatArray:
 
 def _diavite(seed: int, points: int) -> Answer:
     counts = np.round(_COUNTS_PER_METRE * _heights(seed, points)).astype(int)
-    return DiaviteTwin(tuple(np.clip(counts, -32768, 32767).tolist())).answer
+    return DiaviteSimulator(tuple(np.clip(counts, -32768, 32767).tolist())).answer
 
 
 def _mitutoyo(seed: int, points: int) -> Answer:
     heights = 1e6 * _heights(seed, points)
     per_file = max(100, -(-points // 50))
     length = 1e3 * _TRAVERSE
-    return MitutoyoTwin(tuple(heights.tolist()), per_file, length).answer
+    return MitutoyoSimulator(tuple(heights.tolist()), per_file, length).answer
 
 
 def _wrench(seed: int, torques: tuple[float, ...], bolts: int) -> Answer:
     drawn = np.random.default_rng([seed, 17]).standard_normal(len(torques) * bolts)
     errors = _WRENCH_ERROR * np.clip(drawn, -2.5, 2.5)
-    return WrenchTwin(torques, bolts, tuple(errors.tolist())).answer
+    return WrenchSimulator(torques, bolts, tuple(errors.tolist())).answer
