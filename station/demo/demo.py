@@ -185,7 +185,7 @@ def truth_table(comparisons: tuple[TruthComparison, ...]) -> DataTable:
         for c in comparisons
     )
     return DataTable(
-        "Truth of the simulated bench and what the station found",
+        "Simulated truth and estimates",
         ("quantity", "unit", "truth", "estimate", "sd", "error", "allowed", "verdict"),
         rows,
         frozenset({"missed"}),
