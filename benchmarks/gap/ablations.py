@@ -29,12 +29,12 @@ ONE_TEST = 7.88
 KINDS = ("null", "single")
 
 
-def no_coarse_stages() -> None:
+def no_coarse_resolutions() -> None:
     """Fit whole records from the first step on."""
     from jointbench.analysis.gap.diagnosis import base_fit
-    from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+    from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 
-    base_fit.BASE_STAGES = ((FULL, 19), (FULL, 20))
+    base_fit.BASE_RESOLUTIONS = ((FULL, 19), (FULL, 20))
 
 
 def no_bootstrap() -> None:
@@ -44,7 +44,7 @@ def no_bootstrap() -> None:
     screening.null_threshold = lambda *_, **__: ONE_TEST
 
 
-def no_pulls() -> None:
+def no_prior_deviations() -> None:
     """Let the base go where it likes at no price, and ask nothing of it."""
     from jointbench.analysis.gap.residuals import joint_fit as fit
 
@@ -61,12 +61,12 @@ def no_pulls() -> None:
 
 def one_start() -> None:
     """Give a candidate one start of its own, as its directed test foretells it."""
-    from jointbench.analysis.gap.search import race_starts
-    from jointbench.analysis.gap.search import selection_round as race
+    from jointbench.analysis.gap.search import candidate_starts
+    from jointbench.analysis.gap.search import selection_round as selection
 
-    race.STARTS = 1
-    race_starts.SHARES = (1.0,)
-    race.HUGE = np.inf
+    selection.STARTS = 1
+    candidate_starts.SHARES = (1.0,)
+    selection.HUGE = np.inf
 
 
 def _everywhere(name: str, value: Any) -> None:
@@ -79,9 +79,9 @@ def _everywhere(name: str, value: Any) -> None:
 
 VARIANTS: Mapping[str, Callable[[], None]] = {
     "whole engine": lambda: None,
-    "without coarse-to-fine": no_coarse_stages,
+    "without coarse-to-fine": no_coarse_resolutions,
     "without bootstrap null": no_bootstrap,
-    "without prior pulls": no_pulls,
+    "without prior pulls": no_prior_deviations,
     "without multi-start": one_start,
     "without group scoring": lambda: None,
 }

@@ -22,7 +22,7 @@ from scipy.optimize import minimize
 from jointbench.analysis.gap.model.confidence import Evidence, features
 
 PRIOR = np.array([2.0, 1.0, 0.5, 0.5, -0.5])
-PULL = 0.5
+PRIOR_WEIGHT = 0.5
 BOUNDS = [(None, None), (0.0, None), (0.0, None), (0.0, None), (None, 0.0)]
 """More evidence never lowers a confidence, a second effect never raises it."""
 OUTSIDE = 0.1
@@ -53,7 +53,7 @@ def main() -> None:
     def loss(w: np.ndarray) -> float:
         logit = x @ w
         data = np.sum(weight * (np.logaddexp(0.0, logit) - y * logit))
-        return float(data + 0.5 * PULL * np.sum((w - PRIOR) ** 2))
+        return float(data + 0.5 * PRIOR_WEIGHT * np.sum((w - PRIOR) ** 2))
 
     found = minimize(loss, PRIOR, bounds=BOUNDS).x
     names = ("intercept", "margin", "slack", "amplitude", "second")

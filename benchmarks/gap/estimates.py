@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 
 import numpy as np
-from outcomes import Run, share_text, told_by, word_of
+from outcomes import Run, reported_by, share_text, word_of
 
 FRICTION = ("jenkins", "iwan", "bouc_wen")
 
@@ -19,7 +19,8 @@ def site_share(runs: Sequence[Run]) -> str:
     mine = [r for r in runs if r["kind"] in {"single", "pair"}]
     mine = [r for r in mine if word_of(r) == "right"]
     hits = sum(
-        dict(told_by(r)) == dict(zip(r["truth"], r["sites"], strict=True)) for r in mine
+        dict(reported_by(r)) == dict(zip(r["truth"], r["sites"], strict=True))
+        for r in mine
     )
     return share_text(hits, len(mine))
 
@@ -72,11 +73,11 @@ def error_of(run: Run) -> float:
     from jointbench.simulators.hidden.effect_draws import specimen_scales
 
     effect = run["found"]["effects"][0]
-    told = {name: one["value"] for name, one in effect["parameters"].items()}
+    reported = {name: one["value"] for name, one in effect["parameters"].items()}
     travel = specimen_scales(draw_design(run["seed"])).elongation
     r = np.linspace(0.0, travel, 200)
     truth = softening(effect["name"], run["parameters"][0], r)
-    error = np.abs(softening(effect["name"], told, r) - truth).max()
+    error = np.abs(softening(effect["name"], reported, r) - truth).max()
     return float(error / np.abs(truth).max())
 
 
@@ -117,7 +118,7 @@ def shrinkage(runs: Sequence[Run]) -> str:
     )
 
 
-def pulls(runs: Sequence[Run]) -> str:
+def prior_deviations(runs: Sequence[Run]) -> str:
     """Return pulls of effects that only the priors see, where they were > 5 sigma.
 
     Of six base values that are right one lies beyond 2 sigma in a quarter of all

@@ -23,7 +23,7 @@ WORDS = (
 )
 
 
-def told_by(run: Run) -> list[tuple[str, str]]:
+def reported_by(run: Run) -> list[tuple[str, str]]:
     """Return names and sites of what was told."""
     return [(e["name"], e["site"]) for e in run["found"].get("effects", [])]
 
@@ -33,15 +33,17 @@ def word_of(run: Run) -> str:
     verdict = run["found"]["verdict"]
     if verdict in {"crash", "unknown", "none"}:
         return str(verdict)
-    truth, told = set(run["truth"]), {name for name, _ in told_by(run)}
+    truth, reported = set(run["truth"]), {name for name, _ in reported_by(run)}
     if verdict == "ambiguous":
-        inside = bool(truth) and truth <= told and run["kind"] not in NOT_IN_CATALOGUE
+        inside = (
+            bool(truth) and truth <= reported and run["kind"] not in NOT_IN_CATALOGUE
+        )
         return "ambiguous, truth in it" if inside else "ambiguous, wrong"
     if run["kind"] in NOT_IN_CATALOGUE:
         return "wrong name"
-    if run["kind"] == "pair" and told < truth:
+    if run["kind"] == "pair" and reported < truth:
         return "one of two"
-    return "right" if told == truth else "wrong name"
+    return "right" if reported == truth else "wrong name"
 
 
 def wilson(hits: int, count: int) -> tuple[float, float]:

@@ -13,14 +13,21 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from estimates import coverage, fisher, force_curves, pulls, shrinkage, site_share
+from estimates import (
+    coverage,
+    fisher,
+    force_curves,
+    prior_deviations,
+    shrinkage,
+    site_share,
+)
 from outcomes import (
     NAMEABLE,
     WORDS,
     Run,
+    reported_by,
     sets_of,
     share_text,
-    told_by,
     wilson,
     word_of,
 )
@@ -58,14 +65,14 @@ def matrix(runs: Sequence[Run]) -> list[str]:
     for name in sorted({run["truth"][0] for run in singles}):
         mine = [run for run in singles if run["truth"] == [name]]
         count = Counter(_answer(run) for run in mine)
-        told = ", ".join(f"{answer} {n}" for answer, n in count.most_common())
-        lines.append(f"| {name} | {len(mine)} | {told} |")
+        reported = ", ".join(f"{answer} {n}" for answer, n in count.most_common())
+        lines.append(f"| {name} | {len(mine)} | {reported} |")
     return lines
 
 
 def _answer(run: Run) -> str:
     if run["found"]["verdict"] == "named":
-        return " + ".join(sorted({name for name, _ in told_by(run)}))
+        return " + ".join(sorted({name for name, _ in reported_by(run)}))
     return str(run["found"]["verdict"])
 
 
@@ -87,14 +94,14 @@ def null_test(runs: Sequence[Run]) -> str:
 def reliability(runs: Sequence[Run]) -> list[str]:
     """Return confidence against how often it was right, in bins."""
     named = [r for r in runs if r["found"]["verdict"] == "named"]
-    told = [min(e["confidence"] for e in r["found"]["effects"]) for r in named]
+    confidences = [min(e["confidence"] for e in r["found"]["effects"]) for r in named]
     right = [word_of(r) == "right" for r in named]
     lines = ["| confidence | n | mean told | right |", "|---|---|---|---|"]
     edges = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.001)
     for low, high in itertools.pairwise(edges):
-        mine = [k for k, c in enumerate(told) if low <= c < high]
+        mine = [k for k, c in enumerate(confidences) if low <= c < high]
         if mine:
-            mean = np.mean([told[k] for k in mine])
+            mean = np.mean([confidences[k] for k in mine])
             hits = sum(right[k] for k in mine)
             lines.append(
                 f"| {low:g} to {min(high, 1.0):g} | {len(mine)} | {100 * mean:.1f} % | "
@@ -157,7 +164,7 @@ def failures(runs: Sequence[Run]) -> list[str]:
             lines.append(
                 f"| {run['kind']} {run['seed']} | {truth} | "
                 f"{', '.join(f'{m:.3g}' for m in run['margins'])} | {word}: "
-                f"{', '.join('@'.join(t) for t in told_by(run))} | "
+                f"{', '.join('@'.join(t) for t in reported_by(run))} | "
                 f"{run['found']['reason']} |"
             )
     return lines
@@ -179,7 +186,7 @@ def page(runs: list[Run], engine: str) -> str:
         [f"Null test where nothing is missing: {null_test(runs)}.", ""],
         [f"Site of right names: {site_share(runs)}.", ""],
         [f"Gap on held-out records, right names: {shrinkage(runs)}.", ""],
-        [f"Pull where only the priors see the effect: {pulls(runs)}.", ""],
+        [f"Prior deviation seen by priors alone: {prior_deviations(runs)}.", ""],
         ["## What was told of each effect", "", *matrix(runs), ""],
         ["## Parameters of right names", "", *coverage(runs), ""],
         [f"Sd told over the Fisher bound, one parameter: {fisher(runs)}.", ""],

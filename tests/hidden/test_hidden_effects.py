@@ -27,7 +27,7 @@ from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 pytestmark = pytest.mark.timeout(400)
 
 
-def told(
+def diagnosed(
     campaign: SimulatedCampaign,
     folder: Path,
     *without: str,
@@ -49,7 +49,7 @@ def test_nothing_hidden_is_nothing_found(
     seed: int, scatter: float, tmp_path: Path
 ) -> None:
     """Verdict none, with and without scatter from hit to hit."""
-    found = told(quick_campaign(seed, hit_scatter=scatter), tmp_path)
+    found = diagnosed(quick_campaign(seed, hit_scatter=scatter), tmp_path)
     assert found.verdict is Finding.NONE
 
 
@@ -65,7 +65,7 @@ def test_a_base_in_a_wrong_valley_is_led_out_of_it(
         monkeypatch.setattr(base_fit, "MOSTLY_SCATTER", 0.0)
     tried: list[str] = []
     campaign = quick_campaign(80290, hit_scatter=0.0019730039844606992)
-    found = told(campaign, tmp_path, progress=tried.append)
+    found = diagnosed(campaign, tmp_path, progress=tried.append)
     assert found.verdict is Finding.NONE
     assert ("base again" in tried) != second_start
     assert (tried == ["base"]) == second_start
@@ -92,7 +92,7 @@ def test_one_hidden_effect_is_named_at_its_site(
     campaign = quick_campaign(
         911, effects=(name,), size=size, grid="small", noise=0.05, hit_scatter=scatter
     )
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert [(e.name, e.site) for e in found.effects] == [
         (e.name, e.site) for e in campaign.effects
     ]
@@ -104,16 +104,16 @@ def test_two_hidden_effects_are_both_named(tmp_path: Path) -> None:
     """A preload law of the joint and a mode of a body, one after the other."""
     names = ("preload_stiffness", "hidden_mode")
     campaign = quick_campaign(921, effects=names, size=0.2, grid="small", noise=0.05)
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert {e.name for e in found.effects} == set(names)
     assert found.verdict is Finding.NAMED
 
 
-def test_two_great_effects_are_both_named(tmp_path: Path) -> None:
+def test_two_large_effects_are_both_named(tmp_path: Path) -> None:
     """A cubic spring and a delay of hundreds of times the noise each."""
     names = ("cubic_stiffness", "delay")
     campaign = quick_campaign(923, effects=names, size=1.0, grid="small", noise=0.05)
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert {e.name for e in found.effects} == set(names)
     assert found.verdict is Finding.NAMED
     assert found.gap_before.chi2_per_dof > 30.0
@@ -128,7 +128,7 @@ def test_an_added_mass_beside_a_relaxation_is_named_too(tmp_path: Path) -> None:
     hidden = (mass, relaxation)
     clean = simulate_records(plain.design, hidden)[1]
     campaign = replace(plain, effects=hidden, acceleration=clean + noise)
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert {e.name for e in found.effects} == {"added_mass", "maxwell"}
     assert found.verdict is Finding.NAMED
 
@@ -139,4 +139,4 @@ def test_an_effect_out_of_the_catalogue_gets_no_other_name(
 ) -> None:
     """Something is missing, and it is said that it is not known."""
     campaign = quick_campaign(931, effects=(name,), size=0.3, grid="small", noise=0.05)
-    assert told(campaign, tmp_path, name).verdict is Finding.UNKNOWN
+    assert diagnosed(campaign, tmp_path, name).verdict is Finding.UNKNOWN

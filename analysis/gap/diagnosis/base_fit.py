@@ -9,7 +9,11 @@ from jointbench.analysis.gap.judgement.winner_judging import far_off
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages, minimise
+from jointbench.analysis.gap.search.descent import (
+    BASE_RESOLUTIONS,
+    fit_coarse_to_fine,
+    minimise,
+)
 
 
 @one_thread()
@@ -22,12 +26,12 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     settled.
     """
     problem = make_problem(bench, ())
-    early = fit_stages(problem, np.zeros(problem.n_base), BASE_STAGES[:-1])
+    early = fit_coarse_to_fine(problem, np.zeros(problem.n_base), BASE_RESOLUTIONS[:-1])
     late = minimise(problem, early.x)
     found = settled_base(bench, late)
     if not far_off(*found):
         return found
-    expanded = bench.refine(early.base, (), astray=True)
+    expanded = bench.refine(early.base, (), diverged=True)
     again = minimise(make_problem(expanded, ()), early.x)
     if again.chi2 > DIAGNOSIS.settled_share * found[1].chi2:
         return found

@@ -10,12 +10,12 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
-from jointbench.analysis.gap.diagnosis.evidence import make_exhibit
+from jointbench.analysis.gap.diagnosis.evidence import make_evidence
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
@@ -31,7 +31,7 @@ from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.effect_parameter import Reported
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench, values_of
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -97,20 +97,25 @@ def conclude(
         shown = (outcome.best,)
     elif finding is Finding.AMBIGUOUS:
         shown = outcome.level
-    best = outcome.best if outcome.gate.passed else base
+    best = outcome.best if outcome.acceptance.passed else base
     held = hold_out(base, bench)
-    exhibit = make_exhibit(bench, base, outcome, finding)
+    evidence = make_evidence(bench, base, outcome, finding)
     if verdict.step:
-        exhibit = replace(exhibit, advice="")
+        evidence = replace(evidence, advice="")
     found = Diagnosis(
         verdict=finding,
         effects=_effects(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
         gap_before=_gap(bench, base, held),
         gap_after=_gap(bench, best, hold_out(best, bench, held)),
-        pulls={
+        prior_deviations={
             name: (float(b), float(a))
-            for name, b, a in zip(bench.base_names, base.pulls, best.pulls, strict=True)
+            for name, b, a in zip(
+                bench.base_names,
+                base.prior_deviations,
+                best.prior_deviations,
+                strict=True,
+            )
         },
         base=_base_estimates(bench, best),
         noise={
@@ -124,13 +129,15 @@ def conclude(
             outcome.base_screening.largest,
             outcome.base_screening.threshold,
         ),
-        experiment=verdict.step or exhibit.advice or LOOK_CLOSER,
+        experiment=verdict.step or evidence.advice or LOOK_CLOSER,
         reason=verdict.reason,
-        exhibit=exhibit,
-        explanations=tuple(_labels(f) for f in outcome.level if outcome.gate.passed),
+        evidence=evidence,
+        explanations=tuple(
+            _labels(f) for f in outcome.level if outcome.acceptance.passed
+        ),
         policy=bench.policy,
     )
-    if finding is Finding.NAMED and not found.foretold:
+    if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNFORETOLD_WORDS)
     return found
 
@@ -141,7 +148,10 @@ def _labels(fit: Fit) -> tuple[str, ...]:
 
 def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
     return Gap(
-        held.gap, held.chi2_per_dof, float(np.abs(fit.pulls).max()), bench.views(fit)
+        held.gap,
+        held.chi2_per_dof,
+        float(np.abs(fit.prior_deviations).max()),
+        bench.views(fit),
     )
 
 
@@ -154,7 +164,7 @@ def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
             score(bench, f),
             score(bench, f) - first,
             f.chi2 / bench.blocks.dof,
-            float(np.abs(f.pulls).max()),
+            float(np.abs(f.prior_deviations).max()),
         )
         for f in rows
     )
@@ -170,8 +180,8 @@ def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
         and not own < {c.label for c in f.candidates}
     ]
     margin = (min(others) if others else DIAGNOSIS.no_rival_score) - score(bench, fit)
-    allowed = max(outcome.gate.allowed, 1e-12)
-    slack = 1.0 - max(outcome.gate.excess, 0.0) / allowed
+    allowed = max(outcome.acceptance.allowed, 1e-12)
+    slack = 1.0 - max(outcome.acceptance.excess, 0.0) / allowed
     sure = weakest(fit, (outcome.base, *outcome.ranked))
     return Evidence(margin, slack, sure, len(fit.candidates))
 

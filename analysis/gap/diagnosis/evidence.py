@@ -24,9 +24,9 @@ from jointbench.analysis.gap.model.evidence_records import (
     CampaignLimits,
     Curves,
     DirectedTest,
-    Exhibit,
+    GapEvidence,
+    RecordEstimates,
     Spectra,
-    Wishes,
 )
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -39,9 +39,9 @@ _UNITS = {
 }
 
 
-def make_exhibit(
+def make_evidence(
     bench: LumpedBench, base: Fit, outcome: SearchOutcome, finding: Finding
-) -> Exhibit:
+) -> GapEvidence:
     """Put the evidence of an outcome into a form that can be drawn and told.
 
     Args:
@@ -53,13 +53,13 @@ def make_exhibit(
     best = outcome.best if outcome.best.candidates else base
     residual = _cube(bench, base)
     relative = relative_residuals(bench, residual)
-    wishes = _wishes(bench, base, best)
+    record_estimates = _record_estimates(bench, base, best)
     tests = _tests(bench, base, outcome)
     models = (
         bench.response(base.base, base.terms),
         bench.response(best.base, best.terms),
     )
-    curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
+    curves, spectra = _representative(bench, (residual, _cube(bench, best)), models)
     facts = gather(bench, base, outcome, finding, relative["output"])
     limits = _limits(outcome, bench)
     view = most_significant_view(bench, residual, facts)
@@ -67,12 +67,12 @@ def make_exhibit(
     look: tuple[str, ...] = ()
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
         where = locate(bench, residual, facts)
-        look = describe(bench, residual, relative, facts, wishes, tests)
-    elif not outcome.base_gate.passed and _pulled_off(bench, base):
-        where, view = prior_deviation_words(bench, base), "sheet"
-    elif not outcome.base_gate.passed:
+        look = describe(bench, residual, relative, facts, record_estimates, tests)
+    elif not outcome.base_acceptance.passed and _deviates(bench, base):
+        where, view = prior_deviation_words(bench, base), "priors"
+    elif not outcome.base_acceptance.passed:
         where = locate(bench, residual, facts)
-    return Exhibit(
+    return GapEvidence(
         tried=words_of(best.candidates),
         where=where,
         look=look,
@@ -81,7 +81,7 @@ def make_exhibit(
         relative=relative,
         curves=curves,
         spectra=spectra,
-        wishes=wishes,
+        record_estimates=record_estimates,
         limits=limits,
         tests=tests[: DIAGNOSIS.figure_tests],
     )
@@ -92,19 +92,19 @@ def _cube(bench: LumpedBench, fit: Fit) -> FloatArray:
     return fit.residual.reshape(bench.campaign.response.shape)
 
 
-def _pulled_off(bench: LumpedBench, base: Fit) -> bool:
+def _deviates(bench: LumpedBench, base: Fit) -> bool:
     """Return whether a base parameter lies beyond the limit of its prior."""
-    return bool(np.abs(base.pulls).max() > bench.policy.prior_limit)
+    return bool(np.abs(base.prior_deviations).max() > bench.policy.prior_limit)
 
 
 def _limits(outcome: SearchOutcome, bench: LumpedBench) -> CampaignLimits:
     """Repeat the limits of the gate."""
     return CampaignLimits(
-        chi2_per_dof=1.0 + outcome.gate.excess,
-        chi2_allowed=1.0 + outcome.gate.allowed,
-        remaining=outcome.gate.remaining,
-        remaining_allowed=outcome.gate.remaining_allowed,
-        pull_allowed=bench.policy.prior_limit,
+        chi2_per_dof=1.0 + outcome.acceptance.excess,
+        chi2_allowed=1.0 + outcome.acceptance.allowed,
+        remaining=outcome.acceptance.remaining,
+        remaining_allowed=outcome.acceptance.remaining_allowed,
+        deviation_allowed=bench.policy.prior_limit,
     )
 
 
@@ -121,7 +121,7 @@ def _tests(
     )
 
 
-def _telling(
+def _representative(
     bench: LumpedBench,
     whitened: tuple[FloatArray, FloatArray],
     models: tuple[FloatArray, FloatArray],
@@ -158,8 +158,8 @@ def _curves(
         measured=bench.campaign.response[record, channel, cut],
         before=models[0][record, channel, cut],
         after=models[1][record, channel, cut],
-        misfit_before=-sigma * whitened[0][record, channel, cut],
-        misfit_after=-sigma * whitened[1][record, channel, cut],
+        residual_before=-sigma * whitened[0][record, channel, cut],
+        residual_after=-sigma * whitened[1][record, channel, cut],
         sigma=sigma,
     )
 
@@ -184,7 +184,7 @@ def _window(bench: LumpedBench, residual: FloatArray) -> tuple[int, int]:
             max(n - DIAGNOSIS.figure_most_samples // 2, 0),
         )
         return first, min(first + DIAGNOSIS.figure_most_samples // 2, n)
-    first = max(bench.gate[0] - int(DIAGNOSIS.figure_lead * rate), 0)
+    first = max(bench.time_gate[0] - int(DIAGNOSIS.figure_lead * rate), 0)
     power = np.cumsum(residual[first:] ** 2)
     reach = (
         int(np.searchsorted(power, DIAGNOSIS.figure_share * power[-1]))
@@ -219,7 +219,7 @@ def _spectra(
     kept = np.flatnonzero(power > DIAGNOSIS.figure_force_floor**2 * power.max())
     frequency = np.fft.rfftfreq(campaign.force.shape[1], 1 / campaign.sample_rate)
     kept = kept[frequency[kept] > 0.0][: 4 * DIAGNOSIS.figure_lines]
-    centres, misfits = _misfit_spectra(bench, whitened)
+    centres, residuals = _residual_spectra(bench, whitened)
 
     def ratio(response: FloatArray) -> FloatArray:
         y = np.fft.rfft(response[rows, channel], axis=1)
@@ -236,12 +236,12 @@ def _spectra(
         measured=ratio(campaign.response),
         before=ratio(models[0]),
         after=ratio(models[1]),
-        misfit_before=misfits[0],
-        misfit_after=misfits[1],
+        residual_before=residuals[0],
+        residual_after=residuals[1],
     )
 
 
-def _misfit_spectra(
+def _residual_spectra(
     bench: LumpedBench, whitened: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, list[FloatArray]]:
     """Return band centres [Hz] and the rms of whitened residuals in each band."""
@@ -265,7 +265,9 @@ def _bands(frequency: NDArray[np.floating[Any]]) -> IntArray:
     return np.asarray(np.floor(DIAGNOSIS.figure_bands * decades), dtype=np.int64)
 
 
-def _wishes(bench: LumpedBench, base: Fit, best: Fit) -> Wishes | None:
+def _record_estimates(
+    bench: LumpedBench, base: Fit, best: Fit
+) -> RecordEstimates | None:
     """Let each record by itself choose stiffness and damping of the joint."""
     model, campaign = bench.campaign.model, bench.campaign
     joint = next((i for i, link in enumerate(model.links) if link.joint), None)
@@ -275,7 +277,7 @@ def _wishes(bench: LumpedBench, base: Fit, best: Fit) -> Wishes | None:
     before, sd_before, taken = _freed(bench, base, columns)
     after, sd_after, _ = _freed(bench, best, columns)
     excess = max(base.chi2 - bench.blocks.dof, 1e-300)
-    return Wishes(
+    return RecordEstimates(
         link=model.links[joint].name,
         level=campaign.level,
         preload=campaign.preload,

@@ -28,8 +28,8 @@ class Facts:
             effects are named they are the cause, and sentences say what is seen.
         levels: recurrence at softer hits.
         seen: how the misfit goes with the hit, by that recurrence.
-        scaling: the same as it is told; `UNTOLD` where `seen` is not what the named
-            effects do.
+        scaling: the same as reported; `UNDETERMINED` if `seen` contradicts the named
+            effects.
         uneven: channel whose misfit over response is far above another's, or empty.
     """
 
@@ -66,7 +66,7 @@ def gather(
         shown = outcome.level
     levels = levels_of(bench, base)
     seen = scaling_of(levels)
-    expected = {scaling_by(bench, fit) for fit in shown} - {LevelScaling.UNTOLD}
+    expected = {scaling_by(bench, fit) for fit in shown} - {LevelScaling.UNDETERMINED}
     agree = not expected or seen in expected
     top = max(channels, key=lambda name: channels[name])
     uneven = channels[top] > UNEVEN * max(min(channels.values()), 1e-12)
@@ -74,7 +74,7 @@ def gather(
         finding=finding,
         levels=levels,
         seen=seen,
-        scaling=seen if agree else LevelScaling.UNTOLD,
+        scaling=seen if agree else LevelScaling.UNDETERMINED,
         uneven=top if uneven else "",
     )
 
@@ -89,5 +89,5 @@ def scaling_by(bench: LumpedBench, fit: Fit) -> LevelScaling:
     if any(e.law is not None or e.shape is not None for e in entries):
         return LevelScaling.CHANGES
     if any(e.effect.follows_order for e in entries):
-        return LevelScaling.UNTOLD
+        return LevelScaling.UNDETERMINED
     return LevelScaling.PROPORTIONAL

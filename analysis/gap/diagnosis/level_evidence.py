@@ -23,12 +23,12 @@ from jointbench.acquisition.basics.arrays import (
     IntArray,
 )
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.joint_settling import joint_at
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
-from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages
+from jointbench.analysis.gap.search.descent import BASE_RESOLUTIONS, fit_coarse_to_fine
 
 
 class LevelScaling(StrEnum):
@@ -36,7 +36,7 @@ class LevelScaling(StrEnum):
 
     PROPORTIONAL = "proportional"
     CHANGES = "changes"
-    UNTOLD = "untold"
+    UNDETERMINED = "undetermined"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,9 +75,9 @@ class _Softer(FitProblem):
 
     hidden: BoolArray
 
-    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
+    def residual(self, x: FloatArray, resolution: Resolution) -> FloatArray:
         """Return the whitened residual at x, 0 in the records that are hidden."""
-        seen = FitProblem.residual(self, x, stage)
+        seen = FitProblem.residual(self, x, resolution)
         seen.reshape(self.hidden.size, -1)[self.hidden] = 0.0
         return seen
 
@@ -98,7 +98,9 @@ def levels_of(bench: LumpedBench, base: Fit) -> tuple[Recurrence, ...]:
         return ()
     whole = make_problem(bench, ())
     known = {f.name: getattr(whole, f.name) for f in fields(whole)}
-    softer = fit_stages(_Softer(**known, hidden=hardest), base.base, BASE_STAGES).base
+    softer = fit_coarse_to_fine(
+        _Softer(**known, hidden=hardest), base.base, BASE_RESOLUTIONS
+    ).base
     model = bench.response(softer, ())
     return recurrences(
         bench, campaign.response - model, _scatters(bench, softer, model)
@@ -117,13 +119,13 @@ def _scatters(
 
 
 def recurrences(
-    bench: LumpedBench, misfit: FloatArray, scatters: Sequence[Scatter] = ()
+    bench: LumpedBench, difference: FloatArray, scatters: Sequence[Scatter] = ()
 ) -> tuple[Recurrence, ...]:
     """Look for the misfit of the hardest hits at lower levels.
 
     Args:
         bench: measurement and noise.
-        misfit: measured less model, (n_records, n_channels, n_samples), any unit.
+        difference: measured less model, (n_records, n_channels, n_samples), any unit.
         scatters: by which a hit may differ from the others without a cause.
 
     Returns:
@@ -144,9 +146,9 @@ def recurrences(
         return np.asarray(np.fft.rfft(whitened, axis=2)[:, :, spoken])
 
     # White noise of unit variance: each part of a line has half of n.
-    spectra = lines(misfit) / np.sqrt(misfit.shape[2] / 2)
+    spectra = lines(difference) / np.sqrt(difference.shape[2] / 2)
     slopes = [
-        s.sd * lines(s.slope) / np.sqrt(misfit.shape[2] / 2)
+        s.sd * lines(s.slope) / np.sqrt(difference.shape[2] / 2)
         for s in scatters
         if s.sd > 0.0
     ]
@@ -241,7 +243,7 @@ def _merge(found: Sequence[Recurrence], level: float) -> Recurrence:
 def scaling_of(found: Sequence[Recurrence]) -> LevelScaling:
     """Return how a misfit goes with the hit, by its recurrence at softer ones."""
     if not found:
-        return LevelScaling.UNTOLD
+        return LevelScaling.UNDETERMINED
     return LevelScaling.PROPORTIONAL if is_linear(found) else LevelScaling.CHANGES
 
 

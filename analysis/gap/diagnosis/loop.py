@@ -8,9 +8,13 @@ import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
-from jointbench.analysis.gap.judgement.naming import Gate, gate
-from jointbench.analysis.gap.judgement.rivals import rivals, without_twins
-from jointbench.analysis.gap.judgement.winner_judging import Hopes, far_off, judge
+from jointbench.analysis.gap.judgement.naming import Acceptance, accept
+from jointbench.analysis.gap.judgement.rivals import rivals, without_duplicates
+from jointbench.analysis.gap.judgement.winner_judging import (
+    PredictedGains,
+    far_off,
+    judge,
+)
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, may_join
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -28,9 +32,9 @@ from jointbench.analysis.gap.search.restarts import crossed, other_sliders
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import (
     Progress,
+    continue_selection,
     finish,
-    race,
-    race_on,
+    run_selection,
     score,
 )
 
@@ -42,10 +46,10 @@ class SearchOutcome:
     Attributes:
         bench: with its noise as estimated at the end.
         base: fit without effects.
-        base_gate: the null test.
+        base_acceptance: the null test.
         base_screening: its directed tests.
         best: the winning fit; the base where nothing is missing.
-        gate: its judgement.
+        acceptance: its judgement.
         ranked: rivals of the last round, best first.
         level: rivals that are not told apart, the winner first.
         given_up: whether the search for a further effect was ended for its cost.
@@ -53,10 +57,10 @@ class SearchOutcome:
 
     bench: Bench
     base: Fit
-    base_gate: Gate
+    base_acceptance: Acceptance
     base_screening: Screening
     best: Fit
-    gate: Gate
+    acceptance: Acceptance
     ranked: tuple[Fit, ...]
     level: tuple[Fit, ...]
     given_up: bool = False
@@ -72,11 +76,11 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
     progress("base")
     bench, base = fit_base(bench)
     screening = screen(bench, base, bench.candidates)
-    first = gate(bench, base, base, screening)
+    first = accept(bench, base, base, screening)
     if first.passed:
         return SearchOutcome(bench, base, first, screening, base, first, (), (base,))
-    fits = race(bench, base, screening, bench.candidates, progress)
-    found = _Round(*judge(bench, fits, base, progress, Hopes(base, screening)))
+    fits = run_selection(bench, base, screening, bench.candidates, progress)
+    found = _Round(*judge(bench, fits, base, progress, PredictedGains(base, screening)))
     found = _other_sliders(found, base, progress)
     grown: set[frozenset[str]] = set()
     given_up = False
@@ -97,16 +101,16 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
         found = after
     if again := _base_again(found, base, progress):
         return again
-    fits = without_twins(found.bench, found.fits)
+    fits = without_duplicates(found.bench, found.fits)
     best = fits[0] if fits else base
     level = tuple(rivals(found.bench, fits))
     return SearchOutcome(
         bench=found.bench,
         base=base,
-        base_gate=first,
+        base_acceptance=first,
         base_screening=screening,
         best=best,
-        gate=found.gate,
+        acceptance=found.acceptance,
         ranked=tuple(fits),
         level=level,
         given_up=given_up,
@@ -119,7 +123,7 @@ class _Round:
 
     bench: Bench
     fits: list[Fit]
-    gate: Gate
+    acceptance: Acceptance
 
 
 def _one_more(
@@ -128,7 +132,7 @@ def _one_more(
     """Add one more effect to each of some fits; None where none of them earns it."""
     bench, alone = found.bench, len(firsts[0].candidates) == 1
     if alone and far_off(bench, firsts[0]):
-        more = race_on(bench, far_pairs(bench, progress), progress)
+        more = continue_selection(bench, far_pairs(bench, progress), progress)
     else:
         more = _add_another(bench, firsts, progress)
     if not more:
@@ -136,12 +140,14 @@ def _one_more(
     more = crossed(bench, more, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
     merged = _take_back(bench, merged, progress)
-    left = found.gate.left
-    hopes = Hopes(firsts[0], left) if alone and left is not None else None
-    after = judged(bench, merged, base, progress, hopes)
+    left = found.acceptance.left
+    predicted_gains = (
+        PredictedGains(firsts[0], left) if alone and left is not None else None
+    )
+    after = judged(bench, merged, base, progress, predicted_gains)
     if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
         return None
-    if after.gate.unexplained and len(after.fits[0].candidates) > 1:
+    if after.acceptance.unexplained and len(after.fits[0].candidates) > 1:
         return _exchange(after, base, progress)
     return after
 
@@ -151,13 +157,13 @@ def judged(
     fits: Sequence[Fit],
     base: Fit,
     progress: Progress,
-    hopes: Hopes | None = None,
+    predicted_gains: PredictedGains | None = None,
 ) -> _Round:
     """Judge, and take back what was needless only once the winner was settled.
 
     A delay that led the base to where a relaxation is seen may end at nothing.
     """
-    found = _Round(*judge(bench, fits, base, progress, hopes))
+    found = _Round(*judge(bench, fits, base, progress, predicted_gains))
     best = found.fits[0]
     if len(best.candidates) == 1 or fits[0].cost - best.cost < DIAGNOSIS.needless_gain:
         return found
@@ -169,7 +175,7 @@ def judged(
 
 def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
     """Let other slider laws start where one ended that does not explain the records."""
-    if found.gate.passed or not found.fits or far_off(found.bench, found.fits[0]):
+    if found.acceptance.passed or not found.fits or far_off(found.bench, found.fits[0]):
         return found
     more = other_sliders(found.bench, found.fits[0], progress)
     merged = sorted([*more, *found.fits], key=lambda f: score(found.bench, f))
@@ -198,7 +204,7 @@ def _worth_more(found: _Round, base: Fit) -> bool:
 
     Three at one link explain anything, and a pair that leaves much is no part of it.
     """
-    if not found.gate.unexplained or not found.fits:
+    if not found.acceptance.unexplained or not found.fits:
         return False
     fit = found.fits[0]
     if len(fit.candidates) == 1:
@@ -228,7 +234,7 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome |
         return None
     bench, fit = settled_base(found.bench, fit)
     screening = screen(bench, fit, bench.candidates)
-    null = gate(bench, fit, fit, screening)
+    null = accept(bench, fit, fit, screening)
     if not null.passed:
         return None
     return SearchOutcome(bench, fit, null, screening, fit, null, (), (fit,))
@@ -267,7 +273,7 @@ def _add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[
             if labels_of((*first.candidates, c)) not in tried
         ]
         tried |= {labels_of((*first.candidates, c)) for c in chosen}
-        found += race(bench, first, screening, chosen, progress)
+        found += run_selection(bench, first, screening, chosen, progress)
     return sorted(found, key=lambda f: score(bench, f))
 
 
@@ -284,13 +290,13 @@ def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
     """Choose seconds by predicted drop, and those that only the priors see."""
-    pulled = np.abs(first.pulls).max() > DIAGNOSIS.prior_candidates_sd
+    deviating = np.abs(first.prior_deviations).max() > DIAGNOSIS.prior_candidates_sd
     chosen: list[Candidate] = []
     for d in screening.directions:
         if d.candidate not in chosen and len(chosen) < DIAGNOSIS.second_candidates:
             chosen.append(d.candidate)
     for c in _addable(bench, first):
-        if pulled and c.effect.by_prior and c not in chosen:
+        if deviating and c.effect.by_prior and c not in chosen:
             chosen.append(c)
     return chosen
 

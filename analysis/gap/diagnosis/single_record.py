@@ -14,7 +14,7 @@ from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.loop import investigate
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
@@ -93,13 +93,15 @@ class StretchScore:
         return 1.0 - self.after / self.before if self.before > 0 else 0.0
 
 
-def stretch_campaign(record: SingleRecord, stretch: Stretch, sheet: Sheet) -> Campaign:
+def stretch_campaign(
+    record: SingleRecord, stretch: Stretch, nominal: NominalParameters
+) -> Campaign:
     """Cut realisations out of a long record and give them a model.
 
     Args:
         record: input and output.
         stretch: where the realisations lie.
-        sheet: one channel; its repeatability stands for what repeats would tell.
+        nominal: one channel; its repeatability stands for what repeats would tell.
 
     Raises:
         SamplingError: a realisation with its lead does not lie inside the record.
@@ -125,10 +127,10 @@ def stretch_campaign(record: SingleRecord, stretch: Stretch, sheet: Sheet) -> Ca
         preload=np.ones(starts.size),
         order=np.arange(starts.size, dtype=float),
         preload_reference=1.0,
-        model=sheet.model,
+        model=nominal.model,
         lead=stretch.lead,
         continuous=True,
-        repeatability=sheet.repeatability,
+        repeatability=nominal.repeatability,
     )
 
 
@@ -136,7 +138,7 @@ def diagnose_record(
     record: SingleRecord,
     training: Stretch,
     scored: tuple[Stretch, ...],
-    sheet: Sheet,
+    nominal: NominalParameters,
     *,
     without: frozenset[str] = frozenset(),
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
@@ -148,7 +150,7 @@ def diagnose_record(
         record: input and output.
         training: what the fits see.
         scored: what they do not.
-        sheet: the model with its priors.
+        nominal: the model with its priors.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
         progress: told what is being tried, one line at a time.
@@ -162,9 +164,9 @@ def diagnose_record(
         UsageError: `without` holds a name that no entry has.
     """
     trained = make_bench(
-        stretch_campaign(record, training, sheet), without=without, entries=entries
+        stretch_campaign(record, training, nominal), without=without, entries=entries
     )
-    unseen = [stretch_campaign(record, stretch, sheet) for stretch in scored]
+    unseen = [stretch_campaign(record, stretch, nominal) for stretch in scored]
     outcome = investigate(trained, progress or (lambda line: None))
     final = outcome.bench
     if not isinstance(final, LumpedBench):

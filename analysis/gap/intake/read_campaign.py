@@ -23,7 +23,7 @@ MAX_SAMPLES = INTAKE.most_samples
 MIN_SAMPLES = INTAKE.least_samples
 DEFAULT_PRELOAD = INTAKE.default_preload
 BODIES = 2
-SHEET_KEYS = ("m1", "m2", "k0", "kj", "c0", "cj")
+NOMINAL_KEYS = ("m1", "m2", "k0", "kj", "c0", "cj")
 
 _Record = tuple[str, h5py.Group]
 """What messages call a record, and the record."""
@@ -58,7 +58,8 @@ def _campaign(path: Path, file: h5py.File) -> Campaign:
     records = _records(where, file)
     _require_length(where, _lengths(records))
     nominal, spread = (
-        _sheet(where, file, name) for name in ("nominal", "nominal_rel_sigma")
+        _nominal_attribute(where, file, name)
+        for name in ("nominal", "nominal_rel_sigma")
     )
     reference = DEFAULT_PRELOAD
     if "preload_ref_N" in file.attrs:
@@ -170,7 +171,7 @@ def _finite_samples(place: str, dataset: h5py.Dataset) -> FloatArray:
     return samples
 
 
-def _sheet(where: str, file: h5py.File, name: str) -> dict[str, float]:
+def _nominal_attribute(where: str, file: h5py.File, name: str) -> dict[str, float]:
     """Return the numbers of a sheet; a missing one is for the model to name."""
     text = read_attribute(file, name)
     try:
@@ -183,11 +184,11 @@ def _sheet(where: str, file: h5py.File, name: str) -> dict[str, float]:
     if not isinstance(found, dict):
         raise FormatError(
             f"{where} has {name!r} of {shown(text)}, a JSON object is wanted; "
-            f"write it with the keys {', '.join(SHEET_KEYS)}"
+            f"write it with the keys {', '.join(NOMINAL_KEYS)}"
         )
     return {
         key: _number(f"{where} in {name!r}", key, found[key])
-        for key in SHEET_KEYS
+        for key in NOMINAL_KEYS
         if key in found
     }
 

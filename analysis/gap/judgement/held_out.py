@@ -17,7 +17,11 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect_parameter import Transform
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import FINE, MIDDLE, Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import (
+    FINE,
+    MIDDLE,
+    Resolution,
+)
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -75,11 +79,11 @@ def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
         chi2.append(float(left @ left))
         if rows.all():
             continue
-        lone = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
-        if bare is not None and lone.size and lone.all():
+        exclusive = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
+        if bare is not None and exclusive.size and exclusive.all():
             chi2[c] = float(bare.chi2[c])
-        elif lone.any() or chi2[c] > JUDGEMENT.refit_growth * (r @ r):
-            left = _fitted_without(fit, bench, rows, lone)
+        elif exclusive.any() or chi2[c] > JUDGEMENT.refit_growth * (r @ r):
+            left = _fitted_without(fit, bench, rows, exclusive)
             chi2[c] = float(left @ left)
     return HeldOut(np.array(chi2), np.array(dof))
 
@@ -90,9 +94,9 @@ class _Without(FitProblem):
 
     hidden: BoolArray
 
-    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
+    def residual(self, x: FloatArray, resolution: Resolution) -> FloatArray:
         """Return the whitened residual at x, 0 in the rows that are hidden."""
-        seen = FitProblem.residual(self, x, stage)
+        seen = FitProblem.residual(self, x, resolution)
         seen[self.hidden] = 0.0
         return seen
 
@@ -112,11 +116,12 @@ def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolA
             p.transform is Transform.LOG for p in term.candidate.effect.parameters
         ]
         size = np.where(logarithmic, 1.0, np.abs(term.coordinates))
-        told = size * np.sqrt(np.maximum([whole[own], others[own]], 0.0))
+        significance = size * np.sqrt(np.maximum([whole[own], others[own]], 0.0))
         alone.append(
             bool(
                 np.any(
-                    (told[0] > JUDGEMENT.shown_sd) & (told[1] < JUDGEMENT.unshown_sd)
+                    (significance[0] > JUDGEMENT.shown_sd)
+                    & (significance[1] < JUDGEMENT.unshown_sd)
                 )
             )
         )
@@ -143,7 +148,7 @@ def _fitted_without(
         np.concatenate([fit.base, *(t.coordinates for t in kept)]),
         FINE,
         iterations=JUDGEMENT.refit_iterations,
-        jacobian_stage=MIDDLE,
+        jacobian_resolution=MIDDLE,
         exact_slopes=False,
     )
     return whole.residual(moved.x, FINE)[rows]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.judgement.amplitudes import at_the_end, weakest
-from jointbench.analysis.gap.judgement.expected_misfit import forgiven, noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import forgiven, noise_sd
 from jointbench.analysis.gap.judgement.own_parameters import most_unlike
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY
 from jointbench.analysis.gap.model.policy import Policy
@@ -17,7 +17,7 @@ from jointbench.analysis.gap.search.screening import Direction, Screening
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Gate:
+class Acceptance:
     """Whether a fit explains the measurement.
 
     Attributes:
@@ -43,13 +43,13 @@ class Gate:
     left: Screening | None
 
 
-def gate(
+def accept(
     bench: Bench,
     fit: Fit,
     base: Fit,
     left: Screening | None,
     others: Sequence[Fit] = (),
-) -> Gate:
+) -> Acceptance:
     """Judge a fit.
 
     Args:
@@ -75,12 +75,12 @@ def gate(
         reason = _looks_like(worst)
     elif unlike := _unlike(bench, fit, model):
         reason = unlike
-    elif np.abs(fit.pulls).max() > policy.prior_limit:
-        worst_prior = np.abs(fit.pulls).max()
+    elif np.abs(fit.prior_deviations).max() > policy.prior_limit:
+        worst_prior = np.abs(fit.prior_deviations).max()
         reason = f"a base parameter is {worst_prior:.1f} sd from its nominal value"
     unexplained = bool(reason)
     reason = reason or _doubt(fit, (base, *others), policy)
-    return Gate(
+    return Acceptance(
         passed=not reason,
         reason=reason,
         excess=excess,

@@ -44,7 +44,7 @@ class _Cells:
     """Normal equations of the smallest parts: (..., n, n) and (..., n)."""
 
     gram: FloatArray
-    pull: FloatArray
+    gradient: FloatArray
 
 
 def most_unlike(bench: Bench, fit: Fit, allowed: float) -> Unlike:
@@ -89,8 +89,8 @@ def _time_cells(
     half = int(np.searchsorted(weight, 0.5 * weight[-1])) + 1
     parts = [slice(0, half), slice(half, None)]
     gram = [np.matmul(j[:, :, p].transpose(0, 1, 3, 2), j[:, :, p]) for p in parts]
-    pull = [np.einsum("rctn,rct->rcn", j[:, :, p], r[:, :, p]) for p in parts]
-    return _Cells(np.stack(gram, axis=2), np.stack(pull, axis=2))
+    gradient = [np.einsum("rctn,rct->rcn", j[:, :, p], r[:, :, p]) for p in parts]
+    return _Cells(np.stack(gram, axis=2), np.stack(gradient, axis=2))
 
 
 def _band_cells(
@@ -104,13 +104,13 @@ def _band_cells(
     weight = np.cumsum(np.einsum("rctn,rctn->t", j.conj(), j).real)
     shares = np.arange(1, JUDGEMENT.part_bands) / JUDGEMENT.part_bands
     edges = [0, *np.searchsorted(weight, shares * weight[-1]), weight.size]
-    gram, pull = [], []
+    gram, gradient = [], []
     for low, high in itertools.pairwise(edges):
         part = j[:, :, low:high].transpose(1, 3, 0, 2).reshape(shape[1], j.shape[3], -1)
         data = r[:, :, low:high].transpose(1, 0, 2).reshape(shape[1], -1, 1)
         gram.append((part @ part.conj().transpose(0, 2, 1)).real)
-        pull.append((part.conj() @ data).real[:, :, 0])
-    return _Cells(np.array(gram), np.array(pull))
+        gradient.append((part.conj() @ data).real[:, :, 0])
+    return _Cells(np.array(gram), np.array(gradient))
 
 
 def _pooled(cells: _Cells, words: list[str]) -> _Cells:
@@ -118,7 +118,7 @@ def _pooled(cells: _Cells, words: list[str]) -> _Cells:
     kinds = {w: [i for i, x in enumerate(words) if x == w] for w in words}
     return _Cells(
         np.array([cells.gram[rows].sum(axis=0) for rows in kinds.values()]),
-        np.array([cells.pull[rows].sum(axis=0) for rows in kinds.values()]),
+        np.array([cells.gradient[rows].sum(axis=0) for rows in kinds.values()]),
     )
 
 
@@ -131,11 +131,11 @@ def _test(
 ) -> Unlike:
     """Let every part along `axes` have its own parameters."""
     n = slopes.shape[1]
-    others = tuple(k for k in range(cells.pull.ndim - 1) if k not in axes)
+    others = tuple(k for k in range(cells.gradient.ndim - 1) if k not in axes)
     gram = cells.gram.sum(axis=others).reshape(-1, n, n)
-    pull = cells.pull.sum(axis=others).reshape(-1, n)
+    gradient = cells.gradient.sum(axis=others).reshape(-1, n)
     values, vectors = np.linalg.eigh(gram)
-    along = np.einsum("gnk,gn->gk", vectors, pull)
+    along = np.einsum("gnk,gn->gk", vectors, gradient)
     seen = values > JUDGEMENT.least_eigenvalue * np.maximum(values[:, -1:], 1e-300)
     taken = float(np.sum(along[seen] ** 2 / values[seen]))
     free = max(int(seen.sum()) - n, 1)

@@ -41,7 +41,7 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     ]
 
 
-def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+def without_duplicates(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     """Drop fits that say the same as a fault of all channels alike.
 
     A range of the converter that only one channel reaches is the range of all.
@@ -50,14 +50,14 @@ def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
         f
         for f in fits
         if not any(
-            _twin_of(f, c)
+            _same_fault(f, c)
             and abs(score(bench, f) - score(bench, c)) < JUDGEMENT.same_fault_score
             for c in fits
         )
     ]
 
 
-def _twin_of(fit: Fit, common: Fit) -> bool:
+def _same_fault(fit: Fit, common: Fit) -> bool:
     """Tell whether a fit is another one with a fault of all at one channel only."""
     own = [c for c in fit.candidates if c not in common.candidates]
     other = [c for c in common.candidates if c not in fit.candidates]

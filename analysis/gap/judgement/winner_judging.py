@@ -8,14 +8,14 @@ import numpy as np
 
 from jointbench.analysis.gap.judgement.amplitudes import weakest_amplitude
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
-from jointbench.analysis.gap.judgement.naming import Gate, gate
+from jointbench.analysis.gap.judgement.naming import Acceptance, accept
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY, labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.candidate_starts import started
 from jointbench.analysis.gap.search.descent import minimise
-from jointbench.analysis.gap.search.race_starts import started
 from jointbench.analysis.gap.search.restarts import caught_up
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, finish, score
@@ -24,7 +24,7 @@ OVERTAKEN = JUDGEMENT.overtaking_rounds
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Hopes:
+class PredictedGains:
     """What directed tests of a fit foretold of one more effect on it.
 
     Attributes:
@@ -41,8 +41,8 @@ def judge(
     fits: Sequence[Fit],
     base: Fit,
     progress: Progress,
-    hopes: Hopes | None = None,
-) -> tuple[Bench, list[Fit], Gate]:
+    predicted_gains: PredictedGains | None = None,
+) -> tuple[Bench, list[Fit], Acceptance]:
     """Estimate the noise at the winner, refit the leaders there and judge.
 
     Noise, scatter and settling of the hits are known no better than the fit at which
@@ -51,16 +51,16 @@ def judge(
     winner fails, those that were held back are settled each by itself.
     """
     if not fits:
-        return bench, [], gate(bench, base, base, None)
+        return bench, [], accept(bench, base, base, None)
     met = _brought_near(bench, fits[0], progress)
     if met is None:
-        return bench, list(fits), gate(bench, fits[0], base, None, fits)
+        return bench, list(fits), accept(bench, fits[0], base, None, fits)
     bench, first = met
     ranked, tried = [first, *fits[1:]], set[frozenset[str]]()
     for _ in range(OVERTAKEN):
         found = _judged(bench, ranked, base, progress)
-        if hopes is not None and not found.gate.passed:
-            held = _held_back(found, ranked, hopes, tried)
+        if predicted_gains is not None and not found.acceptance.passed:
+            held = _held_back(found, ranked, predicted_gains, tried)
             found = _own_settling(found, held, ranked, base, progress, tried)
         bench = found.bench
         rest = [f for f in ranked if f is not found.first]
@@ -76,9 +76,9 @@ def judge(
             break
     best = ranked[0]
     if best is found.fit:
-        return bench, ranked, gate(bench, best, found.base, found.left, ranked)
+        return bench, ranked, accept(bench, best, found.base, found.left, ranked)
     base, left = _alike(bench, best, base), _left_by(bench, best)
-    return bench, ranked, gate(bench, best, base, left, ranked)
+    return bench, ranked, accept(bench, best, base, left, ranked)
 
 
 def far_off(bench: Bench, fit: Fit) -> bool:
@@ -101,7 +101,7 @@ def _brought_near(
     r = there.residual(fit.base, fit.terms, FULL)
     if float(r @ r) < bench.policy.far_chi2 * bench.blocks.dof:
         return bench, fit
-    there = bench.refine(fit.base, fit.terms, astray=True)
+    there = bench.refine(fit.base, fit.terms, diverged=True)
     if not there.expanded:
         return None
     again = finish(make_problem(there, fit.candidates), fit.x, progress)
@@ -114,13 +114,19 @@ def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
     What the winner gained by being settled, the next few may gain too: their costs
     are those under a noise that was estimated where less was explained.
     """
-    reach = JUDGEMENT.refit_score if found.gate.passed else JUDGEMENT.refit_score_failed
+    reach = (
+        JUDGEMENT.refit_score
+        if found.acceptance.passed
+        else JUDGEMENT.refit_score_failed
+    )
     gained = max(found.first.cost - found.fit.cost, 0.0)
-    behind = [score(found.bench, f) - score(found.bench, found.first) for f in rest]
-    near = [f for f, b in zip(rest, behind, strict=True) if b < reach]
+    delta_score = [
+        score(found.bench, f) - score(found.bench, found.first) for f in rest
+    ]
+    near = [f for f, b in zip(rest, delta_score, strict=True) if b < reach]
     wide = [
         f
-        for f, b in zip(rest, behind, strict=True)
+        for f, b in zip(rest, delta_score, strict=True)
         if b < JUDGEMENT.gain_share * gained
     ]
     return near + wide[: JUDGEMENT.hidden_rivals]
@@ -136,7 +142,7 @@ class _Judged:
         bench: with the noise estimated at it.
         base: fit without effects that it is held against.
         left: directed tests of what it leaves.
-        gate: its judgement.
+        acceptance: its judgement.
     """
 
     first: Fit
@@ -144,7 +150,7 @@ class _Judged:
     bench: Bench
     base: Fit
     left: Screening
-    gate: Gate
+    acceptance: Acceptance
 
 
 def _judged(
@@ -154,7 +160,7 @@ def _judged(
     bench, fit = _settled(bench, ranked[0], progress)
     left = _left_by(bench, fit)
     base = _alike(bench, fit, base)
-    judgement = gate(bench, fit, base, left, ranked)
+    judgement = accept(bench, fit, base, left, ranked)
     return _Judged(ranked[0], fit, bench, base, left, judgement)
 
 
@@ -187,7 +193,7 @@ def _own_settling(
         tried.add(labels_of(f.candidates))
         rest = [r for r in ranked if r is not f]
         found = _judged(failed.bench, [f, *rest], base, progress)
-        if found.gate.passed:
+        if found.acceptance.passed:
             return found
     return failed
 
@@ -195,7 +201,7 @@ def _own_settling(
 def _held_back(
     failed: _Judged,
     ranked: Sequence[Fit],
-    hopes: Hopes,
+    predicted_gains: PredictedGains,
     tried: Collection[frozenset[str]],
 ) -> list[Fit]:
     """Return the fits of which their directed tests foretold more than was gained.
@@ -204,12 +210,15 @@ def _held_back(
     have lost the race. What scatters cannot be told where a fit misses by more than
     noise. What was tried by itself before comes out the same.
     """
-    if not failed.bench.expanded or failed.gate.excess > failed.gate.allowed:
+    if (
+        not failed.bench.expanded
+        or failed.acceptance.excess > failed.acceptance.allowed
+    ):
         return []
-    onto, gained = hopes.onto, hopes.onto.cost - failed.first.cost
+    onto, gained = predicted_gains.onto, predicted_gains.onto.cost - failed.first.cost
     fits = {labels_of(f.candidates): f for f in ranked}
     held: dict[frozenset[str], Fit] = {}
-    for d in hopes.screening.directions:
+    for d in predicted_gains.screening.directions:
         both = labels_of((*onto.candidates, d.candidate))
         fair = not d.suggested and d.candidate.effect.family != PROBE_FAMILY
         if fair and d.drop > gained and both not in held and both not in tried:

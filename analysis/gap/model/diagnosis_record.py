@@ -8,7 +8,7 @@ from typing import Any
 
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.confidence import Evidence
-from jointbench.analysis.gap.model.evidence_records import Exhibit, exhibit_json
+from jointbench.analysis.gap.model.evidence_records import GapEvidence, evidence_json
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_json
 
 
@@ -57,16 +57,16 @@ class Ranked:
     Attributes:
         effects: name and site of each effect.
         score: cost with a charge for parameters.
-        behind: score behind the best.
+        delta_score: score behind the best.
         chi2_per_dof: of the data [-].
-        pull: largest distance of a base parameter from its sheet [sigma].
+        prior_deviation: largest distance of a base parameter from its sheet [sigma].
     """
 
     effects: tuple[str, ...]
     score: float
-    behind: float
+    delta_score: float
     chi2_per_dof: float
-    pull: float
+    prior_deviation: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,13 +91,13 @@ class Gap:
     Attributes:
         value: sqrt(max(0, chi2/dof - 1)) [-].
         chi2_per_dof: held out [-].
-        pull: largest distance of a base parameter from its sheet [sigma].
+        prior_deviation: largest distance of a base parameter from its sheet [sigma].
         views: where it sits.
     """
 
     value: float
     chi2_per_dof: float
-    pull: float
+    prior_deviation: float
     views: tuple[View, ...] = ()
 
 
@@ -111,13 +111,13 @@ class Diagnosis:
         candidates: what was tried, best first.
         gap_before: of the base, refitted with its priors.
         gap_after: with the effects added.
-        pulls: of each base parameter, before and after [sigma].
+        prior_deviations: of each base parameter, before and after [sigma].
         base: parameters of the base at the end, with intervals.
         noise: the noise floor, in words and numbers.
         null_statistic: largest directed drop of the base, and its 99.5 % limit.
         experiment: what to do next.
         reason: why the verdict is not a name, or what the name rests on.
-        exhibit: the evidence as curves and sentences; None where none was made.
+        evidence: the evidence as curves and sentences; None where none was made.
         explanations: labels of the effects of each explanation that passed and is not
             told apart from the best, that first; ("none",) is the base alone.
         policy: thresholds that the verdict rests on.
@@ -128,18 +128,18 @@ class Diagnosis:
     candidates: tuple[Ranked, ...]
     gap_before: Gap
     gap_after: Gap
-    pulls: Mapping[str, tuple[float, float]]
+    prior_deviations: Mapping[str, tuple[float, float]]
     base: tuple[Estimate, ...]
     noise: Mapping[str, float]
     null_statistic: tuple[float, float]
     experiment: str
     reason: str
-    exhibit: Exhibit | None = None
+    evidence: GapEvidence | None = None
     explanations: tuple[tuple[str, ...], ...] = ()
     policy: Policy = STANDARD
 
     @property
-    def foretold(self) -> bool:
+    def predicted(self) -> bool:
         """Whether the conditions foretell each that was held out, or need not."""
         left = CAMPAIGN.unpredicted_share * self.gap_before.value
         return self.gap_before.value < CAMPAIGN.seen_gap or self.gap_after.value < left
@@ -172,9 +172,9 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
             {
                 "effects": list(c.effects),
                 "score": c.score,
-                "behind": c.behind,
+                "behind": c.delta_score,
                 "chi2_per_dof": c.chi2_per_dof,
-                "pull": c.pull,
+                "pull": c.prior_deviation,
             }
             for c in d.candidates
         ],
@@ -186,14 +186,14 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "chi2_per_dof": [d.gap_before.chi2_per_dof, d.gap_after.chi2_per_dof],
         "pulls": {
             name: {"before": before, "after": after}
-            for name, (before, after) in d.pulls.items()
+            for name, (before, after) in d.prior_deviations.items()
         },
         "base": _estimates(d.base),
         "noise": dict(d.noise),
         "null_test": {"largest": d.null_statistic[0], "limit": d.null_statistic[1]},
         "experiment": d.experiment,
         "reason": d.reason,
-        "exhibit": None if d.exhibit is None else exhibit_json(d.exhibit),
+        "exhibit": None if d.evidence is None else evidence_json(d.evidence),
         "policy": policy_json(d.policy),
     }
 

@@ -21,8 +21,8 @@ class Curves:
         measured: [unit], shape (n,).
         before: base model, same shape.
         after: model with the effects, same shape.
-        misfit_before: measured less base, with what hits scatter by taken out [unit].
-        misfit_after: the same with the effects [unit].
+        residual_before: measured less base, with what hits scatter by taken out [unit].
+        residual_after: the same with the effects [unit].
         sigma: noise of a sample [unit].
     """
 
@@ -35,14 +35,14 @@ class Curves:
     measured: FloatArray
     before: FloatArray
     after: FloatArray
-    misfit_before: FloatArray
-    misfit_after: FloatArray
+    residual_before: FloatArray
+    residual_after: FloatArray
     sigma: float
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "time", "measured", "before", "after")
-        freeze(self, "misfit_before", "misfit_after")
+        freeze(self, "residual_before", "residual_after")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,8 +57,8 @@ class Spectra:
         measured: magnitude of the H1 estimate over the repeats [unit], shape (n,).
         before: of the base model for the same forces, same shape.
         after: of the model with the effects, same shape.
-        misfit_before: rms over all records and channels, over the noise [-].
-        misfit_after: the same with the effects [-].
+        residual_before: rms over all records and channels, over the noise [-].
+        residual_after: the same with the effects [-].
     """
 
     condition: str
@@ -68,17 +68,17 @@ class Spectra:
     measured: FloatArray
     before: FloatArray
     after: FloatArray
-    misfit_before: FloatArray
-    misfit_after: FloatArray
+    residual_before: FloatArray
+    residual_after: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "frequency", "measured", "before", "after")
-        freeze(self, "misfit_before", "misfit_after")
+        freeze(self, "residual_before", "residual_after")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wishes:
+class RecordEstimates:
     """What stiffness and damping of the joint each record would like by itself.
 
     Attributes:
@@ -121,14 +121,14 @@ class CampaignLimits:
         remaining: directed test that comes closest to its limit, or exceeds it most,
             in units of chi2; None where none was made.
         remaining_allowed: its limit, in units of chi2.
-        pull_allowed: largest distance of a base parameter from its sheet [sigma].
+        deviation_allowed: largest distance of a base parameter from its sheet [sigma].
     """
 
     chi2_per_dof: float
     chi2_allowed: float
     remaining: float | None
     remaining_allowed: float
-    pull_allowed: float
+    deviation_allowed: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +147,7 @@ class DirectedTest:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Exhibit:
+class GapEvidence:
     """The evidence in a form that can be drawn and told.
 
     Attributes:
@@ -160,7 +160,7 @@ class Exhibit:
         relative: by view and slice, misfit over response, before [-].
         curves: the telling record.
         spectra: the telling condition.
-        wishes: of the records for the joint; None where the model has no joint.
+        record_estimates: of each record for the joint; None if the model has no joint.
         limits: what a right model may leave.
         tests: directed tests of the base, largest first.
         force_unit: of force and level.
@@ -174,19 +174,19 @@ class Exhibit:
     relative: dict[str, dict[str, float]]
     curves: Curves
     spectra: Spectra
-    wishes: Wishes | None
+    record_estimates: RecordEstimates | None
     limits: CampaignLimits
     tests: tuple[DirectedTest, ...]
     force_unit: str = "N"
 
 
-def exhibit_json(exhibit: Exhibit) -> dict[str, Any]:
+def evidence_json(evidence: GapEvidence) -> dict[str, Any]:
     """Return the words and numbers of an exhibit, without its curves."""
-    curves, limits = exhibit.curves, exhibit.limits
+    curves, limits = evidence.curves, evidence.limits
     return {
-        "localisation": exhibit.where,
-        "looks_like": list(exhibit.look),
-        "relative_misfit": exhibit.relative,
+        "localisation": evidence.where,
+        "looks_like": list(evidence.look),
+        "relative_misfit": evidence.relative,
         "telling_record": {
             "record": curves.record,
             "condition": curves.condition,
@@ -200,6 +200,7 @@ def exhibit_json(exhibit: Exhibit) -> dict[str, Any]:
             "remaining_allowed": limits.remaining_allowed,
         },
         "directed_tests": [
-            {"effect": t.label, "drop": t.drop, "share": t.share} for t in exhibit.tests
+            {"effect": t.label, "drop": t.drop, "share": t.share}
+            for t in evidence.tests
         ],
     }

@@ -8,7 +8,7 @@ from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
+class NominalParameters:
     """What is known of a bench before anything is measured.
 
     Attributes:

@@ -24,7 +24,7 @@ class Policy:
         "sd",
         "excess of chi2/dof over 1 above which a fit does not explain the records, in "
         "sd of chi2/dof with the noise estimate counted",
-        "closed form of the sd (expected_misfit.noise_sd); checked on the full null "
+        "closed form of the sd (expected_residual.noise_sd); checked on the full null "
         "draws of docs/gap-null.md",
         "-30 %: 0 of 16; +30 %: 0 of 16",
     )

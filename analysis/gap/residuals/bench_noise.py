@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Settled
 from jointbench.analysis.gap.residuals.hit_scatter import (
     gain_scatter,
@@ -41,7 +41,7 @@ def refine_noise(
     base: FloatArray,
     terms: Sequence[Term],
     *,
-    astray: bool = False,
+    diverged: bool = False,
 ) -> SomeBench:
     """Return the bench with its noise estimated at a solution.
 
@@ -49,7 +49,7 @@ def refine_noise(
         bench: to be changed.
         base: of the solution, shape (n_base,).
         terms: of the solution.
-        astray: expand about the hits even where that leaves the solution far off.
+        diverged: expand about the hits even where that leaves the solution far off.
     """
     at = with_converter_edge(_centred(bench, base, terms), base, terms)
     model = at.response(base, terms)
@@ -81,7 +81,7 @@ def refine_noise(
         return settle(refined, None)
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
     off = -coefficients[:, 1] * share / scatter[1]
-    if astray and np.abs(off).max() > RESIDUALS.diverged_reach:
+    if diverged and np.abs(off).max() > RESIDUALS.diverged_reach:
         return settle(refined, None)
     off = np.clip(off, -RESIDUALS.settling_reach, RESIDUALS.settling_reach) * scatter[1]
     settling = np.log(
@@ -89,7 +89,7 @@ def refine_noise(
     )
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)
-    if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not astray:
+    if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not diverged:
         return settle(refined, None)
     return expanded
 
@@ -172,7 +172,7 @@ def _force_columns(
     bench: SomeBench, base: FloatArray, sigma: FloatArray
 ) -> list[FloatArray]:
     """Responses to the force's own noise, over sigma, one array for each record."""
-    first, last = bench.gate
+    first, last = bench.time_gate
     n, records = bench.excitation.growth.size, sigma.shape[0]
     if last - first >= n or bench.noise.force_sigma <= 0:
         return [np.zeros((0, sigma.shape[1] * n))] * records

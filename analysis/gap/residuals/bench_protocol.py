@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import Policy
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 
 
@@ -68,27 +68,27 @@ class Bench(Scaled, Protocol):
         ...
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "Bench":
         """Return the bench with its noise estimated at a solution.
 
         Args:
             base: of the solution, shape (n_base,).
             terms: of the solution.
-            astray: take the scatter of the hits for what it seems even where the
+            diverged: take the scatter of the hits for what it seems even where the
                 solution is far off, because it may be far off on its account.
         """
         ...
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return model minus measurement over sigma, shape (n_rows,).
 
         Args:
             base: log(parameter / nominal), shape (n_base,).
             terms: the effects switched on.
-            stage: window and step.
+            resolution: window and step.
         """
         ...
 

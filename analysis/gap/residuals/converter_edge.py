@@ -16,7 +16,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Term
-from jointbench.analysis.gap.residuals.evaluation_stages import FINE, FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FINE, FULL
 from jointbench.analysis.gap.residuals.lumped_residual import SomeBench
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.excitation import pass_band_end

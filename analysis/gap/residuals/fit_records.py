@@ -76,7 +76,7 @@ class Fit:
         return np.asarray(np.linalg.pinv(hessian, hermitian=True))
 
     @property
-    def pulls(self) -> FloatArray:
+    def prior_deviations(self) -> FloatArray:
         """Distance of the base from its sheet, in prior sd, shape (n_base,)."""
         scaled = np.sqrt(self.prior[: self.n_base])
         return np.asarray(self.base * scaled)

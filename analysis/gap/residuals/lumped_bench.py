@@ -40,10 +40,10 @@ class LumpedBench(LumpedResidual):
         return self.campaign.model.spread
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
-        return refine_noise(self, base, terms, astray=astray)
+        return refine_noise(self, base, terms, diverged=diverged)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return where the misfit of a fit sits."""

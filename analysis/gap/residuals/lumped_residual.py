@@ -15,7 +15,7 @@ from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled
 from jointbench.analysis.gap.residuals.joint_settling import (
     changes_joint,
@@ -41,7 +41,7 @@ class LumpedResidual:
         campaign: the measurement.
         entries: the catalogue of this run.
         excitation: forces made ready.
-        gate: first and last sample of the force that count.
+        time_gate: first and last sample of the force that count.
         noise: what is to be expected of a residual.
         basis: directions of force noise and scatter, (n_records, n_kept, n_rows).
         shrink: how much of each is taken out, (n_records, n_kept, 1).
@@ -55,7 +55,7 @@ class LumpedResidual:
     campaign: Campaign
     entries: tuple[LumpedEffect, ...]
     excitation: Excitation
-    gate: tuple[int, int]
+    time_gate: tuple[int, int]
     noise: Noise
     basis: FloatArray
     shrink: FloatArray
@@ -101,8 +101,8 @@ class LumpedResidual:
     ) -> FloatArray:
         """Predict the channels, shape (n_records, n_channels, n_samples)."""
         actions = self.actions(terms)
-        marched = any(a.entry.law is not None for a in actions)
-        spend(self.campaign.response.size, oversampling if marched else 0)
+        integrated = any(a.entry.law is not None for a in actions)
+        spend(self.campaign.response.size, oversampling if integrated else 0)
         return respond(
             self.campaign.model,
             self.theta(base),
@@ -113,15 +113,15 @@ class LumpedResidual:
         )
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return model minus measurement, whitened, shape (n_rows,)."""
-        if stage.window is not None and not self.campaign.continuous:
-            return _windowed(self, base, terms, stage)
-        r = self.misfit(base, terms, stage.oversampling)
+        if resolution.window is not None and not self.campaign.continuous:
+            return _windowed(self, base, terms, resolution)
+        r = self.difference(base, terms, resolution.oversampling)
         return self.residual_of(r)
 
-    def misfit(
+    def difference(
         self, base: FloatArray, terms: Sequence[Term], oversampling: int
     ) -> FloatArray:
         """Return model minus measurement, shape of the response.
@@ -159,9 +159,9 @@ class LumpedResidual:
             self.campaign.model, self.excitation.conditions, self.actions(terms)
         )
 
-    def residual_of(self, misfit: FloatArray) -> FloatArray:
+    def residual_of(self, difference: FloatArray) -> FloatArray:
         """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
-        r = misfit / self.noise.sigma[:, :, None]
+        r = difference / self.noise.sigma[:, :, None]
         self.mask(r)
         rows = r.reshape(r.shape[0], -1, 1)
         rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
@@ -189,15 +189,18 @@ def settle(bench: SomeBench, settling: FloatArray | None) -> SomeBench:
 
 
 def _windowed(
-    bench: LumpedResidual, base: FloatArray, terms: Sequence[Term], stage: Stage
+    bench: LumpedResidual,
+    base: FloatArray,
+    terms: Sequence[Term],
+    resolution: Resolution,
 ) -> FloatArray:
     """Return the residual under an exponential window, cut where it has decayed."""
-    decay = stage.window or 1.0
-    reach = bench.gate[1] + int(
+    decay = resolution.window or 1.0
+    reach = bench.time_gate[1] + int(
         RESIDUALS.window_reach * decay * bench.campaign.sample_rate
     )
     short = _shortened(bench, scipy.fft.next_fast_len(reach, real=True))
-    r = short.response(base, terms, stage.oversampling)
+    r = short.response(base, terms, resolution.oversampling)
     r -= short.campaign.response
     r /= bench.noise.sigma[:, :, None]
     r *= _window(short, decay)
@@ -218,7 +221,7 @@ def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
             bench,
             campaign=campaign,
             excitation=gated_excitation(
-                campaign, bench.gate, bench.excitation.conditions.settling
+                campaign, bench.time_gate, bench.excitation.conditions.settling
             ),
             short={},
         )
@@ -227,16 +230,18 @@ def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
 
 def _window(bench: LumpedResidual, decay: float) -> FloatArray:
     n = bench.excitation.growth.size
-    time = (np.arange(n) - bench.gate[0]) / bench.campaign.sample_rate
+    time = (np.arange(n) - bench.time_gate[0]) / bench.campaign.sample_rate
     return np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
 
 
 def gated_excitation(
-    campaign: Campaign, gate: tuple[int, int], settling: FloatArray | None = None
+    campaign: Campaign, time_gate: tuple[int, int], settling: FloatArray | None = None
 ) -> Excitation:
     """Cut the hits out of the forces and transform them."""
     force = np.zeros_like(campaign.force)
-    force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
+    force[:, time_gate[0] : time_gate[1]] = campaign.force[
+        :, time_gate[0] : time_gate[1]
+    ]
     span = max(float(np.ptp(campaign.order)), 1.0)
     conditions = HitConditions(
         campaign.preload / campaign.preload_reference,

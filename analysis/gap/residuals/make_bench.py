@@ -44,12 +44,12 @@ def make_bench(
     """
     check_names(without, entries)
     entries = tuple(e for e in entries if e.effect.name not in without)
-    gate, force_sigma = (0, campaign.force.shape[1]), 0.0
+    time_gate, force_sigma = (0, campaign.force.shape[1]), 0.0
     if not campaign.continuous:
-        gate, force_sigma = force_gate(campaign.force)
-    excitation = gated_excitation(campaign, gate)
+        time_gate, force_sigma = force_time_gate(campaign.force)
+    excitation = gated_excitation(campaign, time_gate)
     records, channels, samples = campaign.response.shape
-    quiet = max(gate[0], 16)
+    quiet = max(time_gate[0], 16)
     sigma = np.sqrt(np.mean(campaign.response[:, :, :quiet] ** 2, axis=(0, 2)))
     floor = 1e-6 * np.abs(campaign.response).max()
     sigma = np.tile(np.maximum(sigma, floor), (records, 1))
@@ -59,7 +59,7 @@ def make_bench(
         candidates=candidates_of(entries, campaign.model),
         probes=candidates_of(PROBES, campaign.model),
         excitation=excitation,
-        gate=gate,
+        time_gate=time_gate,
         noise=Noise(sigma, force_sigma, ()),
         basis=np.zeros((records, 1, channels * samples)),
         shrink=np.zeros((records, 1, 1)),
@@ -72,7 +72,7 @@ def make_bench(
     return replace(bench, scales=_scales(bench))
 
 
-def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
+def force_time_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
     """Return the samples that hold the hits, and the noise outside them [N]."""
     n = force.shape[1]
     sigma = float(np.std(force[:, n // 2 :]))

@@ -46,12 +46,12 @@ _REAL, _IMAGINARY, _TURN, _QUARTER, _START, _START_I, _END, _END_I, _POLE, _POLE
 )
 """Places within a mode: its motion, growth, hold weights and pole (re, im)."""
 _MODE = 10 * LANES
-_OWN, _EARLIER, _HOPE = (i * LANES for i in range(3))
+_OWN, _EARLIER, _EXTRAPOLATED = (i * LANES for i in range(3))
 """Places within a law: its force, that of the step before, and what is hoped for."""
 _LAW = 3 * LANES
 
 
-class MarchLaws(NamedTuple):
+class IntegrationLaws(NamedTuple):
     """All force laws of a link as the compiled march wants them.
 
     They lie in common arrays: a law that is handed over as an array of its own, or cut
@@ -124,8 +124,8 @@ def _forces(
             f[own + k] = first * w[_SPEED + k] * abs(w[_SPEED + k])
     elif kind == COULOMB:
         for k in range(LANES):
-            hope = f[a * _LAW + _HOPE + k]
-            f[own + k] = _rub(first, second, w[_SPEED + k], w[_SLOPE + k], hope)
+            extrapolated = f[a * _LAW + _EXTRAPOLATED + k]
+            f[own + k] = _rub(first, second, w[_SPEED + k], w[_SLOPE + k], extrapolated)
     elif kind == CURVES:
         for k in range(LANES):
             r, v = w[_MOTION + k], w[_SPEED + k]
@@ -163,25 +163,25 @@ def _predict(w: FloatArray, n_modes: int) -> None:
         for k in range(LANES):
             x, y = w[at + _REAL + k], w[at + _IMAGINARY + k]
             turn, quarter = w[at + _TURN + k], w[at + _QUARTER + k]
-            pull, push = w[_FORCE + k], w[_GUESS + k]
+            old, change = w[_FORCE + k], w[_GUESS + k]
             moved = turn * x - quarter * y
-            moved -= w[at + _START + k] * pull + w[at + _END + k] * push
+            moved -= w[at + _START + k] * old + w[at + _END + k] * change
             w[at + _IMAGINARY + k] = (
                 turn * y
                 + quarter * x
-                - w[at + _START_I + k] * pull
-                - w[at + _END_I + k] * push
+                - w[at + _START_I + k] * old
+                - w[at + _END_I + k] * change
             )
             w[at + _REAL + k] = moved
             w[_MOTION + k] += moved
 
 
 @compiled(fastmath=True)
-def _march_lanes(
+def _integrate_lanes(
     displacement: FloatArray,
     velocity: FloatArray,
     w: FloatArray,
-    laws: MarchLaws,
+    laws: IntegrationLaws,
     needs_velocity: bool,
     first: int,
     out: FloatArray,
@@ -201,9 +201,9 @@ def _march_lanes(
         for a in range(n_laws):
             for k in range(LANES):
                 at = a * _LAW + k
-                f[at + _HOPE] = 2.0 * f[at + _OWN] - f[at + _EARLIER]
+                f[at + _EXTRAPOLATED] = 2.0 * f[at + _OWN] - f[at + _EARLIER]
                 f[at + _EARLIER] = f[at + _OWN]
-                w[_GUESS + k] += f[at + _HOPE]
+                w[_GUESS + k] += f[at + _EXTRAPOLATED]
         _predict(w, n_modes)
         if needs_velocity:
             for k in range(LANES):
@@ -243,13 +243,13 @@ def _march_lanes(
 
 
 @compiled(nogil=True)
-def march(
+def integrate_link_force(
     displacement: FloatArray,
     velocity: FloatArray,
     poles: ComplexArray,
     residues: ComplexArray,
     dt: float,
-    laws: MarchLaws,
+    laws: IntegrationLaws,
     needs_velocity: bool,
 ) -> FloatArray:
     """Return the force of all laws of a link along the coupled motion.
@@ -277,5 +277,5 @@ def march(
         own_poles[:, :count] = poles[:, first : first + count]
         own_residues[:, :count] = residues[:, first : first + count]
         w = _made_ready(own_poles, own_residues, dt)
-        _march_lanes(displacement, velocity, w, laws, needs_velocity, first, out)
+        _integrate_lanes(displacement, velocity, w, laws, needs_velocity, first, out)
     return out

@@ -10,7 +10,7 @@ from jointbench.analysis.gap.response.effect_hooks import Law
 from jointbench.analysis.gap.response.force_integration import (
     CURVES,
     SLIDERS,
-    MarchLaws,
+    IntegrationLaws,
 )
 
 PARAMETERS = 2
@@ -18,13 +18,13 @@ SLIDER_ROWS = 4
 CURVE_ROWS = 3
 
 
-def pack_laws(laws: Sequence[Law]) -> MarchLaws:
+def pack_laws(laws: Sequence[Law]) -> IntegrationLaws:
     """Return laws that act together at one link as the march wants them."""
     p = np.zeros((len(laws), PARAMETERS))
     for row, law in zip(p, laws, strict=True):
         row[: law.parameters.size] = law.parameters
     sizes = [law.slips.size for law in laws]
-    return MarchLaws(
+    return IntegrationLaws(
         kinds=np.array([law.kind for law in laws], dtype=np.int64),
         p=p,
         ends=np.cumsum([0, *sizes], dtype=np.int64),

@@ -32,7 +32,7 @@ from jointbench.analysis.gap.response.force_integration import (
     CURVES,
     LANES,
     QUADRATIC_DAMPING,
-    march,
+    integrate_link_force,
 )
 from jointbench.analysis.gap.response.link_modes import link_modes
 from jointbench.analysis.gap.response.packed_laws import pack_laws
@@ -95,11 +95,11 @@ def motion(
     bent = [a for a in actions if a.entry.law is not None]
     for link in sorted({a.index for a in bent}):
         laws = [a.entry.law(a.values) for a in bent if a.index == link if a.entry.law]
-        pull = _link_force(
+        link_force = _link_force(
             model, theta, excitation, actions, linear, link, laws, oversampling
         )
         for i in bodies:
-            linear[i] = linear[i] - _across(model, h, i, link) * pull
+            linear[i] = linear[i] - _across(model, h, i, link) * link_force
     return linear
 
 
@@ -140,12 +140,12 @@ def _link_force(
         x = x - linear[first]
     modes = link_modes(model, theta, excitation.conditions, link, actions)
     fine = _between_samples(excitation, x, laws, oversampling)
-    force = _marched(excitation, fine, modes, laws, oversampling)
+    force = _integrated(excitation, fine, modes, laws, oversampling)
     if oversampling >= RESPONSE.extrapolated_steps and all(
         law.kind != COULOMB for law in laws
     ):
         coarse = fine[:, ::2]
-        half = _marched(excitation, coarse, modes, laws, oversampling // 2)
+        half = _integrated(excitation, coarse, modes, laws, oversampling // 2)
         force = (4.0 * force - half) / 3.0
     return np.asarray(force * excitation.taper)
 
@@ -182,7 +182,7 @@ def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
     return np.asarray(np.exp(excitation.damping * dt * np.arange(count)))
 
 
-def _marched(
+def _integrated(
     excitation: Excitation,
     motions: FloatArray,
     modes: tuple[ComplexArray, ComplexArray],
@@ -193,7 +193,9 @@ def _marched(
     motions = np.ascontiguousarray(motions)
     dt = 1 / (excitation.sample_rate * oversampling)
     packed = pack_laws(laws)
-    force = march(motions[0], motions[-1], *modes, dt, packed, len(motions) > 1)
+    force = integrate_link_force(
+        motions[0], motions[-1], *modes, dt, packed, len(motions) > 1
+    )
     records = excitation.hit.size
     damped = force.T[:records] / _growth(excitation, oversampling)
     spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=1)

@@ -15,7 +15,7 @@ import numpy as np
 
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 
-MARCHED = RESPONSE.step_effort
+STEP_EFFORT = RESPONSE.step_effort
 
 
 class SearchExhausted(Exception):
@@ -74,6 +74,6 @@ def spend(samples: int, oversampling: int) -> None:
     if effort is None:
         return
     with _ADDING:
-        effort.spent += samples * (1.0 + MARCHED * oversampling)
+        effort.spent += samples * (1.0 + STEP_EFFORT * oversampling)
     if effort.spent > effort.limit:
         raise SearchExhausted

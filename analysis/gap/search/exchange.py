@@ -5,12 +5,12 @@ from collections.abc import Collection
 
 from jointbench.analysis.gap.model.effect import labels_of, may_join
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.far_pairs import without
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.search_settings import SEARCH
-from jointbench.analysis.gap.search.selection_round import Progress, race
+from jointbench.analysis.gap.search.selection_round import Progress, run_selection
 
 
 def exchanged(
@@ -47,5 +47,5 @@ def exchanged(
             for c in screening.leaders(SEARCH.exchange_candidates)
             if labels_of((*kept.candidates, c)) not in known
         ]
-        found += race(bench, kept, screening, tried, progress)
+        found += run_selection(bench, kept, screening, tried, progress)
     return found

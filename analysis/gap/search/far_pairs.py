@@ -14,17 +14,17 @@ import numpy as np
 
 from jointbench.analysis.gap.model.effect import labels_of, may_join, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import fit_stages, minimise
-from jointbench.analysis.gap.search.race_starts import along
+from jointbench.analysis.gap.search.candidate_starts import along
+from jointbench.analysis.gap.search.descent import fit_coarse_to_fine, minimise
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress
 
-_SHORT = Stage(SEARCH.short_window, SEARCH.screening_steps)
-_LONGER = Stage(SEARCH.longer_window, SEARCH.screening_steps)
+_SHORT = Resolution(SEARCH.short_window, SEARCH.screening_steps)
+_LONGER = Resolution(SEARCH.longer_window, SEARCH.screening_steps)
 
 
 def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
@@ -39,7 +39,7 @@ def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
         modes: starts for a race over the whole records.
     """
     problem = make_problem(bench, ())
-    base = fit_stages(
+    base = fit_coarse_to_fine(
         problem, np.zeros(problem.n_base), ((_SHORT, SEARCH.pair_iterations),)
     )
     singles = _best(
@@ -60,25 +60,25 @@ def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
     return [_longer(bench, f) for f in pairs]
 
 
-def without(bench: Bench, fit: Fit, k: int, stage: Stage) -> Fit:
+def without(bench: Bench, fit: Fit, k: int, resolution: Resolution) -> Fit:
     """Return a fit less one effect, its base left where it is.
 
     Args:
         bench: measurement and model.
         fit: of several effects.
         k: which of them.
-        stage: of the slopes.
+        resolution: of the slopes.
     """
     terms = [t for i, t in enumerate(fit.terms) if i != k]
     problem = make_problem(bench, [t.candidate for t in terms])
     start = np.concatenate([fit.base, *(t.coordinates for t in terms)])
-    return minimise(problem, start, stage, iterations=0)
+    return minimise(problem, start, resolution, iterations=0)
 
 
 def _with_one_more(bench: Bench, fit: Fit, count: int, progress: Progress) -> list[Fit]:
     """Return short fits of the effects that directed tests put first."""
     others = [c for c in bench.candidates if may_join(c, fit.candidates)]
-    screening = screen(bench, fit, others, stage=_SHORT)
+    screening = screen(bench, fit, others, resolution=_SHORT)
     found = []
     for candidate in screening.leaders(count):
         problem = make_problem(bench, (*fit.candidates, candidate))

@@ -8,11 +8,11 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.candidate_starts import MOST_STEPS
 from jointbench.analysis.gap.search.descent import cost_at, minimise
-from jointbench.analysis.gap.search.race_starts import MOST_STEPS
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress, finish
 
@@ -99,12 +99,15 @@ def caught_up(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
 
 def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
     """Return the better of a fit and what it becomes from the best's base."""
-    pull, least = np.abs(fit.pulls).max(), np.abs(best.pulls).max()
-    if pull < SEARCH.diverged_sd or pull < least:
+    deviation, least = (
+        np.abs(fit.prior_deviations).max(),
+        np.abs(best.prior_deviations).max(),
+    )
+    if deviation < SEARCH.diverged_sd or deviation < least:
         return fit
     problem = make_problem(bench, fit.candidates)
     start = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
-    if cost_at(problem, start, MIDDLE) > _hope(fit, best):
+    if cost_at(problem, start, MIDDLE) > _least_promising_cost(fit, best):
         return fit
     progress(f"{words_of(fit.candidates)} (again)")
     middle = minimise(problem, start, MIDDLE, iterations=MOST_STEPS, rival=best.cost)
@@ -113,7 +116,7 @@ def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
     return finish(problem, middle.x, progress)
 
 
-def _hope(fit: Fit, best: Fit) -> float:
+def _least_promising_cost(fit: Fit, best: Fit) -> float:
     """Return the cost at which a start is no better than nothing."""
     return SEARCH.restart_cost_ratio * max(fit.cost, best.cost)
 

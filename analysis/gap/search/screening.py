@@ -20,13 +20,13 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.response.threads import each
 from jointbench.analysis.gap.search.search_settings import SEARCH
 
 PROBE = SEARCH.probe_amplitude
-SCREEN = Stage(oversampling=SEARCH.screening_steps)
+SCREEN = Resolution(oversampling=SEARCH.screening_steps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,7 +84,7 @@ def screen(
     fit: Fit,
     candidates: Sequence[Candidate],
     *,
-    stage: Stage = SCREEN,
+    resolution: Resolution = SCREEN,
     seed: int = 0,
 ) -> Screening:
     """Test every candidate at every point of its start grid.
@@ -93,15 +93,15 @@ def screen(
         bench: measurement and model.
         fit: a minimum, possibly with effects switched on.
         candidates: what to test.
-        stage: how thoroughly; the fit must be one of the same window.
+        resolution: how thoroughly; the fit must be one of the same window.
         seed: of the null draws.
     """
     starts = [(c, u) for c in candidates for u in start_grid(c)]
     fixed = len(starts)
-    if stage.window is None:
+    if resolution.window is None:
         starts += [(c, u) for c in candidates for u in bench.hints(fit, c)]
     tangent = _tangent(fit)
-    base = bench.residual(fit.base, fit.terms, stage)
+    base = bench.residual(fit.base, fit.terms, resolution)
     left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
     taken = np.empty((len(starts), fit.x.size))
     norm = np.empty(len(starts))
@@ -111,7 +111,7 @@ def screen(
         probe, unit = _probe(candidate, u)
         terms = (*fit.terms, Term(candidate, probe))
         row = np.zeros(tangent.q.shape[0])
-        row[: base.size] = (bench.residual(fit.base, terms, stage) - base) / unit
+        row[: base.size] = (bench.residual(fit.base, terms, resolution) - base) / unit
         taken[k] = tangent.q.T @ row
         norm[k] = row @ row
         left[k] = row - tangent.q @ taken[k]

@@ -38,8 +38,8 @@ def sentences(found: Diagnosis) -> list[str]:
     gap_output.show_on(screen, found)
     page = gap_report(found, title="made")
     words = [i.text for s in page.sections for i in s.items if isinstance(i, Text)]
-    exhibit = diagnosis_json(found)["exhibit"]
-    told = [exhibit["localisation"], *exhibit["looks_like"]] if exhibit else []
+    evidence = diagnosis_json(found)["exhibit"]
+    findings = [evidence["localisation"], *evidence["looks_like"]] if evidence else []
     # Paragraphs hang behind their label: a line that begins with a blank goes on.
     terminal = re.sub(r"\n +(?!- )", " ", screen.export_text())
     return [
@@ -47,7 +47,7 @@ def sentences(found: Diagnosis) -> list[str]:
         page.title,
         page.lead,
         *words,
-        *told,
+        *findings,
         diagnosis_json(found)["experiment"],
         found.reason,
     ]
@@ -69,10 +69,13 @@ def contradictions(found: Diagnosis, hidden: frozenset[str]) -> list[str]:
     if found.verdict is not Finding.UNKNOWN:
         faults += [f"guesses: {x}" for x in lines if GUESS.search(x)]
     if len(found.explanations) < 2:
-        told = [found.experiment, next_step(found)]
-        faults += [f"no rival: {x}" for x in told if APART.search(x)]
-    if found.exhibit is not None and found.exhibit.advice not in ("", found.experiment):
-        faults.append(f"{found.exhibit.advice} | {found.experiment}")
+        advice = [found.experiment, next_step(found)]
+        faults += [f"no rival: {x}" for x in advice if APART.search(x)]
+    if found.evidence is not None and found.evidence.advice not in (
+        "",
+        found.experiment,
+    ):
+        faults.append(f"{found.evidence.advice} | {found.experiment}")
     steps = [x for x in lines if x.startswith(("next:", "Do next:"))]
     faults += [f"{x} | {found.experiment}" for x in steps if found.experiment not in x]
     return faults

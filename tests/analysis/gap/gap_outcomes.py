@@ -9,7 +9,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.judgement.naming import gate
+from jointbench.analysis.gap.judgement.naming import accept
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -58,8 +58,8 @@ def outcome_of(
         refined = again
         base = minimise(make_problem(again, ()), base.x)
     best = fits[0] if fits else base
-    null = gate(refined, base, base, tests)
-    judged = gate(refined, best, base, None) if fits else null
+    null = accept(refined, base, base, tests)
+    judged = accept(refined, best, base, None) if fits else null
     level = tuple(fits[:rivals]) or (base,)
     outcome = SearchOutcome(
         refined, base, null, tests, best, judged, tuple(fits), level

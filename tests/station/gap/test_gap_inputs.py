@@ -107,9 +107,9 @@ def test_a_glancing_hit_among_levels_is_left_out_and_told(
     found = gap(
         tmp_path / "bare.h5", tmp_path / "g.json", model=visit.with_suffix(".toml")
     )
-    told = [words for words in found["remarks"] if "a glancing hit" in words]
-    assert len(told) == 1
-    assert "recording 'glancing'" in told[0]
+    reported = [words for words in found["remarks"] if "a glancing hit" in words]
+    assert len(reported) == 1
+    assert "recording 'glancing'" in reported[0]
     hits = [hit for recording in session.recordings for hit in recording.hits]
     assert all(hit.verdict is Verdict.OK for hit in hits)
 

@@ -9,7 +9,7 @@ import pytest
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.linear_effects import CROSS_TALK
-from jointbench.analysis.gap.judgement.expected_misfit import EXACT, MODEL_ERROR
+from jointbench.analysis.gap.judgement.expected_residual import EXACT, MODEL_ERROR
 from jointbench.analysis.gap.response.curve_integration import (
     REACH,
     finest_of,
@@ -235,15 +235,15 @@ def test_what_only_some_records_or_signals_show_is_loud_at_amplitude_0(
         read_effects(own_effect(tmp_path, (site,), hooks))
 
 
-def test_the_page_tells_how_much_model_error_a_family_is_excused() -> None:
+def test_the_page_lists_the_model_error_of_each_family() -> None:
     """Its numbers are those of the engine."""
     page = PAGE.read_text("utf-8")
-    told = {name: float(x) for name, x in re.findall(r"`(\w+)` (\de-\d)", page)}
-    assert told == MODEL_ERROR
+    stated = {name: float(x) for name, x in re.findall(r"`(\w+)` (\de-\d)", page)}
+    assert stated == MODEL_ERROR
     assert f"Any other family gets {EXACT:.0e}".replace("e-0", "e-") in page
 
 
-def test_an_effects_file_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_an_effects_file_leaves_no_compiled_cache(tmp_path: Path) -> None:
     """No cache of compiled code appears beside a file that was run."""
     (entry,) = read_effects(example(tmp_path))
     assert isinstance(entry, LumpedEffect)

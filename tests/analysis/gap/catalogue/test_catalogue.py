@@ -13,7 +13,7 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue import catalogue
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
 from jointbench.analysis.gap.model.effect import Candidate, Term
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.search.descent import minimise

@@ -39,7 +39,9 @@ def test_a_probe_is_a_first_term(name: str) -> None:
 
 
 @pytest.mark.parametrize("names", [{"delay"}, {"polarity"}, set()])
-def test_a_great_misfit_and_next_to_no_catalogue_is_unknown(names: set[str]) -> None:
+def test_a_large_residual_without_a_catalogue_is_unknown(
+    names: set[str],
+) -> None:
     """Nothing to pair with is no reason to fail."""
     campaign = made.made_campaign([("cubic_stiffness", "link:joint", [2e17])])
     entries = tuple(e for e in CATALOGUE if e.effect.name in names)

@@ -43,7 +43,7 @@ def late() -> Diagnosis:
     return diagnose(made.made_campaign([LATE]), entries=LINEAR)
 
 
-def test_a_campaign_with_nothing_missing_is_told_so(complete: Diagnosis) -> None:
+def test_a_complete_model_gives_the_verdict_none(complete: Diagnosis) -> None:
     """Verdict none, no effect, no gap beyond noise."""
     assert complete.verdict is Finding.NONE
     assert complete.effects == ()
@@ -62,7 +62,7 @@ def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap(
     assert late.shrink > 0.9
 
 
-def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
+def test_an_effect_that_one_condition_shows_is_named_but_not_predicted() -> None:
     """Hits at 4 kN say nothing of the one at 8 kN: held out, it misses as before."""
     found = diagnose(
         made.made_campaign([("preload_stiffness", "link:joint", [0.3])]),
@@ -74,7 +74,7 @@ def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
     assert "not predicted by the others" in found.reason
 
 
-def test_what_all_conditions_show_is_foretold(late: Diagnosis) -> None:
+def test_an_effect_that_all_conditions_show_is_predicted(late: Diagnosis) -> None:
     """The reason is silent of what it would say of a lone condition."""
     assert late.gap_after.value < 0.1 * late.gap_before.value
     assert "not predicted" not in late.reason
@@ -104,7 +104,7 @@ def test_the_json_holds_the_keys_of_the_contract(complete: Diagnosis) -> None:
     }
 
 
-def test_what_all_rivals_hold_is_as_sure_as_all_of_them() -> None:
+def test_an_effect_of_all_rivals_has_their_summed_confidence() -> None:
     """Two pairs that share a delay: it is twice as sure as what they do not share."""
     outcome, bench = outcomes.outcome_of([LATE], ("delay", "channel:a1"))
     delay = outcome.best
@@ -194,7 +194,7 @@ def no_nominal(file: h5py.File) -> None:
     del file.attrs["nominal"]
 
 
-def bad_sheet(file: h5py.File) -> None:
+def bad_nominal(file: h5py.File) -> None:
     """Give a mass of zero."""
     file.attrs["nominal"] = json.dumps({**made.NOMINAL, "m2": 0.0})
 
@@ -216,7 +216,7 @@ def test_a_campaign_file_is_read_as_it_was_written(tmp_path: Path) -> None:
         (put_nan, BadData, "r03"),
         (wrong_schema, FormatError, "something/2"),
         (no_nominal, FormatError, "nominal"),
-        (bad_sheet, BadData, "m2"),
+        (bad_nominal, BadData, "m2"),
     ],
 )
 def test_a_spoilt_campaign_file_is_refused_by_name(

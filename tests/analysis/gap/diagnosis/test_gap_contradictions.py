@@ -52,7 +52,7 @@ def test_named_or_not_all_that_is_said_of_an_effect_goes_together(name: str) -> 
     named = conclude(outcome, bench)
     assert contradictions(named, frozenset({name})) == []
     nothing = {"best": outcome.base, "ranked": (), "level": (outcome.base,)}
-    lost = replace(outcome, gate=outcome.base_gate, **nothing)
+    lost = replace(outcome, acceptance=outcome.base_acceptance, **nothing)
     unknown = conclude(lost, bench)
     assert unknown.verdict in (Finding.UNKNOWN, Finding.NONE)
     assert contradictions(unknown, frozenset({name})) == []

@@ -4,7 +4,7 @@
 import gap_bench as made
 import numpy as np
 
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.bench_noise import refine_noise
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -34,7 +34,7 @@ def fits_of_a_stop(stiffness: float) -> tuple[FitProblem, Fit, Fit]:
     return problem, four, finish(problem, start, lambda line: None)
 
 
-def test_a_great_stop_is_marched_as_finely_as_it_needs() -> None:
+def test_a_large_stop_is_integrated_as_finely_as_it_needs() -> None:
     """Four steps a sample leave more than noise allows, those that are taken do not."""
     problem, four, needed = fits_of_a_stop(4e7)
     dof = problem.bench.blocks.dof

@@ -5,7 +5,7 @@ import gap_bench as made
 import numpy as np
 import pytest
 
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.search.descent import minimise

@@ -13,7 +13,11 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.lumped_residual import settle
 from jointbench.analysis.gap.residuals.make_bench import make_bench
-from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages, minimise
+from jointbench.analysis.gap.search.descent import (
+    BASE_RESOLUTIONS,
+    fit_coarse_to_fine,
+    minimise,
+)
 
 SETTLING = 1.5e-3 * np.array([0.4, -1.1, 0.8, 1.3, -0.6, 0.2, -0.9, 0.1])
 BASE = made.BASE
@@ -50,7 +54,9 @@ def test_a_quiet_base_is_found_though_every_hit_settles(
     clean = settle(plain, settling).response(BASE, [])
     noisy = clean + noise * rng.standard_normal(clean.shape)
     start = make_bench(made.quiet_campaign(noisy, samples=2048))
-    late = fit_stages(make_problem(start, ()), np.zeros(BASE.size), BASE_STAGES)
+    late = fit_coarse_to_fine(
+        make_problem(start, ()), np.zeros(BASE.size), BASE_RESOLUTIONS
+    )
     assert far_off(start.refine(late.base, ()), late)
     bench, base = fit_base(start)
     assert base.chi2 == pytest.approx(bench.blocks.dof, rel=0.05)

@@ -224,9 +224,9 @@ WRONG_ATTRIBUTES = [
         for name in ("level_N", "preload_N", "order", "hit_dof")
     ],
 ]
-WRONG_SHEETS = [
-    (attribute("/", sheet, text), sheet)
-    for sheet in ("nominal", "nominal_rel_sigma")
+WRONG_NOMINALS = [
+    (attribute("/", name, text), name)
+    for name in ("nominal", "nominal_rel_sigma")
     for text in (
         "[1, 2]",
         "8.0",
@@ -251,7 +251,7 @@ WRONG_SHEETS = [
 
 
 @pytest.mark.parametrize(
-    ("change", "word"), WRONG_SHAPES + WRONG_KINDS + WRONG_ATTRIBUTES + WRONG_SHEETS
+    ("change", "word"), WRONG_SHAPES + WRONG_KINDS + WRONG_ATTRIBUTES + WRONG_NOMINALS
 )
 def test_a_campaign_file_that_breaks_the_format_is_refused_in_one_line(
     tmp_path: Path, change: Change, word: str
@@ -266,9 +266,7 @@ def test_a_campaign_file_that_breaks_the_format_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("value", [0.0, -4.0, np.nan, np.inf])
-def test_a_sheet_with_a_value_that_no_body_has_is_refused(
-    tmp_path: Path, value: float
-) -> None:
+def test_an_impossible_nominal_value_is_refused(tmp_path: Path, value: float) -> None:
     """The message names the value and the key."""
     change = attribute("/", "nominal", json.dumps({**NOMINAL, "m2": value}))
     with pytest.raises(BadData, match="m2"):

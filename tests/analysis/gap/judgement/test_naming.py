@@ -14,8 +14,8 @@ from jointbench.analysis.gap.catalogue.nonlinear_effects import (
     SATURATION,
 )
 from jointbench.analysis.gap.judgement.amplitudes import at_the_end
-from jointbench.analysis.gap.judgement.expected_misfit import forgiven
-from jointbench.analysis.gap.judgement.rivals import without_twins
+from jointbench.analysis.gap.judgement.expected_residual import forgiven
+from jointbench.analysis.gap.judgement.rivals import without_duplicates
 from jointbench.analysis.gap.model.effect import Candidate, Effect, Site
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.make_bench import make_bench
@@ -32,7 +32,7 @@ def fit_of(effect: Effect, coordinates: list[float], sd: float = 0.01) -> Fit:
     return Fit(x, 1, candidates, nothing, np.eye(n) / sd, 0.0, nothing, nothing)
 
 
-def test_a_shape_at_the_end_of_its_range_is_told_by_name() -> None:
+def test_a_shape_at_the_end_of_its_range_is_named() -> None:
     """A Bouc-Wen element of exponent 6 stands in for a Jenkins slider."""
     found = at_the_end(fit_of(BOUC_WEN.effect, [0.01, -1.0, np.log(6.0), 0.0]))
     assert found == "n of bouc_wen@link:joint is at its limit"
@@ -88,12 +88,12 @@ def test_one_fault_of_all_channels_and_of_one_are_one_statement() -> None:
     """Beside another effect too: only one channel may reach the range of all."""
     bench = make_bench(made.quiet_campaign())
     every, one = two_channel_fit("all"), two_channel_fit("a1")
-    assert without_twins(bench, [one, every]) == [every]
-    assert without_twins(bench, [every]) == [every]
+    assert without_duplicates(bench, [one, every]) == [every]
+    assert without_duplicates(bench, [every]) == [every]
 
 
 def test_two_channels_apart_are_two_statements() -> None:
     """Only a fault of all channels takes the place of another."""
     bench = make_bench(made.quiet_campaign())
     fits = [two_channel_fit("a0"), two_channel_fit("a1")]
-    assert without_twins(bench, fits) == fits
+    assert without_duplicates(bench, fits) == fits

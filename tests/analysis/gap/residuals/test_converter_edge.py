@@ -76,7 +76,7 @@ def test_without_a_nonlinear_law_the_filter_is_the_usual_one() -> None:
     assert plain.excitation.taper == pytest.approx(pass_band_end(frequency))
 
 
-def test_a_great_stop_behind_an_early_filter_is_named(tmp_path: Path) -> None:
+def test_a_large_stop_seen_through_a_low_filter_is_named(tmp_path: Path) -> None:
     """Named alone: filter and march leave nothing that a second law makes up for."""
     stop = HiddenEffect("gap", {"g": 3e-6, "k": 3e7})
     design = draw_design(941, grid="small", noise=NOISE)

@@ -120,8 +120,8 @@ def test_white_noise_is_estimated_from_the_top_of_the_spectrum() -> None:
     """Within 2 % for 16 records, whatever the low-frequency residual."""
     rng = np.random.default_rng(5)
     time = np.arange(2048) / made.RATE
-    misfit = 3.0 * np.sin(2 * np.pi * 300 * time)
-    residual = 0.2 * rng.standard_normal((16, 2, 2048)) + misfit
+    tone = 3.0 * np.sin(2 * np.pi * 300 * time)
+    residual = 0.2 * rng.standard_normal((16, 2, 2048)) + tone
     sigma = channel_sigma(residual, np.ones((16, 2)))
     assert sigma == pytest.approx(0.2 * np.ones((16, 2)), rel=0.02)
 

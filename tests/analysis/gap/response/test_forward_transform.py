@@ -76,7 +76,7 @@ def test_noise_at_the_end_of_the_band_does_not_ring(
         ("coulomb", "link:joint", [5.0, 1e-4]),
     ],
 )
-def test_a_record_is_marched_alike_in_any_company(
+def test_the_response_of_a_record_does_not_depend_on_other_records(
     effect: tuple[str, str, list[float]],
 ) -> None:
     """Eleven records fill a lane of eight and a part of another."""

@@ -20,7 +20,7 @@ from jointbench.analysis.gap.response.search_effort import (
 TWO = [("delay", "channel:a1", [4e-5]), ("cross_talk", "channel:a0", [0.02])]
 
 
-def test_a_march_costs_more_than_a_linear_response() -> None:
+def test_time_integration_costs_more_than_a_linear_response() -> None:
     """Steps are counted too."""
     with counted() as effort:
         spend(100, 0)

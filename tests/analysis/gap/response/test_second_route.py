@@ -19,7 +19,7 @@ from second_route.verify import (
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.model.effect import Effect
 from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -150,7 +150,7 @@ def test_linear_effects_and_faults_agree_to_the_wrap_around(name: str) -> None:
     "name",
     ["cubic_stiffness", "quadratic_stiffness", "quadratic_damping"],
 )
-def test_smooth_laws_agree_to_the_extrapolated_step_of_the_march(name: str) -> None:
+def test_smooth_laws_agree_to_the_extrapolated_integration_step(name: str) -> None:
     """Bound 5.2e-6; seen: 9.7e-7, 9.1e-7, 9.9e-7."""
     assert compare(name).over_peak.max() < extrapolated(8)
 
@@ -165,7 +165,7 @@ def test_half_the_step_leaves_far_less_than_a_quarter_of_the_difference(
 
 
 @pytest.mark.parametrize("name", ["gap", "jenkins", "iwan", "bouc_wen"])
-def test_laws_with_corners_agree_to_the_step_of_the_march(name: str) -> None:
+def test_laws_with_corners_agree_to_the_integration_step(name: str) -> None:
     """Bound 3.3e-4; seen: 1.1e-4, 5.8e-5, 4.8e-5, 1.1e-4."""
     assert compare(name).over_peak.max() < held_straight(8)
 

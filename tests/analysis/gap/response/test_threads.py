@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.response.search_effort import (

@@ -23,7 +23,7 @@ from jointbench.analysis.gap.model.effect import (
 )
 from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -81,13 +81,13 @@ class Curve:
         return []
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "Curve":
         """The noise is known."""
         return self
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01."""
         y = LOAD * np.exp(base[0])
@@ -120,14 +120,14 @@ def names(outcome: SearchOutcome) -> list[str]:
 def test_a_curve_with_nothing_missing_has_no_effect(seed: int) -> None:
     """Noise alone passes the null test."""
     outcome = run(curve(seed=seed))
-    assert outcome.gate.passed
+    assert outcome.acceptance.passed
     assert names(outcome) == []
 
 
 def test_a_single_effect_is_found_with_its_size() -> None:
     """A square of 0.02 is found within 4 sd."""
     outcome = run(curve(square=0.02))
-    assert outcome.gate.passed
+    assert outcome.acceptance.passed
     assert names(outcome) == ["square"]
     assert outcome.best.x[-1] == pytest.approx(0.02, abs=0.0015)
 
@@ -135,23 +135,23 @@ def test_a_single_effect_is_found_with_its_size() -> None:
 def test_two_effects_are_found_one_after_the_other() -> None:
     """A square and a cube are both named, in whichever order."""
     outcome = run(curve(square=0.05, cube=0.1))
-    assert outcome.gate.passed
+    assert outcome.acceptance.passed
     assert names(outcome) == ["cube", "square"]
 
 
 def test_an_effect_outside_the_catalogue_is_left_unexplained() -> None:
     """A square with only a cube to offer does not pass the gate."""
     bench = replace(curve(square=0.05), candidates=(effect("cube"),))
-    assert not run(bench).gate.passed
+    assert not run(bench).acceptance.passed
 
 
-def test_what_a_wrong_effect_leaves_is_told_by_its_shape() -> None:
+def test_the_residual_of_a_wrong_effect_is_recognised_by_its_shape() -> None:
     """A cube that rides on a square is seen by a probe, and never named."""
     bench = replace(curve(square=0.05, cube=0.006), candidates=(effect("square"),))
     cube = effect("cube")
     probe = replace(cube, effect=replace(cube.effect, family=PROBE_FAMILY))
     outcome = run(replace(bench, probes=(probe,)))
-    assert "look like: cube, curve:y" in outcome.gate.reason
+    assert "look like: cube, curve:y" in outcome.acceptance.reason
     assert names(outcome) == ["square"]
 
 
@@ -171,14 +171,14 @@ def test_half_a_pair_is_exchanged() -> None:
     assert all(labels_of(f.candidates) not in known for f in rest)
 
 
-def test_a_fit_that_went_astray_catches_up_from_the_base_of_the_best() -> None:
+def test_a_diverged_fit_catches_up_from_the_base_of_the_best() -> None:
     """From a slope of e^3 the way down is long; from the best's base it is short."""
     bench = curve(cube=0.2)
     best = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
-    astray = replace(best, x=np.array([3.0, -15.0]), cost=1e9)
-    again = crossed(bench, [best, astray], lambda line: None)[1]
+    diverged = replace(best, x=np.array([3.0, -15.0]), cost=1e9)
+    again = crossed(bench, [best, diverged], lambda line: None)[1]
     assert again.cost == pytest.approx(best.cost, rel=1e-6)
-    assert caught_up(bench, astray, best, lambda line: None).cost == pytest.approx(
+    assert caught_up(bench, diverged, best, lambda line: None).cost == pytest.approx(
         best.cost, rel=1e-6
     )
 
@@ -198,7 +198,7 @@ def test_holding_out_agrees_with_a_refit_without_the_group() -> None:
     out = bench.blocks.group == 2
     keep = np.stack([LOAD * np.exp(fit.x[0]), LOAD**2], axis=1)[~out] / 0.01
     normal = keep.T @ keep + np.diag(fit.prior)
-    start = bench.residual(fit.base, fit.terms, Stage())
+    start = bench.residual(fit.base, fit.terms, Resolution())
     step = -np.linalg.solve(normal, keep.T @ start[~out] + fit.prior * fit.x)
     moved = start + fit.jacobian @ step
     assert held.chi2[2] == pytest.approx(float(moved[out] @ moved[out]), rel=1e-4)
@@ -209,7 +209,7 @@ class Kinked(Curve):
     """A curve that bends beyond a load which only the last group passes by much."""
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01."""
         y = FAR_LOAD * np.exp(base[0])
@@ -245,11 +245,11 @@ def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
     rows = bench.blocks.group == GROUPS - 1
 
     def seen(x: FloatArray) -> FloatArray:
-        r = bench.residual(x[:1], (Term(KINK, x[1:]),), Stage())
+        r = bench.residual(x[:1], (Term(KINK, x[1:]),), Resolution())
         return np.append(r[~rows], x[0] / 0.1)
 
     other = scipy.optimize.least_squares(seen, fit.x).x
-    left = bench.residual(other[:1], (Term(KINK, other[1:]),), Stage())[rows]
+    left = bench.residual(other[:1], (Term(KINK, other[1:]),), Resolution())[rows]
     held = hold_out(fit, bench).chi2[-1]
     j, r = fit.jacobian[rows], fit.residual[rows]
     hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
@@ -262,19 +262,21 @@ def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
 class Unsure(Curve):
     """A curve whose noise is thought a tenth of what it is until a fit is at hand."""
 
-    sure: bool = False
+    refined: bool = False
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "Unsure":
         """Know the noise."""
-        return replace(self, sure=True)
+        return replace(self, refined=True)
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01, or / 0.001."""
-        return Curve.residual(self, base, terms, stage) * (1.0 if self.sure else 10.0)
+        return Curve.residual(self, base, terms, resolution) * (
+            1.0 if self.refined else 10.0
+        )
 
 
 def test_what_is_needless_once_the_noise_is_known_is_taken_back() -> None:
@@ -285,7 +287,7 @@ def test_what_is_needless_once_the_noise_is_known_is_taken_back() -> None:
     both = minimise(make_problem(bench, plain.candidates), np.zeros(3))
     found = judged(bench, [both], base, lambda line: None)
     assert [c.effect.name for c in found.fits[0].candidates] == ["cube"]
-    assert found.gate.passed
+    assert found.acceptance.passed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -296,17 +298,19 @@ class Torn(Curve):
     rounds: list[bool] = field(default_factory=list)
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "Torn":
         """Change the noise once more."""
         self.rounds.append(not self.quiet)
         return replace(self, quiet=not self.quiet)
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01, or / 0.005."""
-        return Curve.residual(self, base, terms, stage) * (2.0 if self.quiet else 1.0)
+        return Curve.residual(self, base, terms, resolution) * (
+            2.0 if self.quiet else 1.0
+        )
 
 
 def test_noise_that_goes_to_and_fro_ends_where_it_is_least() -> None:
@@ -330,9 +334,9 @@ def test_confidence_never_falls_with_more_evidence() -> None:
         replace(poor, amplitude=100.0),
         replace(poor, effects=1),
     )
-    sure = [confidence_of(evidence) for evidence in better]
-    assert all(0.5 < confidence_of(poor) <= c < 1.0 for c in sure)
-    assert max(sure) > confidence_of(poor) + 0.02
+    confidences = [confidence_of(evidence) for evidence in better]
+    assert all(0.5 < confidence_of(poor) <= c < 1.0 for c in confidences)
+    assert max(confidences) > confidence_of(poor) + 0.02
 
 
 def test_what_is_left_is_what_the_winner_leaves(
@@ -345,11 +349,11 @@ def test_what_is_left_is_what_the_winner_leaves(
     base = minimise(make_problem(bench, ()), np.zeros(1))
     alone = minimise(make_problem(bench, (cube,)), np.zeros(2))
     both = minimise(make_problem(bench, (cube, square)), np.zeros(3))
-    _, ranked, gate = judging.judge(bench, [alone, both], base, lambda line: None)
+    _, ranked, acceptance = judging.judge(bench, [alone, both], base, lambda line: None)
     assert names_of(ranked[0]) == ["cube", "square"]
-    assert gate.left is not None
-    assert all(d.shift.shape == ranked[0].x.shape for d in gate.left.directions)
-    assert gate.passed
+    assert acceptance.left is not None
+    assert all(d.shift.shape == ranked[0].x.shape for d in acceptance.left.directions)
+    assert acceptance.passed
 
 
 def names_of(fit: Fit) -> list[str]:

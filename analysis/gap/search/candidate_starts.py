@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE, Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import (
@@ -23,7 +23,7 @@ SHARES = SEARCH.start_shares
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Runner:
+class CandidateFit:
     """One start of one candidate set, as far as it has come."""
 
     problem: FitProblem
@@ -37,7 +37,9 @@ class Runner:
         return words_of(self.problem.candidates)
 
 
-def along(problem: FitProblem, fit: Fit, direction: Direction, stage: Stage) -> Runner:
+def along(
+    problem: FitProblem, fit: Fit, direction: Direction, resolution: Resolution
+) -> CandidateFit:
     """Return the best start on the way that a directed test foretells.
 
     The effect comes in and the base gives way together; what is far from small is
@@ -47,7 +49,7 @@ def along(problem: FitProblem, fit: Fit, direction: Direction, stage: Stage) -> 
         problem: of the fit's effects and the one tested, in that order.
         fit: that was tested.
         direction: the test.
-        stage: at which starts are compared.
+        resolution: at which starts are compared.
     """
     full = np.concatenate([fit.x + direction.shift, direction.coordinates])
     trials = [np.concatenate([fit.x, direction.coordinates])]
@@ -60,9 +62,9 @@ def along(problem: FitProblem, fit: Fit, direction: Direction, stage: Stage) -> 
     trials = [np.clip(x, problem.lower, problem.upper) for x in trials]
     costs = []
     for x in trials:
-        costs.append(cost_at(problem, x, stage))
+        costs.append(cost_at(problem, x, resolution))
     best = int(np.argmin(costs))
-    return Runner(problem, trials[best], costs[best])
+    return CandidateFit(problem, trials[best], costs[best])
 
 
 def started(bench: Bench, fit: Fit, direction: Direction) -> Fit:
@@ -74,5 +76,5 @@ def started(bench: Bench, fit: Fit, direction: Direction) -> Fit:
         direction: the test.
     """
     problem = make_problem(bench, (*fit.candidates, direction.candidate))
-    runner = along(problem, fit, direction, MIDDLE)
-    return minimise(problem, runner.x, MIDDLE, iterations=MOST_STEPS)
+    candidate_fit = along(problem, fit, direction, MIDDLE)
+    return minimise(problem, candidate_fit.x, MIDDLE, iterations=MOST_STEPS)

@@ -7,7 +7,7 @@ from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 
 
 @dataclass(frozen=True, slots=True)
-class Stage:
+class Resolution:
     """How thoroughly a residual is evaluated.
 
     Attributes:
@@ -20,6 +20,6 @@ class Stage:
     oversampling: int = RESIDUALS.full_steps
 
 
-MIDDLE = Stage(oversampling=RESIDUALS.middle_steps)
-FULL = Stage()
-FINE = Stage(oversampling=RESIDUALS.fine_steps)
+MIDDLE = Resolution(oversampling=RESIDUALS.middle_steps)
+FULL = Resolution()
+FINE = Resolution(oversampling=RESIDUALS.fine_steps)
