@@ -7,6 +7,7 @@ import sys
 import tomllib
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -51,15 +52,22 @@ def sources(room: str) -> list[Path]:
     return sorted((ROOT / room).rglob("*.py"))
 
 
-def imported(path: Path) -> set[str]:
+@cache
+def tree(path: Path) -> ast.Module:
+    """Return the syntax tree of a module, which many tests look at."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def imported(path: Path) -> frozenset[str]:
     """Return the absolute names that a module imports anywhere."""
     names: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree(path)):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
             names.add(node.module)
-    return names
+    return frozenset(names)
 
 
 def modules() -> dict[str, Path]:
@@ -75,8 +83,8 @@ def imported_modules(path: Path, known: Collection[str]) -> set[str]:
     `from package import name` may mean a module of the package or a name in it, so
     both are looked up; importing a module also imports the packages that hold it.
     """
-    names = imported(path)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    names = set(imported(path))
+    for node in ast.walk(tree(path)):
         if isinstance(node, ast.ImportFrom) and node.module and not node.level:
             names |= {f"{node.module}.{alias.name}" for alias in node.names}
     parts = [name.split(".") for name in names]
@@ -94,7 +102,7 @@ def reached(start: str, known: Mapping[str, Path]) -> set[str]:
     return found
 
 
-def rooms_of(names: set[str]) -> set[str]:
+def rooms_of(names: Collection[str]) -> set[str]:
     """Return the rooms among imported names."""
     return {n.split(".")[1] for n in names if n.startswith("jointbench.")}
 
@@ -173,7 +181,7 @@ def test_no_function_has_more_than_eight_parameters(room: str) -> None:
     over = {
         f"{path.relative_to(ROOT).as_posix()}:{node.name}"
         for path in sources(room)
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in ast.walk(tree(path))
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
         and parameters_of(node) > MOST_PARAMETERS
     }
@@ -200,7 +208,7 @@ def assigned(node: ast.stmt) -> Iterator[str]:
 def public_names(path: Path) -> set[str]:
     """Return the constants, functions and classes that a module offers."""
     names: set[str] = set()
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+    for node in tree(path).body:
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             names.add(node.name)
         names.update(assigned(node))
@@ -228,7 +236,7 @@ def test_a_class_name_stands_in_one_file_and_a_file_name_in_one_folder() -> None
     classes = {
         (node.name, path)
         for path in paths
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in ast.walk(tree(path))
         if isinstance(node, ast.ClassDef)
     }
     files = Counter(path.name for path in paths)
@@ -253,7 +261,7 @@ def test_no_module_takes_its_local_names_as_data(room: str) -> None:
     called = [
         path.name
         for path in sources(room)
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in ast.walk(tree(path))
         if isinstance(node, ast.Name) and node.id == "locals"
     ]
     assert not called

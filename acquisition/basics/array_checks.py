@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Checks of arrays and numbers that every record runs once, when it is made."""
+"""Checks of arrays and numbers at the creation of records."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,7 +11,7 @@ from jointbench.acquisition.basics.errors import ShapeError
 
 
 def require_shape(name: str, array: NDArray[Any], shape: Sequence[int | None]) -> None:
-    """Raise `ShapeError` unless `array` has `shape`; `None` stands for any length."""
+    """Raise `ShapeError` unless `array` has `shape`; `None` means any length."""
     if len(shape) != array.ndim or any(
         want is not None and want != got
         for want, got in zip(shape, array.shape, strict=False)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Array types, and arrays that nobody can write to any more."""
+"""Array types, and read-only arrays."""
 
 from typing import Any
 
@@ -16,7 +16,7 @@ def freeze(record: object, *names: str) -> None:
     """Replace the named array fields of a frozen record by read-only arrays.
 
     Arrays that can be written to are copied, so that no caller can change a record
-    behind its back; `None` fields stay `None`.
+    afterwards; `None` fields stay `None`.
     """
     for name in names:
         value = getattr(record, name)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Functions compiled by numba, kept on disk until any source that went into them moves.
+"""Functions compiled by numba, cached on disk until any of their sources changes.
 
-What a compiled function calls is compiled into it, and the constants that it looks at
-are taken in as numbers, from whatever file they come. Numba's own cache asks only
-whether the file of the function itself has changed (numba issue 1833), so that an edit
-of a file next to it would run the code of before.
+Functions called by a compiled function are compiled into it, and constants are included
+as numbers, from any file. Numba's cache checks only the file of the function itself
+(numba issue 1833), so that after an edit of another file it would run the old code.
 """
 
 import ast
@@ -22,7 +21,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def compiled(**options: Any) -> Callable[[F], F]:
-    """Compile a function as `numba.njit` does, with a cache that is never stale.
+    """Compile a function as `numba.njit`, with a cache that checks all sources.
 
     Args:
         options: of `numba.njit`, but for ``cache``.
@@ -33,7 +32,7 @@ def compiled(**options: Any) -> Callable[[F], F]:
 
     def decorate(function: F) -> F:
         dispatcher: Any = njit(**options)(function)
-        # As `enable_caching` does, which knows one kind of cache only.
+        # As in `enable_caching`, which supports one kind of cache only.
         dispatcher._cache = _Cache(function)  # noqa: SLF001
         made: F = dispatcher
         return made
@@ -42,7 +41,7 @@ def compiled(**options: Any) -> Callable[[F], F]:
 
 
 class _Cache(FunctionCache):
-    """Numba's cache of a function, stamped with all sources that it may hold."""
+    """Numba's cache of a function, stamped with all its sources."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
         super().__init__(function)  # type: ignore[no-untyped-call]
@@ -55,10 +54,10 @@ class _Cache(FunctionCache):
 
 @cache
 def digest_of(module: str) -> str:
-    """Return a digest of a module's source and of all that it imports of its package.
+    """Return a digest of a module's source and of its imports from its package.
 
     Args:
-        module: its name, which need not be imported.
+        module: name of the module, imported or not.
     """
     content = hashlib.sha256()
     for name, path in sorted(_sources(module).items()):
@@ -68,7 +67,7 @@ def digest_of(module: str) -> str:
 
 
 def _sources(module: str) -> dict[str, Path]:
-    """Return the files of a module and of what it imports of its package, by name."""
+    """Return the files of a module and of its imports from its package, by name."""
     package = module.partition(".")[0]
     found: dict[str, Path] = {}
     waiting = [module]
@@ -94,7 +93,7 @@ def _file_of(module: str) -> Path | None:
 
 @cache
 def _imported(path: Path) -> tuple[str, ...]:
-    """Return what a file imports by absolute names, modules and names out of them."""
+    """Return the absolute imports of a file, modules and names in them."""
     names: list[str] = []
     for node in ast.walk(ast.parse(path.read_bytes())):
         if isinstance(node, ast.Import):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The errors a user can meet: one base class, one name for each cause.
+"""The errors for users: one base class, one subclass for each cause.
 
-A message says what was wrong, the value met, the rule and the way out, in one line.
-The command line turns a family into an exit code: `BadData` 3, `InstrumentError` 4.
+A message states the problem, the value, the rule and the remedy, in one line. The
+command line maps a family to an exit code: `BadData` 3, `InstrumentError` 4.
 """
 
 
@@ -19,7 +19,7 @@ class InstrumentError(JointbenchError):
 
 
 class UsageError(JointbenchError):
-    """A request that makes no sense, whatever the data."""
+    """A request that is invalid for any data."""
 
 
 class UnitError(BadData):
@@ -27,15 +27,15 @@ class UnitError(BadData):
 
 
 class FormatError(BadData):
-    """A file that is not what it says it is, or is cut short."""
+    """A file of another format than stated, or a truncated one."""
 
 
 class HostileFile(BadData):
-    """A file that asks for more than a measurement would: refused unread."""
+    """A file that claims more resources than a measurement: refused unread."""
 
 
 class CorruptedFile(FormatError):
-    """A file whose content is not what its own digest says."""
+    """A file whose content does not match its digest."""
 
 
 class SamplingError(BadData):
@@ -43,7 +43,7 @@ class SamplingError(BadData):
 
 
 class ChannelMissing(BadData):
-    """A recording without a channel of the quantity that was asked for."""
+    """A recording without a channel of the requested quantity."""
 
 
 class NoHitFound(BadData):
@@ -55,4 +55,4 @@ class NoModeFound(BadData):
 
 
 class ShapeError(ValueError, JointbenchError):
-    """An array of the wrong shape, order or type was handed to a record."""
+    """An array of the wrong shape, order or type was passed to a record."""

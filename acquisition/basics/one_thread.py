@@ -1,24 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""One thread for linear algebra on small matrices: the same digits, sooner.
+"""One thread for linear algebra on small matrices: reproducible and faster.
 
-A sum that is split over threads rounds otherwise than one that is not: stabilised
-poles differed by 1e-9 between one core and two. And of thousands of small systems each
-waits longer for its second thread than it computes (docs/decisions/0056).
+A sum split over threads is rounded differently: stabilised poles differed by 1e-9
+    between one core and two. And each of thousands of small systems waits longer for
+    its second thread than it computes (docs/decisions/0056).
 """
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import scipy.linalg  # noqa: F401 - its BLAS must be there before it can be limited
+import scipy.linalg  # noqa: F401 - its BLAS must be loaded before it can be limited
 from threadpoolctl import threadpool_limits
 
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Limit BLAS and OpenMP to one thread meanwhile, and give back what they had.
+    """Limit BLAS and OpenMP to one thread, and restore their limits afterwards.
 
-    A context manager, and as ``@one_thread()`` a decorator. A dense problem of
-    thousands of unknowns should not carry it.
+    A context manager, and as ``@one_thread()`` a decorator. Not for dense problems of
+    thousands of unknowns.
     """
     with threadpool_limits(limits=1):
         yield

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Units as text, turned into SI once, where data come in.
+"""Units as text, converted to SI once, at import.
 
 Inside, everything is SI and plain floats; a unit is never guessed.
 """
@@ -66,11 +66,11 @@ _VALUE = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DO
 
 
 def to_si(unit: str, kind: str) -> float:
-    """Return the factor that turns a value in `unit` into SI.
+    """Return the factor from `unit` to SI.
 
     Args:
-        unit: as people write it: ``"um"``, ``"µm"``, ``"m/s^2"``, ``"m/s²"``,
-            ``"N m"``, ``"N·m"``; case matters (``mN`` is not ``MN``).
+        unit: in any usual spelling: ``"um"``, ``"µm"``, ``"m/s^2"``, ``"m/s²"``, ``"N
+            m"``, ``"N·m"``; case matters (``mN`` is not ``MN``).
         kind: the physical quantity, for example ``"length"`` or ``"force"``.
 
     Returns:
@@ -123,7 +123,7 @@ def parse_sensitivity(text: str, kind: str) -> float:
         The sensitivity [V per SI unit of `kind`].
 
     Raises:
-        UnitError: it does not read so, or is not above zero.
+        UnitError: it has another form, or is not above zero.
     """
     example = f"100mV/{example_unit(kind)}"
     number, unit = _split(text, example=example)
@@ -140,18 +140,18 @@ def parse_sensitivity(text: str, kind: str) -> float:
 
 
 def example_unit(kind: str) -> str:
-    """Return a unit of `kind`, for messages that say what to type."""
+    """Return a unit of `kind`, for examples in messages."""
     special = {"acceleration": "m/s^2", "torque": "N m", "damping": "N s/m"}
     return special.get(str(kind)) or next(iter(_UNITS.get(str(kind), {"": 1.0})))
 
 
 def is_unit(unit: str, kind: str) -> bool:
-    """Tell whether `unit` is a unit of `kind`."""
+    """Return whether `unit` is a unit of `kind`."""
     return _normalised(unit) in _UNITS.get(str(kind), {})
 
 
 def _normalised(unit: str) -> str:
-    """Spell a unit the one way the tables do."""
+    """Return a unit in the spelling of the tables."""
     # NFKC turns the micro sign into the Greek letter and a raised 2 into a plain one.
     text = unicodedata.normalize("NFKC", unit).replace("\u03bc", "u")
     return re.sub(r"[\s^*\u00b7\u22c5\u2022]", "", text)

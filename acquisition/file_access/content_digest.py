@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A digest of what an HDF5 file holds, kept in it: accidents show, forgers do not.
+"""A digest of the content of an HDF5 file, stored in it, against accidental changes.
 
 The digest is over names, types, shapes, values, dimensions and attributes, not over the
-bytes of the file: copying or repacking keeps it, a changed number does not. Nothing
-secret goes into it, so whoever changes a number on purpose can write a new digest.
+bytes of the file: copying or repacking keeps it, a changed number does not. It contains
+    no secret, so a deliberate change can include a new digest.
 """
 
 from collections.abc import Iterator
@@ -27,18 +27,18 @@ from jointbench.acquisition.file_access.quoting import named
 DIGEST = "content_sha256"
 """Attribute of the root that holds the digest."""
 _NOT_CONTENT = {DIGEST, "DIMENSION_LIST", "REFERENCE_LIST"}
-"""Left out: the digest itself, and scales, which go in by their names."""
+"""Left out: the digest itself, and scales, which are included by name."""
 _PIECE = 2**24
 """Values are read in pieces of about this size [bytes]."""
 _DAMAGE = (KeyError, ValueError, TypeError, OSError, RuntimeError)
 
 
 class Seal(StrEnum):
-    """What the digest of a file says about its content."""
+    """Result of the comparison of a file with its digest."""
 
     WHOLE = "whole"
     UNSIGNED = "unsigned"
-    CORRUPTED = "rotten"
+    CORRUPTED = "rotten"  # word in files
 
 
 @contextmanager
@@ -48,9 +48,9 @@ def new_signed_file(
     """Write a file as `new_file` does, replacing an earlier one, with its digest.
 
     Args:
-        path: of the file to be.
+        path: of the new file.
         schema: name and version of the layout.
-        title: one line for people who open it elsewhere.
+        title: one line for readers in other programs.
 
     Yields:
         The open file.
@@ -64,7 +64,7 @@ def new_signed_file(
 
 
 def seal_of(file: h5py.File) -> Seal:
-    """Compare the content of a file with its digest; one without is not read.
+    """Compare the content of a file with its digest; a file without one is not read.
 
     Args:
         file: opened by `hdf5_guards.open_guarded`, as all of it is read.
@@ -80,16 +80,16 @@ def seal_of(file: h5py.File) -> Seal:
 
 
 def require_whole(file: h5py.File, path: Path | str) -> None:
-    """Raise `CorruptedFile` if the content of a file is not what its digest says."""
+    """Raise `CorruptedFile` if the content of a file does not match its digest."""
     if seal_of(file) is Seal.CORRUPTED:
         raise CorruptedFile(
-            f"{named(path)} is corrupted: its content does not match its digest; make "
-            "it again from the session, or use another copy"
+            f"{named(path)} is corrupted: its content does not match its digest; "
+            "make it again from the session, or use another copy"
         )
 
 
 def content_digest(file: h5py.File) -> str:
-    """Return the SHA-256 of all that a file holds, as hexadecimal text."""
+    """Return the SHA-256 of the content of a file, as hexadecimal text."""
     digest = sha256()
     waiting: list[h5py.Group | h5py.Dataset] = [file]
     while waiting:
@@ -114,7 +114,7 @@ def _attributes(item: h5py.Group | h5py.Dataset) -> Iterator[bytes]:
         values: np.ndarray[Any, Any] = np.empty(attribute.shape, attribute.dtype)
         attribute.read(values)
         data = values.tobytes()
-        if values.dtype.hasobject:  # a text of variable length: never one of ours
+        if values.dtype.hasobject:  # a text of variable length: of another program
             data = repr(values.tolist()).encode("utf-8", "surrogateescape")
         yield f"{name} {values.dtype.str} {values.shape}\n".encode() + data
 

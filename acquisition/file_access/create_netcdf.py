@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A netCDF-4 file that appears under its name only once it is whole."""
+"""A netCDF-4 file that appears under its name only when complete."""
 
 import os
 import re
@@ -32,17 +32,17 @@ def new_file(
     overwrite: bool = False,
     memory: bool = True,
 ) -> Iterator[h5py.File]:
-    """Write a file that appears under its name only once it is whole.
+    """Write a file that appears under its name only when complete.
 
-    It is written to ``<name>.part`` beside it, forced to the disk and renamed.
+    It is written to ``<name>.part`` next to it, flushed to the disk and renamed.
 
     Args:
-        path: of the file to be.
+        path: of the new file.
         schema: name and version of the layout, for example ``"jointbench-session/1"``.
-        title: one line for people who open it elsewhere.
-        overwrite: replace a file that is there.
-        memory: make the whole file in memory first; whoever writes more than that
-            holds writes to the disk, and sees to it that there is room (`DiskRoom`).
+        title: one line for readers in other programs.
+        overwrite: replace an existing file.
+        memory: build the whole file in memory first; a caller with more data writes to
+            the disk, and reserves room (`DiskRoom`).
 
     Yields:
         The open file, with its root attributes set.
@@ -55,9 +55,9 @@ def new_file(
     _require_free(path, overwrite)
     part = path.with_name(path.name + ".part")
     try:
-        part.write_bytes(b"")  # a folder that takes no file says so before the work
-        # HDF5 that meets a full disk crashes the process when it ends: it writes to
-        # memory, and what it made goes to the disk in one piece.
+        part.write_bytes(b"")  # an unwritable folder is reported before the work
+        # On a full disk HDF5 crashes the process at its end: it writes to memory, and
+        # the result is written to the disk in one piece.
         with h5py.File(part, "w", **(_IN_MEMORY if memory else {})) as file:
             attributes = {"Conventions": _CONVENTIONS, "title": title, "schema": schema}
             write_attributes(file, attributes)
@@ -86,20 +86,19 @@ def _require_free(path: Path, overwrite: bool) -> None:
         raise UsageError(f"{named(path)} is no file; name one that may be written")
     if not overwrite and path.exists():
         raise UsageError(
-            f"{named(path)} is there already; choose another name, or say that it may "
-            "be overwritten"
+            f"{named(path)} exists already; choose another name, or allow overwriting"
         )
 
 
 def _reason(error: OSError) -> str:
-    """Return the system's word for an error, without HDF5's account of itself."""
-    told = re.search(r"errno = (\d+)", str(error))
-    code = error.errno or (int(told[1]) if told else 0)
+    """Return the system's text for an error, without HDF5's own message."""
+    found = re.search(r"errno = (\d+)", str(error))
+    code = error.errno or (int(found[1]) if found else 0)
     return os.strerror(code) if code else "the system refused"
 
 
 def _sync(path: Path) -> None:
-    """Force a file, or the entries of a folder where the system can, to the disk."""
+    """Flush a file, or the entries of a folder where possible, to the disk."""
     try:
         handle = os.open(path, os.O_RDONLY)
     except OSError:

@@ -1,25 +1,25 @@
 # SPDX-License-Identifier: MIT
-"""Room on the disk for a file that HDF5 writes to directly."""
+"""Reserved disk space for a file that HDF5 writes directly."""
 
 import os
 from typing import IO
 
 import h5py
 
-_RESERVE = 2**20  # bytes, more than HDF5's own and the close of the file take
-_STEP = 2**23  # bytes taken at once
+_RESERVE = 2**20  # bytes, more than HDF5 needs for itself and for closing
+_STEP = 2**23  # bytes reserved at once
 
 
 class DiskRoom:
-    """Disk that is taken before HDF5 writes to it.
+    """Disk space that is reserved before HDF5 writes.
 
-    HDF5 that meets a full disk cannot close its file any more, and crashes the process
-    when it ends. So the disk is asked beforehand, beyond what HDF5 has used: it says
-    no to us, and HDF5 still has the room to close.
+    On a full disk HDF5 cannot close its file, and crashes the process at its end. So
+    space is reserved beforehand, beyond that used by HDF5: the error occurs here, and
+    HDF5 still has room to close.
     """
 
     def __init__(self, handle: IO[bytes], file: h5py.File) -> None:
-        """Look after a file.
+        """Reserve space for a file.
 
         Args:
             handle: of the same file, open for reading and writing.
@@ -29,7 +29,7 @@ class DiskRoom:
         self._size = int(file.id.get_filesize())
 
     def make(self, count: int) -> None:
-        """See to it that there is room for an item of so many bytes.
+        """Reserve room for an item of `count` bytes.
 
         Raises:
             OSError: there is none.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One writer for one file: a lock that the system lets go of when its holder dies."""
+"""One writer per file: a lock that the system releases when its holder ends."""
 
 import os
 import sys
@@ -24,7 +24,7 @@ else:
 
 
 def lock_path(path: Path) -> Path:
-    """Return the lock that belongs to a session file."""
+    """Return the path of the lock of a session file."""
     return path.with_name(path.name + ".lock")
 
 
@@ -43,7 +43,7 @@ def hold_lock(path: Path) -> IO[bytes]:
 
 @contextmanager
 def locked(path: Path) -> Iterator[None]:
-    """Hold the lock of a file meanwhile.
+    """Hold the lock of a file within the context.
 
     Raises:
         UsageError: another process holds it, or the folder cannot be written.
@@ -74,9 +74,9 @@ def _grabbed(path: Path) -> IO[bytes]:
 
 
 def _is_there(file: IO[bytes], path: Path) -> bool:
-    """Tell whether a lock just grabbed is still the one under its name.
+    """Return whether an acquired lock is still the file under its name.
 
-    Its last holder may have taken it away between our opening and our grabbing it.
+    Its last holder may have removed it between opening and locking.
     """
     try:
         return os.path.samestat(os.fstat(file.fileno()), lock_path(path).stat())
@@ -85,7 +85,7 @@ def _is_there(file: IO[bytes], path: Path) -> bool:
 
 
 def is_held(path: Path) -> bool:
-    """Tell whether a process is recording into a session file right now."""
+    """Return whether a process is recording into a session file."""
     if not lock_path(path).exists():
         return False
     try:
@@ -96,12 +96,12 @@ def is_held(path: Path) -> bool:
 
 
 def drop_lock(path: Path, file: IO[bytes]) -> None:
-    """Let go of the lock of a session file, and take it away."""
+    """Release the lock of a session file, and remove it."""
     if sys.platform != "win32":
-        # Taken away while it is held: nobody else's lock can go by mistake.
+        # Removed while held, so that no other process's lock is removed.
         with suppress(OSError):
             lock_path(path).unlink(missing_ok=True)
     file.close()
-    if sys.platform == "win32":  # there an open file stays, and others may look at it
+    if sys.platform == "win32":  # an open file cannot be removed there
         with suppress(OSError):
             lock_path(path).unlink(missing_ok=True)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""HDF5 from strangers: looked over before a sample is read.
+"""Check foreign HDF5 files before a sample is read.
 
-HDF5 can name other files, claim sizes it does not hold, and unpack a few bytes into
-gigabytes. A measurement needs none of that, so all of it is refused by name, before
-any value is read and without following any link.
+HDF5 can refer to other files, claim sizes beyond its content, and unpack a few bytes
+into gigabytes. A measurement needs none of that, so it is refused, with a reason,
+before any value is read and without following any link.
 """
 
 import math
@@ -26,15 +26,15 @@ _FILTERS = {
     h5z.FILTER_SHUFFLE: "shuffle",
     h5z.FILTER_FLETCHER32: "fletcher32",
 }
-_DOUBLE, _TEXT = 8, 100  # what a number, and a text beside its characters, takes
+_DOUBLE, _TEXT = 8, 100  # size of a number, and overhead of a text
 _NUMBERS = {h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING}
-# Attributes by which dimension scales point at each other; they are never read here.
+# Attributes that link dimension scales; they are not read here.
 _SCALE_ATTRIBUTES = {b"DIMENSION_LIST", b"REFERENCE_LIST"}
 
 
 @dataclass(frozen=True, slots=True)
 class FileLimits:
-    """What a measurement stays below.
+    """Limits of a measurement file.
 
     Attributes:
         objects: groups and datasets in a file.
@@ -44,15 +44,15 @@ class FileLimits:
         attribute_bytes: of one attribute [bytes].
         dimensions: axes of a dataset.
         chunks: pieces that a file is stored in; HDF5 takes 4 kB of memory for each.
-        chunk_bytes: that a chunk takes in the file at the least [bytes]; where it is
-            above zero, a file that is large enough may have more than `chunks`.
-        unpacked_bytes: of all values [bytes].
-            counted as the doubles that they become, and 100 bytes a text.
+        chunk_bytes: least size of a chunk in the file [bytes]; above zero, a file that
+            is large enough may have more than `chunks`.
+        unpacked_bytes: of all values [bytes], counted as doubles, and 100 bytes per
+            text.
         always_bytes: unpacked size that any file may have [bytes].
         unpacked_ratio: unpacked size of all values over the size of the file, above
-            `always_bytes` [-]. Measured samples shrink by 2 to 10.
+            `always_bytes` [-]. Measured samples compress by 2 to 10.
         variable_texts: texts of variable length in one row that a dataset may hold;
-            whoever allows some reads them one by one and looks at their length.
+            a caller that allows some must read them one by one and check their length.
     """
 
     objects: int = 20_000
@@ -71,7 +71,7 @@ class FileLimits:
 
 @dataclass(slots=True)
 class _Tally:
-    """What was met so far."""
+    """Totals of the objects checked so far."""
 
     path: Path
     limits: FileLimits
@@ -84,8 +84,8 @@ class _Tally:
 
     def refuse(self, name: str, rule: str) -> HostileFile:
         return HostileFile(
-            f"{named(self.path)}: {shown(name)} {rule}; it was refused unread: ask for "
-            "a plain copy of the file"
+            f"{named(self.path)}: {shown(name)} {rule}; it was refused unread: "
+            "request a plain copy of the file"
         )
 
 
@@ -93,20 +93,20 @@ class _Tally:
 def open_guarded(
     path: Path | str, *, limits: FileLimits | None = None
 ) -> Iterator[h5py.File]:
-    """Open an HDF5 file for reading once nothing in it can do harm.
+    """Open an HDF5 file for reading after a check for harmful content.
 
     Args:
         path: of the file.
-        limits: what to allow; sizes no measurement exceeds if None.
+        limits: limits; None for those of any measurement.
 
     Yields:
         The open file.
 
     Raises:
         BadData: it cannot be opened.
-        FormatError: it is empty, cut short or no HDF5.
-        HostileFile: it points elsewhere or asks for more than a measurement would;
-            the message names the object and the rule.
+        FormatError: it is empty, truncated or no HDF5.
+        HostileFile: it refers to other files or exceeds the limits; the message names
+            the object and the rule.
     """
     path = Path(path)
     _require_signature(path)
@@ -123,7 +123,7 @@ def open_guarded(
 
 
 def _open(path: Path) -> h5py.File:
-    """Open a file; one whose recording was killed opens as its reader would."""
+    """Open a file, also one of a killed recording."""
     try:
         return h5py.File(path, "r")
     except OSError:
@@ -145,7 +145,7 @@ def _require_signature(path: Path) -> None:
 
 
 def _inspect(file: h5py.File, path: Path, limits: FileLimits) -> None:
-    """Walk over all objects by their links, never through them."""
+    """Check all objects by their links, without following these."""
     tally = _Tally(path, limits, file_size(path))
     try:
         _walk(file, tally)
@@ -162,7 +162,7 @@ def _walk(file: h5py.File, tally: _Tally) -> None:
     while waiting:
         group, name, depth = waiting.pop()
         opened = h5g.open(group, name.encode("utf-8", "surrogateescape"))
-        # The number of entries is asked for first: listing millions takes for ever.
+        # The number of entries is read first: listing millions takes too long.
         tally.objects += opened.get_num_objs()
         if tally.objects > tally.limits.objects:
             raise tally.refuse(
@@ -244,7 +244,7 @@ def _check_size(
     name: str,
     tally: _Tally,
 ) -> None:
-    """Count what reading would unpack, whole chunks included."""
+    """Add the unpacked size, in whole chunks."""
     shape, limits = dataset.shape, tally.limits
     if len(shape) > limits.dimensions:
         raise tally.refuse(name, f"has {len(shape)} dimensions")
@@ -262,7 +262,7 @@ def _check_size(
     if tally.chunks > max(limits.chunks, stored):
         raise tally.refuse(name, f"brings the file to {tally.chunks} chunks")
     allowed = max(limits.always_bytes, limits.unpacked_ratio * tally.file_bytes)
-    # What is read is looked over once more, and single precision made double.
+    # Values are copied once more for checks, and single precision becomes double.
     allowed = min(allowed, 0.7 * room(tally.file_bytes), limits.unpacked_bytes)
     if tally.unpacked > allowed:
         raise tally.refuse(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What stands where in an open HDF5 file: groups, and the axes of its datasets."""
+"""Groups of an open HDF5 file, and the axes of its datasets."""
 
 import h5py
 
@@ -8,7 +8,7 @@ from jointbench.acquisition.file_access.netcdf_write import NO_VARIABLE
 
 
 def find_group(parent: h5py.Group, name: str) -> h5py.Group | None:
-    """Return a group, or None where there is nothing of that name.
+    """Return a group, or None if the name does not exist.
 
     Raises:
         FormatError: it is a dataset.
@@ -31,7 +31,7 @@ def dimension_names(dataset: h5py.Dataset) -> tuple[str, ...]:
 
 
 def is_dimension_only(dataset: h5py.Dataset) -> bool:
-    """Tell whether a dataset stands for a dimension and holds no values."""
+    """Return whether a dataset is a dimension without values."""
     label = dataset.attrs.get("NAME", b"")
     text = label.decode("utf-8", "ignore") if isinstance(label, bytes) else str(label)
     return bool(dataset.is_scale) and text.startswith(NO_VARIABLE)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What a file may take in memory: known before it is read, whatever it claims.
+"""Memory limit of a file, set before it is read.
 
-A reader of foreign bytes keeps to 500 MB and four times the file. Interpreter and
-libraries take 150 MB of these; the rest is here. Samples of one byte become doubles of
-eight, and packed ones more, so the size of the file alone bounds nothing.
+A reader of foreign files is limited to 500 MB and four times the file. Interpreter and
+libraries use 150 MB of these; the rest is here. Samples of one byte become doubles of
+eight, and packed ones more, so the size of the file alone is no bound.
 """
 
 import os
@@ -16,33 +16,33 @@ from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_size
 
 ROOM = 350
-"""Beside four times the file [MB]."""
+"""In addition to four times the file [MB]."""
 VARIABLE = "JOINTBENCH_MEMORY_MB"
-"""Of the environment: what to allow in place of `ROOM`, for files one trusts."""
+"""Environment variable that replaces `ROOM`, for trusted files."""
 MAX_ROWS = 200_000
-"""Of a table that becomes a record a row: hits, quantities, steps."""
+"""Most rows of a table with one record per row: hits, quantities, steps."""
 MAX_JSON = 4_000_000
-"""Characters of JSON in a file: lists of nothing take twenty times their text."""
+"""Most characters of JSON in a file: empty lists take twenty times their text."""
 _MB = 10**6
 _PIECE = 2**24
 
 
 def require_short_json(*texts: str) -> None:
-    """Raise `HostileFile` where texts of JSON are longer than any of ours."""
+    """Raise `HostileFile` where texts of JSON exceed the limit."""
     length = sum(map(len, texts))
     if length > MAX_JSON:
         raise HostileFile(f"it holds {length} characters of JSON, at most {MAX_JSON}")
 
 
 def room(size: int) -> int:
-    """Return what a file of `size` [bytes] may take in memory [bytes]."""
+    """Return the memory limit [bytes] of a file of `size` [bytes]."""
     given = os.environ.get(VARIABLE, "")
     floor = int(given) if given.isdecimal() else ROOM
     return floor * _MB + 4 * size
 
 
 def count_cells(data: bytes) -> int:
-    """Return how many words blanks, tabs, commas, semicolons and line ends part."""
+    """Count words separated by blanks, tabs, commas, semicolons and line ends."""
     marks = np.zeros(256, dtype=bool)
     marks[[*b" \t\n,;"]] = True
     found = 0
@@ -53,11 +53,11 @@ def count_cells(data: bytes) -> int:
 
 
 def require_room(path: Path, needed: float) -> None:
-    """Raise `HostileFile` where reading a file takes more memory than it may.
+    """Raise `HostileFile` where reading a file exceeds its memory limit.
 
     Args:
         path: of the file.
-        needed: what it would take [bytes].
+        needed: memory to read it [bytes].
     """
     allowed = room(file_size(path))
     if needed > allowed:

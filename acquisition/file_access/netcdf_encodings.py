@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What netCDF-4 has no plain type for: words as flags, texts, complex numbers."""
+"""Types that netCDF-4 lacks: words as flags, texts, complex numbers."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -24,7 +24,7 @@ def write_flags(
     meanings: Sequence[str],
     long_name: str,
 ) -> h5py.Dataset:
-    """Write small whole numbers that each stand for a word (CF flags).
+    """Write words as small integers (CF flags).
 
     Args:
         group: where.
@@ -32,7 +32,7 @@ def write_flags(
         codes: index into `meanings`, any shape.
         dims: one name for each axis.
         meanings: words without blanks, by code.
-        long_name: what it is, in words.
+        long_name: description.
     """
     values = np.asarray(codes, dtype=np.int8)
     dataset = write_variable(group, name, values, dims, long_name=long_name)

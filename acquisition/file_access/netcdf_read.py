@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads back what `netcdf_write` wrote; `hdf5_guards.open_guarded` opens the file."""
+"""Read the content of `netcdf_write`; `hdf5_guards.open_guarded` opens the file."""
 
 import h5py
 import numpy as np
@@ -51,10 +51,9 @@ def read_texts(dataset: h5py.Dataset) -> tuple[str, ...]:
 
 
 def require_rows(dataset: h5py.Dataset) -> None:
-    """Raise `HostileFile` where a table has more rows than any measurement.
+    """Raise `HostileFile` where a table has too many rows.
 
-    For tables of which every row becomes a record: that takes far more memory than
-    the numbers.
+    For tables with one record per row, which take far more memory than the numbers.
     """
     if dataset.size > MAX_ROWS:
         raise HostileFile(

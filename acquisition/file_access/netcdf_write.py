@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""HDF5 that netCDF-4 readers understand: dimension scales, units, even axes.
+"""Write HDF5 for netCDF-4 readers: dimension scales, units, even axes.
 
-Both the session file and the results file beside it are written through these
-helpers, those of `netcdf_encodings` and `create_netcdf`. They keep to what every
-reader has: no compound types, no variable-length data, no plug-in filters; complex
-numbers are two real variables, texts are character arrays with an `_Encoding`, and an
-even axis is whole numbers with `scale_factor` and `add_offset`, which readers that
-know CF turn into seconds or metres by themselves.
+Both session and results files are written with these functions and those of
+`netcdf_encodings` and `create_netcdf`. They use only what every reader supports: no
+compound types, no variable-length data, no plug-in filters; complex numbers are two
+real variables, texts are character arrays with an `_Encoding`, and an even axis is
+whole numbers with `scale_factor` and `add_offset`, which readers with CF support
+convert to seconds or metres.
 
 Source:
     netCDF-4 file format specification (Unidata), HDF5 dimension scales;
@@ -23,11 +23,11 @@ import numpy as np
 from jointbench.acquisition.basics.errors import BadData, ShapeError
 from jointbench.acquisition.file_access.quoting import shown
 
-# What netCDF-4 calls a dimension that has no coordinate variable.
+# Name in netCDF-4 of a dimension without a coordinate variable.
 NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
-_MAX_ATTRIBUTE_BYTES = 60_000  # HDF5 keeps at most 64 KiB beside an object
+_MAX_ATTRIBUTE_BYTES = 60_000  # HDF5 stores at most 64 KiB in an object header
 CHUNK_VALUES = 65_536
-"""Values of a chunk; what is written piece by piece is written by so many columns."""
+"""Values of a chunk; data in pieces are written in as many columns."""
 _COMPRESS_FROM = 256  # values; below, a chunk costs more than it saves
 
 Attribute = str | int | float | bool
@@ -79,8 +79,8 @@ def write_variable(
         name: of the variable.
         values: real numbers or small integers of any shape, none of it zero.
         dims: one name for each axis; looked up in `group` and the groups above it.
-        units: SI unit, for example ``"m/s2"``; None where there is none to state.
-        long_name: what it is, in words.
+        units: SI unit, for example ``"m/s2"``; None without one.
+        long_name: description.
         attributes: anything else.
 
     Returns:
@@ -121,7 +121,7 @@ def make_variable(
         kind: shape and type of the values.
         dims: one name for each axis.
         units: SI unit, or None.
-        long_name: what it is, in words.
+        long_name: description.
         attributes: anything else.
 
     Raises:
@@ -156,7 +156,7 @@ def write_axis(
     units: str,
     long_name: str,
 ) -> h5py.Dataset:
-    """Write an even axis as whole numbers, which costs next to nothing.
+    """Write an even axis as whole numbers, which compress well.
 
     Args:
         group: where.
@@ -165,7 +165,7 @@ def write_axis(
         step: distance of neighbours [units].
         origin: value at index 0 [units].
         units: of `step` and `origin`.
-        long_name: what it is, in words.
+        long_name: description.
     """
     packing = {"scale_factor": float(step), "add_offset": float(origin)}
     dataset = make_variable(
@@ -184,7 +184,7 @@ def write_axis(
 
 
 def encode_text(text: str, name: str) -> bytes:
-    """Return UTF-8 without what a fixed-length text would lose."""
+    """Return UTF-8 that a fixed-length text stores without loss."""
     try:
         data = text.encode("utf-8")
     except UnicodeEncodeError as error:

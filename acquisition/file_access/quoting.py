@@ -6,7 +6,7 @@ from pathlib import Path
 
 _SHOWN = 60
 _SHOWN_PATH = 160
-# Letters and marks that Unicode counts as printable although they leave no mark:
+# Letters and marks that Unicode counts as printable although they are invisible:
 # joiner, fillers of Hangul, inherent vowels of Khmer, selectors of a variant.
 _NO_WIDTH = re.compile(
     "[\u034f\u115f\u1160\u17b4\u17b5\u3164\uffa0\ufe00-\ufe0f\U000e0100-\U000e01ef]"
@@ -27,12 +27,12 @@ def named(path: Path | str) -> str:
 
 
 def visible(text: str) -> str:
-    r"""Return `text` with every character that does not show written as its escape.
+    r"""Return `text` with every invisible character as its escape.
 
-    Names in files may hold line ends, sequences that command a terminal, marks that
-    turn the direction of writing, letters of no width, or bytes that are no text at
-    all. Whatever shows a text from a file (terminal, message, CSV, HTML, universal
-    file) takes it through here; JSON escapes by itself, binary formats keep it.
+    Names in files may contain line ends, terminal control sequences, marks that reverse
+    the direction of writing, letters of zero width, or bytes that are no text. All
+    output of texts from files (terminal, message, CSV, HTML, universal file) passes
+    through this function; JSON escapes by itself, binary formats keep it.
 
     >>> visible("a1\x1b[2J")
     'a1\\x1b[2J'
@@ -46,6 +46,6 @@ def visible(text: str) -> str:
 
 
 def _escape(character: str) -> str:
-    """Return the escape by which Python writes a character, whether it shows or not."""
+    """Return the Python escape of a character, visible or not."""
     written = repr(character)[1:-1]
     return written if written != character else f"\\u{ord(character):04x}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files as text: opened with a limit, decoded without loss, named in every message."""
+"""Read files as text: size limit, lossless decoding, file name in every message."""
 
 import codecs
 import hashlib
@@ -10,11 +10,11 @@ from pathlib import Path
 from jointbench.acquisition.basics.errors import BadData, FormatError, HostileFile
 from jointbench.acquisition.file_access.quoting import named
 
-# A text takes up to six times its size in memory, a line 60 bytes beside its own.
+# A text takes up to six times its size in memory, a line an extra 60 bytes.
 _MAX_TEXT_BYTES = 100_000_000
 MAX_LINES = 3_000_000
 _BYTES_A_LINE = 100
-"""A larger text may have one more line for so many of its characters."""
+"""Characters of a larger text per additional line."""
 _MAX_LINE_CHARACTERS = 2**20
 _BOMS = (
     (codecs.BOM_UTF8, "utf-8-sig"),
@@ -22,8 +22,8 @@ _BOMS = (
     (codecs.BOM_UTF16_BE, "utf-16"),
 )
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-# What a text never holds: control characters other than tab, line and page ends and
-# the Ctrl-Z that old programs put at the end.
+# Characters of no text: control characters other than tab, line feed, form feed and the
+# Ctrl-Z that old programs put at the end.
 _BINARY = re.compile("[\x00-\x08\x0b\x0e-\x19\x1b-\x1f\x7f]")
 
 
@@ -79,7 +79,7 @@ def read_bytes(path: Path | str, *, limit: int = _MAX_TEXT_BYTES) -> bytes:
 
 
 def decode(data: bytes, path: Path | str) -> tuple[str, str]:
-    r"""Decode UTF-8, UTF-16 or Windows-1252, whichever fits without a loss.
+    r"""Decode UTF-8, UTF-16 or Windows-1252, the first that fits without loss.
 
     Args:
         data: the content.
@@ -89,7 +89,7 @@ def decode(data: bytes, path: Path | str) -> tuple[str, str]:
         The text with ``\n`` at the line ends, and the name of the encoding.
 
     Raises:
-        FormatError: it is none of the three, or is no text at all.
+        FormatError: it is none of the three, or no text.
     """
     if data.startswith(_HDF5):
         raise FormatError(
@@ -115,7 +115,7 @@ def decode(data: bytes, path: Path | str) -> tuple[str, str]:
 
 
 def text_lines(text: str, path: Path | str) -> list[str]:
-    """Split a text into lines, none of them endless.
+    """Split a text into lines of limited length.
 
     Raises:
         HostileFile: a line has more than a million characters, or there are more
@@ -142,7 +142,7 @@ def _candidates(data: bytes) -> tuple[str, ...]:
         if data.startswith(mark):
             return (encoding,)
     head = data[:400]
-    # Digits in UTF-16 are every other byte zero, with or without a mark in front.
+    # In UTF-16 digits have every other byte zero, with or without a byte-order mark.
     if head and head[1::2].count(0) > 0.8 * len(head[1::2]):
         return ("utf-16-le",)
     if head and head[0::2].count(0) > 0.8 * len(head[0::2]):

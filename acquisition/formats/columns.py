@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What each column of a plain table holds, as the user types it after --columns.
+"""Columns of a plain table, from the option --columns.
 
 The grammar, one item a column, joined by commas::
 
@@ -55,9 +55,8 @@ class Column:
         label: name of the channel; empty if not given.
         point: where the sensor sits; empty if not given.
         sensitivity: [V per SI unit] where the unit is a voltage, else None.
-        code: number that stands for a missing value [unit], or None.
-        spacing: distance of neighbouring heights [m], of a column z that stands
-            without x, or None.
+        code: code of a missing value [unit], or None.
+        spacing: distance of neighbouring heights [m], of a column z without x, or None.
     """
 
     role: str
@@ -70,7 +69,7 @@ class Column:
 
     @property
     def factor(self) -> float:
-        """Factor that turns the numbers of the column into SI."""
+        """Factor from the numbers of the column to SI."""
         if self.role == SKIP:
             return 1.0
         if self.sensitivity is not None:
@@ -79,7 +78,7 @@ class Column:
 
 
 def parse_columns(spec: str) -> tuple[Column, ...]:
-    """Read what the user typed after ``--columns``.
+    """Parse the option ``--columns``.
 
     Args:
         spec: see the grammar at the top of this module.
@@ -103,7 +102,7 @@ def parse_columns(spec: str) -> tuple[Column, ...]:
 
 
 def only_roles(columns: Sequence[Column], allowed: Sequence[str], what: str) -> None:
-    """Raise `UsageError` if a column has a role that `what` has no use for."""
+    """Raise `UsageError` if a column has a role that `what` does not support."""
     for column in columns:
         if column.role != SKIP and column.role not in allowed:
             raise UsageError(
@@ -161,7 +160,7 @@ def _sensitivity(item: str, role: str, unit: str, given: str | None) -> float | 
         return None
     if given is None:
         raise UnitError(
-            f"column {item!r} is in volts; say the sensitivity of the sensor, for "
+            f"column {item!r} is in volts; give the sensitivity of the sensor, for "
             f"example {role}:{unit.strip()}@{_SENSITIVITIES[role]}"
         )
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Are printed stamps evenly spaced? Rounding is forgiven, a gap is not.
+"""Check that printed stamps are evenly spaced, up to rounding.
 
 A stamp printed with few digits is an interval: half a unit of its last digit to
 either side. Stamps are even if one straight line over the index passes through all
@@ -14,13 +14,13 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import SamplingError
 
-# Wobble of unrounded stamps that is put down to the clock that wrote them [step].
+# Jitter of unrounded stamps attributed to the clock [step].
 JITTER = 0.02
-# A lost sample or two, or a row written twice, look like rounding where the steps are
-# otherwise all equal to the digit: so few are taken for a fault.
+# One or two lost samples, or a repeated row, look like rounding where all other steps
+# are equal to the digit: this many odd steps are a fault.
 _FEW_LONG = 2
 _FEW_SHORT = 1
-# How far a step of unrounded stamps may be moved to a round number.
+# Largest change of a step of unrounded stamps to a round number.
 _TIGHT = 1e-9
 _MAX_DECIMALS = 12
 _MAX_DIGITS = 10
@@ -31,10 +31,10 @@ class EvenSteps:
     """A straight line through all stamps.
 
     Attributes:
-        step: distance of neighbours: the whole span over (n - 1), kept in bounds.
+        step: distance of neighbours: the span over (n - 1), within the bounds.
         low: smallest step that the printed digits allow.
         high: largest step that they allow.
-        resolution: coarsest unit of the last digit; 0 if the digits are not few.
+        resolution: coarsest unit of the last digit; 0 for stamps of full precision.
     """
 
     step: float
@@ -55,19 +55,19 @@ def fit_even_steps(
 
     Args:
         stamps: as printed, in the unit of the file, shape (n,), n >= 2.
-        what: what the stamps are, for messages: ``"time"``.
+        what: name of the stamps, for messages: ``"time"``.
         unit: their unit, for messages.
-        where: names the place of a stamp in its file by its index.
+        where: returns the place of a stamp in its file, by index.
         printed: returns the unit of the last printed digit of each stamp [unit],
-            shape (n,); asked only where the values alone do not explain the print,
-            as in files that change the number of digits half-way.
+            shape (n,); used only where the values alone do not explain the digits, as
+            in files with a changing number of digits.
 
     Returns:
         The step and its bounds [unit].
 
     Raises:
-        SamplingError: a stamp is not a number, they run backwards or stand still, or
-            are not even; the message names the first place and both values.
+        SamplingError: a stamp is not a number, they decrease or are constant, or are
+            not even; the message names the first place and both values.
     """
     if stamps.size < 2:
         raise SamplingError(f"{what} has {stamps.size} values, at least 2 are needed")
@@ -94,14 +94,14 @@ def fit_even_steps(
 def printed_resolution(stamps: FloatArray) -> FloatArray:
     """Guess the unit of the last printed digit of each stamp from the values.
 
-    Fixed decimals, few significant digits and single precision are told apart by
-    what all values agree with; where several fit, the coarsest counts.
+    Fixed decimals, few significant digits and single precision are distinguished by
+    agreement of all values; where several fit, the coarsest counts.
 
     Args:
         stamps: shape (n,), finite.
 
     Returns:
-        Unit of the last digit of each stamp, shape (n,); 0 where no rounding shows.
+        Unit of the last digit of each stamp, shape (n,); 0 without visible rounding.
     """
     resolution = np.zeros(stamps.shape)
     for decimals in range(-3, _MAX_DECIMALS + 1):
@@ -139,12 +139,13 @@ def roundest(low: float, high: float) -> float:
 
 
 def _are_multiples(values: FloatArray, unit: FloatArray) -> bool:
-    """Tell whether all values are whole multiples of their units, by a sample first."""
+    """Return whether all values are multiples of their units, by a sample first."""
     for part in (slice(None, None, max(1, values.size // 200)), slice(None)):
         scaled = np.abs(values[part] / unit[part])
         off = np.abs(scaled - np.rint(scaled))
         tiny = (scaled > 0) & (scaled < 0.5)
-        # Beyond 1e10 a double has no digits left to tell a multiple from any number.
+        # Beyond 1e10 a double has no digits left to distinguish a multiple from any
+        # number.
         if scaled.max() > 1e10 or off.max() > 1e-5 or np.any(tiny):
             return False
     return True
@@ -169,7 +170,7 @@ def _require_rising(
         )
     if stamps[-1] == stamps[0]:
         raise SamplingError(
-            f"{where(stamps.size - 1)}: {what} stands still at {stamps[0]:.9g} {unit} "
+            f"{where(stamps.size - 1)}: {what} is constant at {stamps[0]:.9g} {unit} "
             "from the first row to the last; is it the right column?"
         )
 
@@ -180,7 +181,7 @@ def _noise(stamps: FloatArray) -> float:
 
 
 def _few_odd_steps(stamps: FloatArray) -> int | None:
-    """Return the first odd step where one or two stand among equal ones."""
+    """Return the first odd step if there are one or two among equal ones."""
     steps = np.diff(stamps)
     usual = float(np.median(steps))
     odd = np.flatnonzero(np.abs(steps - usual) > 1e-6 * usual + 2 * _noise(stamps))
@@ -207,7 +208,7 @@ def _fit(stamps: FloatArray, resolution: FloatArray) -> EvenSteps | None:
 
 
 def _first_fault(stamps: FloatArray, resolution: FloatArray) -> int:
-    """Return the index before the first stamp that no even line reaches."""
+    """Return the index before the first stamp that does not fit an even line."""
     good, bad = 2, stamps.size
     while bad - good > 1:
         middle = (good + bad) // 2
@@ -226,10 +227,10 @@ def _slope_bounds(stamps: FloatArray, half: FloatArray) -> tuple[float, float] |
 
 
 def _largest_slope(stamps: FloatArray, half: FloatArray) -> float | None:
-    """Return the largest slope of a line that stabs all intervals, or None.
+    """Return the largest slope of a line through all intervals, or None.
 
-    A line of slope b stabs them all where g(b) = max(lower - b i) - min(upper - b i)
-    is not above zero. g is convex; Newton's method from a bound above walks down to
+    A line of slope b passes through all where g(b) = max(lower - b i) - min(upper - b
+    i) is not above zero. g is convex; Newton's method from an upper bound converges to
     its larger root, or past its minimum where there is none.
     """
     index = np.arange(stamps.size, dtype=np.float64)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Units that stand above the columns of a table: ``time [s];force [N]``, or in a row.
+"""Units above the columns of a table: ``time [s];force [N]``, or in a row.
 
-A header is taken only whole: one column whose unit is missing or belongs to no or two
-quantities, and the user says what all of them are.
+A header is used only if complete: if the unit of one column is missing or ambiguous,
+    the user must give all columns.
 """
 
 import re
@@ -30,8 +30,8 @@ def stated_units(table: Table) -> tuple[tuple[str, str], ...]:
         table: as read, with the lines above its numbers.
 
     Returns:
-        One pair a column, the unit empty where a column states none; nothing where
-        the header has not as many cells as the table, or states no unit.
+        One pair per column, the unit empty where not stated; empty if the header has
+        another number of cells than the table, or no unit.
     """
     lines = [line for line in table.header if line.strip()]
     if not lines:
@@ -54,7 +54,7 @@ def stated_units(table: Table) -> tuple[tuple[str, str], ...]:
 
 
 def _cells(line: str, table: Table) -> list[str]:
-    """Return the cells of a header; of one laid out by blanks each with its unit."""
+    """Return the cells of a header; if separated by blanks, each with its unit."""
     plain = line.strip().lstrip("#%/ ")
     if table.delimiter is None and "[" in plain + line.replace("(", "["):
         return _NAMED_UNIT.findall(plain)
@@ -66,14 +66,14 @@ def _kinds(unit: str) -> list[str]:
 
 
 def hit_columns_stated(table: Table) -> tuple[Column, ...] | None:
-    """Return what the columns of a table of hits hold, as its header says.
+    """Return the columns of a table of hits, from its header.
 
     Args:
         table: as read.
 
     Returns:
         One time and at least one quantity, each column's unit a unit of one of them;
-        None where that is not so. Channels have the names of the header.
+        else None. Channels have the names of the header.
     """
     pairs = stated_units(table)
     columns = []
@@ -92,7 +92,7 @@ def hit_columns_stated(table: Table) -> tuple[Column, ...] | None:
 
 
 def units_words(table: Table) -> str:
-    """Say what the header of a table states of units, and what is missing in it."""
+    """Describe the units in the header of a table, and what is missing."""
     pairs = stated_units(table)
     if not pairs:
         lines = [line for line in table.header if line.strip()]

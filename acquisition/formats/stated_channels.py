@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Channels as a foreign file states them, and the recording that they make.
+"""Channels as stated by a foreign file, and their recording.
 
 A unit is taken from the file where the file states it, else from ``--columns``, whose
-labels then are the file's names of the channels. What neither says is refused.
+labels then are the file's names of the channels. Channels without a unit from either
+are refused.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -71,22 +72,22 @@ def recording_of(
     layout: str,
     name: str | None = None,
 ) -> Recording:
-    """Make a recording of the channels of a foreign file.
+    """Return the channels of a foreign file as a recording.
 
     Args:
         path: of the file.
-        stated: its channels, none of them read so far.
+        stated: its channels, not read yet.
         sample_rate: [Hz].
-        columns: what they hold, or None where the file says it.
-        point: where the hammer struck, unless the file or `columns` says.
+        columns: their quantities, or None if the file states them.
+        point: where the hammer struck, if neither the file nor `columns` states it.
         layout: name of the format, for the provenance.
         name: of the recording; that of the file if None.
 
     Raises:
         UnitError: a unit is missing, unknown, or not the one that the file states.
         UsageError: `columns` names a channel that is not there.
-        SamplingError: the channels have no, or not the same number of samples, or a
-            rate that is none.
+        SamplingError: the channels have no, or not the same number of samples, or an
+            invalid rate.
         HostileFile: there are more samples than any measurement has.
         BadData: a sample is not finite.
     """
@@ -145,7 +146,7 @@ def _require_even(path: Path, channels: Sequence[StatedChannel]) -> None:
 def _as_stated(
     path: Path, stated: Sequence[StatedChannel]
 ) -> list[tuple[StatedChannel, Column]]:
-    """Return each channel with the column that its own unit makes of it.
+    """Return each channel with a column from its stated unit.
 
     Raises:
         UnitError: a unit is missing, or belongs to no quantity.
@@ -160,7 +161,7 @@ def _as_stated(
 
 
 def _quantity_of(unit: str) -> Quantity | None:
-    """Return the one quantity that a unit belongs to."""
+    """Return the single quantity of a unit."""
     found = [quantity for quantity in Quantity if is_unit(unit, quantity.value)]
     return found[0] if len(found) == 1 else None
 
@@ -178,8 +179,8 @@ def _what_to_type(
         kinds = channel.quantity.value if channel.quantity else ", ".join(QUANTITIES)
         unit = f"states the unit {shown(channel.unit)}, which is none of {kinds}"
     return (
-        f"{named(path)}: channel {shown(channel.name)} {unit}; say what the channels "
-        f"are, for example --columns '{','.join(items)}'"
+        f"{named(path)}: channel {shown(channel.name)} {unit}; describe the channels, "
+        f"for example --columns '{','.join(items)}'"
     )
 
 
@@ -188,7 +189,7 @@ def _named(
 ) -> list[tuple[StatedChannel, Column]]:
     """Return the channels that the columns name by label, or by order without."""
     wanted = parse_columns(columns)
-    only_roles(wanted, QUANTITIES, "a recording whose file tells the time")
+    only_roles(wanted, QUANTITIES, "a recording whose file states the time")
     labelled = [column.label for column in wanted if column.role != SKIP]
     names = [channel.name for channel in stated]
     if not any(labelled):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Cells of a line of text: how a row is split, what is a number, what is missing."""
+"""Cells of a line of text: splitting, numbers, missing values."""
 
 import re
 from pathlib import Path

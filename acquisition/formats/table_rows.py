@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rows of a plain table as numbers: at once where they are plain, else cell by cell."""
+"""Rows of a plain table as numbers: in blocks if plain, else cell by cell."""
 
 import re
 from pathlib import Path
@@ -19,7 +19,7 @@ from jointbench.acquisition.formats.table_start import (
 )
 
 _BLOCK, _FEW = 65_536, 1024
-"""Rows that are parsed at once, and again in fewer where one has no number."""
+"""Rows parsed at once, and in smaller blocks where a cell has no number."""
 
 
 _MAX_SLOW_CELLS = 3_000_000
@@ -76,7 +76,7 @@ def _with_nan(rows: list[str], start: TableStart) -> list[str]:
 
 
 def _parse_fast(rows: list[str], start: TableStart) -> FloatArray | None:
-    """Let NumPy read what has a number in every cell; None where one has not."""
+    """Parse rows with NumPy; None if a cell has no number."""
     try:
         table = np.loadtxt(
             rows, delimiter=start.delimiter, comments=None, quotechar='"', ndmin=2
@@ -104,7 +104,7 @@ def _parse_carefully(
 
 
 def without_empty_tail(values: FloatArray) -> FloatArray:
-    """Drop columns that only a separator at the end of every line made."""
+    """Drop empty columns due to a separator at the end of every line."""
     keep = values.shape[0]
     while keep > 1 and np.all(np.isnan(values[keep - 1])):
         keep -= 1

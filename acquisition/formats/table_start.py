@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the numbers of a plain table begin, and what parts its columns."""
+"""Start of the numbers of a plain table, and its column separator."""
 
 import re
 from collections.abc import Sequence
@@ -41,7 +41,7 @@ _GROUPED = re.compile(r"\d(?:\.\d{3})+,\d|\d(?:,\d{3})+\.\d")
 
 @dataclass(frozen=True, slots=True)
 class TableStart:
-    """Where the numbers begin and how they are told apart."""
+    """First row of numbers, and their layout."""
 
     line: int
     delimiter: str | None
@@ -49,7 +49,7 @@ class TableStart:
 
 
 def find_start(lines: Sequence[str], path: Path) -> TableStart:
-    """Find the first two lines of numbers in a row that agree in layout."""
+    """Find the first two consecutive lines of numbers with the same layout."""
     seen: TableStart | None = None
     for i, line in enumerate(lines[: MAX_HEADER_LINES + 1]):
         if not is_row(line):
@@ -75,7 +75,7 @@ def find_start(lines: Sequence[str], path: Path) -> TableStart:
 
 
 def _refuse_rows_above(lines: Sequence[str], start: TableStart, path: Path) -> None:
-    """Raise where a row of the table stands above what would pass for its header."""
+    """Raise where a row of the table is above the apparent header."""
     for i in range(start.line):
         above = _numeric_layout(i, lines[i]) if is_row(lines[i]) else None
         if above and _same_layout(above, start):
@@ -87,7 +87,7 @@ def _refuse_rows_above(lines: Sequence[str], start: TableStart, path: Path) -> N
 
 
 def is_row(line: str) -> bool:
-    """Tell whether a line is neither empty nor a comment."""
+    """Return whether a line is neither empty nor a comment."""
     if line[:1] in _FIRST_OF_NUMBER and line:
         return True
     return bool(line.strip(" \t\x1a\f")) and not line.lstrip().startswith(_COMMENT)

@@ -34,30 +34,30 @@ from jointbench.acquisition.formats.table_start import (
 
 _MAX_ROWS = 20_000_000
 MAX_CELLS = 100_000_000
-# Beyond what any instrument reads, and its powers still fit a double [SI unit].
+# Largest accepted value; its powers still fit a double [SI unit].
 _LARGEST_VALUE = 1e30
 _NPY_MAGIC = b"\x93NUMPY"
-# What NumPy lets through where the header of an array is no Python literal.
+# Exceptions of NumPy for a header that is no Python literal.
 _HEADER_ERRORS = (EOFError, SyntaxError, tokenize.TokenError, RecursionError)
 _TEXT_NEEDED, _CELL_NEEDED = 3, 20
 """Of each character of a text, and of each number in it [bytes]."""
 _NEEDED = 24
-"""Of each number of an array: as it is read, laid in rows, and in its unit [bytes]."""
-# ``"0,5","1,5"``: the quotes say that these commas part no columns.
+"""Of each number of an array: as read, in rows, and in its unit [bytes]."""
+# ``"0,5","1,5"``: quoted commas separate no columns.
 _QUOTED = re.compile(r'"\s*([+-]?\d*),(\d*(?:[eE][+-]?\d+)?)\s*"')
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Table:
-    """Numbers of a plain table and where they stood.
+    """Numbers of a plain table with their lines.
 
     Attributes:
         path: the file.
         values: one row for each column of the file, shape (n_columns, n_rows); NaN
-            where a cell is empty or says that there is no value.
+            where a cell is empty or a word for "no value".
         lines: number of the line of each row, from 1; None for an array file.
         header: the lines above the numbers.
-        layout: what was recognised, for provenance.
+        layout: as recognised, for provenance.
         rows: the text of each row; empty for an array file.
         delimiter: what separates the columns; None for blanks.
     """
@@ -71,7 +71,7 @@ class Table:
     delimiter: str | None = None
 
     def where(self, row: int) -> str:
-        """Name a row as the user finds it: by line, or by index in an array."""
+        """Return the place of a row: its line, or its index in an array."""
         if self.lines is None:
             return f"index {row}"
         return f"line {self.lines[row]}"
@@ -113,7 +113,7 @@ def read_table(path: Path | str, *, columns: int | None = None) -> FloatArray:
 
     Args:
         path: a .npy file, or delimited text with or without header lines.
-        columns: how many columns are expected; tells (n, 3) from (3, n) in an array.
+        columns: expected number of columns, to distinguish (n, 3) from (3, n).
 
     Returns:
         One row for each column of the file, shape (n_columns, n_rows); NaN where a
@@ -128,7 +128,7 @@ def read_table(path: Path | str, *, columns: int | None = None) -> FloatArray:
 
 
 def load_table(path: Path | str, *, columns: int | None = None) -> Table:
-    """Read a table and remember the line of each row; see `read_table`."""
+    """Read a table with the line of each row; see `read_table`."""
     path = Path(path)
     if is_array_file(path):
         return _load_array(path, columns)
@@ -139,7 +139,7 @@ def load_table(path: Path | str, *, columns: int | None = None) -> Table:
 
 
 def is_array_file(path: Path) -> bool:
-    """Tell by its first bytes whether a file is a .npy array."""
+    """Recognise a .npy array by its first bytes."""
     file_size(path)
     return read_head(path, len(_NPY_MAGIC)) == _NPY_MAGIC
 
@@ -186,13 +186,12 @@ def parse_table(lines: Sequence[str], path: Path, encoding: str) -> Table:
 def _with_points(
     rows: list[str], numbers: IntArray, start: TableStart, path: Path
 ) -> list[str]:
-    """Return rows whose decimal commas, where they have such, are points.
+    """Return rows with decimal commas replaced by points.
 
-    A comma that parts no columns is a decimal comma, as most of Europe writes it.
+    A comma that separates no columns is a decimal comma.
 
     Raises:
-        FormatError: points and commas stand in the same table, or every comma may
-            as well part thousands.
+        FormatError: points and commas are mixed, or every comma may separate thousands.
     """
     if start.delimiter == "," or not any("," in row for row in rows):
         return rows
@@ -226,7 +225,7 @@ def _columns(array: NDArray[Any]) -> int:
 
 
 def _load_array(path: Path, columns: int | None) -> Table:
-    """Map a .npy file and copy it, once its shape and type are known to be sane."""
+    """Map a .npy file and copy it after a check of shape and type."""
     try:
         array = np.lib.format.open_memmap(path, mode="r")
     except (ValueError, OSError, OverflowError, TypeError, *_HEADER_ERRORS) as error:

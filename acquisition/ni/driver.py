@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The NI-DAQmx driver: the one module that talks to `nidaqmx`.
 
-The same calls serve a driver on this computer and a device server on another, real or
-simulated; only the channel behind them differs.
+The same calls are used for a driver on this computer and for a remote device server,
+real or simulated; only the channel differs.
 """
 
 from collections.abc import Iterable, Sequence
@@ -61,10 +61,10 @@ _OPTIONS = (
 
 
 class Chassis:
-    """A driver, here or behind a device server; close it when done."""
+    """A driver, local or on a device server; close it after use."""
 
     def __init__(self, address: str | None) -> None:
-        """Reach a driver.
+        """Connect to a driver.
 
         Args:
             address: ``host:port`` of a device server, None for this computer.
@@ -75,7 +75,7 @@ class Chassis:
         )
 
     def close(self) -> None:
-        """Let go of the server."""
+        """Disconnect from the server."""
         if self._channel is not None:
             self._channel.close()
 
@@ -99,7 +99,7 @@ class Chassis:
             )
 
     def teds(self, physical: str) -> Teds | None:
-        """Return the TEDS of the sensor at an input, None where none answers."""
+        """Return the TEDS of the sensor at an input, or None without one."""
         device = physical.partition("/")[0]
         with named_errors(self.address):
             channel = self._system().devices[device].ai_physical_chans[physical]
@@ -113,11 +113,11 @@ class Chassis:
                 raise
 
     def task(self, name: str, sensors: Sequence[Sensor]) -> "AnalogTask":
-        """Make a task with a channel for each axis of the sensors.
+        """Create a task with a channel for each axis of the sensors.
 
         Raises:
             InstrumentError: a channel is refused.
-            UsageError: a module does not offer the current that a sensor needs.
+            UsageError: a module does not supply the current of a sensor.
         """
         axes = [(sensor, axis) for sensor in sensors for axis in sensor.axes]
         with named_errors(self.address):
@@ -135,13 +135,13 @@ class Chassis:
                 raise
             return AnalogTask(task, self.address)
 
-    def hand(self, wishes: bytes) -> bytes | None:
-        """Ask the hand of a simulated bench to strike; None where there is none."""
+    def strike(self, request: bytes) -> bytes | None:
+        """Request a stroke of a simulated bench; None for a real one."""
         if self._channel is None:
             return None
         call = self._channel.unary_unary("/jointbench.Hand/Strike")
         try:
-            answer: bytes = call(wishes, timeout=5.0)
+            answer: bytes = call(request, timeout=5.0)
         except grpc.RpcError as error:
             code = error.code()
             if code is grpc.StatusCode.UNIMPLEMENTED:
@@ -152,7 +152,7 @@ class Chassis:
         return answer
 
     def _offered(self, devices: Iterable[str]) -> dict[str, tuple[float, ...]]:
-        """Return the currents that devices offer to sensors [A], by their names."""
+        """Return the currents of devices for sensors [A], by name."""
         found = {}
         for name in devices:
             try:
@@ -181,15 +181,15 @@ class AnalogTask:
     def __init__(self, task: Any, address: str | None) -> None:
         self._task, self._address = task, address
         self._reader = AnalogMultiChannelReader(task.in_stream)
-        # The shape is made right here; asking the server for it at every read is not.
+        # The shape is set here, which saves a request to the server at every read.
         self._reader.verify_array_shape = False
         self._count = len(task.channel_names)
 
     def start(self, sample_rate: float, *, buffer: int) -> float:
-        """Start streaming and return the rate that the device really runs at [Hz].
+        """Start streaming and return the actual rate of the device [Hz].
 
         Args:
-            sample_rate: asked for [Hz].
+            sample_rate: requested [Hz].
             buffer: samples per channel that the driver keeps until they are read.
         """
         with named_errors(self._address):
@@ -199,8 +199,9 @@ class AnalogTask:
                 samps_per_chan=buffer,
             )
             self._task.in_stream.input_buf_size = buffer
-            # By default a full buffer stops the device; what it makes meanwhile is
-            # lost. This way the oldest samples are, and the newest are there to read.
+            # By default a full buffer stops the device, and the samples meanwhile are
+            # lost. With this setting the oldest samples are lost, and the newest can be
+            # read.
             self._task.in_stream.overwrite = OverwriteMode.OVERWRITE_UNREAD_SAMPLES
             rate = float(self._task.timing.samp_clk_rate)
             self._task.start()
@@ -215,12 +216,12 @@ class AnalogTask:
         before: int,
         level: float,
     ) -> float:
-        """Start a finite block around a rising edge that the hardware looks for.
+        """Start a finite block around a rising edge detected by the hardware.
 
         Args:
-            sample_rate: asked for [Hz].
+            sample_rate: requested [Hz].
             samples: of the whole block.
-            source: name of the channel that triggers.
+            source: name of the trigger channel.
             before: samples kept before the edge.
             level: [SI unit of the channel].
         """
@@ -240,8 +241,8 @@ class AnalogTask:
 
         Raises:
             Overrun: some of them were overwritten.
-            NotYet: they have not come in time.
-            Stopped: the device stopped the task by itself.
+            NotYet: they have not arrived in time.
+            Stopped: the device stopped the task.
             ConnectionLost: the server or the device went away.
             InstrumentError: anything else went wrong.
         """
@@ -251,35 +252,35 @@ class AnalogTask:
         return samples
 
     def done(self) -> bool:
-        """Tell whether a finite block has been made to its end."""
+        """Return whether a finite block is complete."""
         with named_errors(self._address):
             return bool(self._task.is_task_done())
 
     def acquired(self) -> int:
-        """Return how many samples per channel the device has made since the start."""
+        """Return the number of samples per channel acquired since the start."""
         with named_errors(self._address):
             return int(self._task.in_stream.total_samp_per_chan_acquired)
 
     def available(self) -> int:
-        """Return how many samples per channel wait to be read."""
+        """Return the number of unread samples per channel."""
         with named_errors(self._address):
             return int(self._task.in_stream.avail_samp_per_chan)
 
     def buffer(self) -> int:
-        """Return how many samples per channel the driver keeps."""
+        """Return the size of the driver's buffer in samples per channel."""
         with named_errors(self._address):
             return int(self._task.in_stream.input_buf_size)
 
     def position(self) -> int:
-        """Return the next sample that a read returns, as the driver counts them."""
+        """Return the index of the next sample to read, from the driver's counter."""
         with named_errors(self._address):
             return int(self._task.in_stream.curr_read_pos)
 
     def resume_at(self, sample: int, count: int, *, timeout: float) -> FloatArray:
-        """Read from a sample counted from the start, and go on from there.
+        """Read from a sample counted from the start, and continue from there.
 
         Args:
-            sample: index of the first sample wanted.
+            sample: index of the first sample to read.
             count: samples to read.
             timeout: [s].
         """
@@ -295,9 +296,9 @@ class AnalogTask:
                 stream.offset = 0
 
     def open_loops(self) -> tuple[str, ...]:
-        """Return the channels whose IEPE loop is open: a cable or a sensor is off.
+        """Return the channels with an open IEPE loop: a disconnected cable or sensor.
 
-        Empty where the device cannot tell.
+        Empty if the device has no such check.
         """
         stream = self._task.in_stream
         try:
@@ -308,7 +309,7 @@ class AnalogTask:
             return ()
 
     def close(self) -> None:
-        """Stop and clear the task, if it is still there."""
+        """Stop and clear the task, if it still exists."""
         with suppress(DaqError, RpcError):
             self._task.stop()
         with suppress(DaqError, RpcError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the driver says: modules, TEDS, and the ways in which a stream breaks."""
+"""Answers of the driver: modules, TEDS, and errors of a stream."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from jointbench.acquisition.basics.errors import InstrumentError
 
 
 class ConnectionLost(InstrumentError):
-    """The server or the device went away; it may come back."""
+    """The server or the device is unreachable; it may return."""
 
 
 class Overrun(InstrumentError):
@@ -15,11 +15,11 @@ class Overrun(InstrumentError):
 
 
 class NotYet(InstrumentError):
-    """Samples have not come in time; the task runs on, and they may still come."""
+    """Samples have not arrived in time; the task is running, they may still arrive."""
 
 
 class Stopped(InstrumentError):
-    """The device stopped the task by itself; it is there and can start another."""
+    """The device stopped the task; it is available and can start another."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Module:
     Attributes:
         name: for example ``"cDAQ1Mod1"``.
         product: for example ``"NI 9234"``.
-        simulated: True where no hardware is behind it.
+        simulated: True for simulated hardware.
         analogue_trigger: whether it can trigger on a signal.
         inputs: its analogue inputs.
     """
@@ -43,10 +43,10 @@ class Module:
 
 @dataclass(frozen=True, slots=True)
 class Teds:
-    """What a sensor says of itself.
+    """Data of a sensor from its TEDS.
 
     Attributes:
-        manufacturer: number of the maker.
+        manufacturer: number of the manufacturer.
         model: number of the model.
         serial: serial number.
     """

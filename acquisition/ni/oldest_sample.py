@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""After an overrun: the oldest sample that the driver still holds."""
+"""Read the oldest sample still in the driver's buffer after an overrun."""
 
 from collections.abc import Callable
 
@@ -7,28 +7,28 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.ni.driver import AnalogTask
 from jointbench.acquisition.ni.driver_answers import Overrun, Stopped
 
-_ATTEMPTS = 12  # by the last one the room has doubled past any buffer
+_ATTEMPTS = 12  # the margin doubles each time, up to any buffer size
 
 
 def read_oldest(
     task: AnalogTask, position: int, read: Callable[[int, int], FloatArray]
 ) -> tuple[int, FloatArray]:
-    """Find the oldest sample that can be read, and read from there on.
+    """Find the oldest readable sample, and read from there on.
 
-    A device that runs on overwrites more between the look at its counter and the read:
-    each attempt leaves twice as much room as the last one would have needed.
+    A running device overwrites more between the query of its counter and the read: each
+    attempt leaves twice the margin needed by the last one.
 
     Args:
         task: that overran.
-        position: next sample that was to be read.
-        read: reads from a sample on, given how many wait from there.
+        position: next sample to read.
+        read: reads from a sample on, given the number of unread samples.
 
     Returns:
         Index of the first sample read, and the samples, shape (n_channels, n).
 
     Raises:
-        Stopped: the whole buffer has gone by, or its counter makes no sense.
-        ConnectionLost: the device went away.
+        Stopped: the whole buffer was overwritten, or its counter is implausible.
+        ConnectionLost: the device is unreachable.
     """
     kept, newest, room = task.buffer(), task.acquired(), 0
     for _ in range(_ATTEMPTS):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The channel table: which sensor is plugged in where, and what is known of it."""
+"""The channel table: inputs and data of the sensors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from datetime import date
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.records.recordings import Channel, Quantity
 
-_SAME_CURRENT = 0.06  # an NI 443x says 2.1 mA where its data sheet says 2 mA
+_SAME_CURRENT = 0.06  # an NI 443x reports 2.1 mA, its data sheet states 2 mA
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,17 +28,17 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class Sensor:
-    """A sensor of one axis or of three.
+    """A sensor of one or three axes.
 
     Attributes:
-        name: its channels are called so; with several axes a direction is added.
-        quantity: what it measures.
-        point: where it sits; for a hammer empty.
-        axes: one for each input it takes.
+        name: of its channels; with several axes a direction is added.
+        quantity: measured quantity.
+        point: its position; empty for a hammer.
+        axes: one for each input.
         unit: unit of the table, for example ``"g"``; samples are SI throughout.
         range: largest value expected [SI unit].
-        excitation: current of its built-in amplifier [A], 0 for none; None leaves it
-            to what the module offers.
+        excitation: current of its built-in amplifier [A], 0 for none; None selects it
+            from those of the module.
         coupling: ``"AC"`` or ``"DC"``.
         serial: serial number, empty if not stated.
         calibrated: day of the last calibration, None if not stated.
@@ -59,7 +59,7 @@ class Sensor:
 
 
 def require_table(sensors: Sequence[Sensor]) -> None:
-    """Check that a table makes sense as a whole.
+    """Check the consistency of a table.
 
     Raises:
         UsageError: there is not exactly one force channel, no response, or a name or
@@ -111,17 +111,17 @@ def excitation_current(sensor: Sensor, axis: Axis, offered: Sequence[float]) -> 
     """Return the current to feed a sensor's amplifier with [A], 0 for none.
 
     Args:
-        sensor: the sensor; its own `excitation` counts where it is stated.
-        axis: the input that it is plugged into.
-        offered: currents above zero that the module of the input offers [A]; empty
-            where there are none, or the module does not say.
+        sensor: the sensor; its `excitation` is used where stated.
+        axis: its input.
+        offered: available currents above zero of the input's module [A]; empty where
+            there are none, or they are not reported.
 
     Returns:
-        The least current that is offered, where the sensor states none: an amplifier
-        takes 2 mA to 20 mA, and only a cable of tens of metres asks for more.
+        The least available current if the sensor states none: an amplifier takes 2 mA
+            to 20 mA, and only a cable of tens of metres needs more.
 
     Raises:
-        UsageError: the module does not offer it, or offers none.
+        UsageError: the module does not supply it, or none.
     """
     stated = sensor.excitation
     what = f"channel {channel_name(sensor, axis)!r} at {axis.physical}"
@@ -145,12 +145,12 @@ def excitation_current(sensor: Sensor, axis: Axis, offered: Sequence[float]) -> 
 
 
 def calibration_warning(sensor: Sensor, today: date) -> str | None:
-    """Return what is wrong with the calibration of a sensor, None if nothing is."""
+    """Return a warning on the calibration of a sensor, or None."""
     if sensor.calibrated is None:
         return f"sensor {sensor.name!r}: no calibration date is stated"
     months = sensor.calibrated.month - 1 + sensor.calibration_months
     year, month = sensor.calibrated.year + months // 12, months % 12 + 1
-    # The last day of February stands in for the days that a month lacks.
+    # In short months the last day is used.
     due = date(year, month, min(sensor.calibrated.day, 28))
     if today <= due:
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Continuous acquisition that survives its cable: blocks, and the gaps between."""
+"""Continuous acquisition with reconnection: blocks, and the gaps between."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -35,8 +35,8 @@ __all__ = [
     "Waiting",
 ]
 
-_RETRY = 0.2  # [s] between attempts to come back
-_GRACE = 5.0  # [s] beyond their own time that samples may take to come
+_RETRY = 0.2  # [s] between attempts to reconnect
+_GRACE = 5.0  # [s] extra time for samples to arrive
 _MOST_VALUES = 2**21  # of all channels in one read: 16 MB
 
 
@@ -47,9 +47,9 @@ class NiStream:
     Attributes:
         chassis: an open one.
         sensors: the channel table.
-        settings: rate, block, patience.
+        settings: rate, block, time limits.
         counters: kept up to date while the stream is read.
-        sample_rate: at which the device really runs [Hz]; 0 before `start`.
+        sample_rate: actual rate of the device [Hz]; 0 before `start`.
     """
 
     chassis: Chassis
@@ -66,13 +66,13 @@ class NiStream:
     _made: int = 0
     _progress: float = 0.0
     _asked: float = 0.0
-    _behind: bool = True
+    _late_reader: bool = True
 
     def start(self) -> None:
-        """Make the task and start its clock.
+        """Create the task and start its clock.
 
         Raises:
-            InstrumentError: a channel or the rate is refused, or nobody answers.
+            InstrumentError: a channel or the rate is refused, or there is no answer.
         """
         task = self.chassis.task(f"jointbench-{self._segment}", self.sensors)
         try:
@@ -84,10 +84,10 @@ class NiStream:
         self._made_before = self.counters.acquired
 
     def trigger_by(self, trigger: HardwareTrigger) -> None:
-        """Let the device look for hits from now on; each is a segment of its own.
+        """Detect hits on the device from now on; each is a separate segment.
 
         Raises:
-            InstrumentError: it cannot, or does not come back.
+            InstrumentError: it cannot, or does not return.
         """
         if trigger == self._trigger:
             return
@@ -96,7 +96,7 @@ class NiStream:
         self.resume()
 
     def pause(self) -> None:
-        """Stop on purpose; what the device has made and nobody read is not wanted."""
+        """Stop on purpose; unread samples are discarded."""
         self._count_or_none()
         self.counters.unwanted += self.counters.unread
         self.counters.unread = 0
@@ -104,15 +104,15 @@ class NiStream:
         self._segment += 1
 
     def resume(self) -> None:
-        """Start, as soon as the device is there.
+        """Start as soon as the device is available.
 
         Raises:
-            InstrumentError: the device refuses, or does not come back in time.
+            InstrumentError: the device refuses, or does not return in time.
         """
         self._come_back((ConnectionLost, NotYet, Stopped))
 
     def _come_back(self, awaited: tuple[type[InstrumentError], ...]) -> None:
-        """Start as soon as it works; only errors that are awaited are waited out."""
+        """Start as soon as possible; only the expected errors are waited out."""
         settings = self.settings
         since = settings.now()
         while True:
@@ -129,12 +129,12 @@ class NiStream:
     def items(self) -> Iterator[Block | StreamGap | Waiting]:
         """Yield blocks and gaps for as long as the stream is read.
 
-        What waits in the buffer is read at once and handed over block by block, so
-        that a reader who was held up catches up.
+        Unread samples are read at once and passed on block by block, so that a delayed
+        reader catches up.
 
         Raises:
             InstrumentError: the device refuses for a reason that only the operator can
-                help with, does not come back, or makes no samples.
+                remove, does not return, or acquires no samples.
         """
         self._progress = self.settings.now()
         while True:
@@ -149,17 +149,17 @@ class NiStream:
                 yield self._reconnect(str(error))
 
     def open_loops(self) -> tuple[str, ...]:
-        """Return the channels whose cable or sensor is off, if the device can tell."""
+        """Return the channels with a disconnected cable or sensor, if reported."""
         try:
             return () if self._task is None else self._task.open_loops()
         except InstrumentError:
             return ()
 
     def count(self) -> None:
-        """Bring the counters up to date with the device's own.
+        """Update the counters from the device.
 
-        A device that looks for its trigger makes samples that nobody wants; there, a
-        block is whole or an error.
+        A device that waits for its trigger acquires samples that are not used; there, a
+        block is complete or an error.
         """
         if self._task is not None and self._trigger is None:
             acquired = max(self._task.acquired(), self._position)
@@ -167,13 +167,13 @@ class NiStream:
             self.counters.unread = acquired - self._position
 
     def close(self) -> None:
-        """Stop the task, if it is still there."""
+        """Stop the task, if it still exists."""
         if self._task is not None:
             self._task.close()
             self._task = None
 
     def _count_or_none(self) -> None:
-        """Count; a device that does not answer has no unread samples that are known."""
+        """Count; without an answer the number of unread samples is unknown."""
         self.counters.unread = 0
         with suppress(InstrumentError):
             self.count()
@@ -203,25 +203,25 @@ class NiStream:
         yield from self._blocks(samples)
 
     def _read_from(self, first: int, waiting: int) -> FloatArray:
-        """Read what waits from a sample on, one block at least."""
+        """Read all unread samples from one on, at least one block."""
         assert self._task is not None
         count = max(self.settings.block, self._at_once(waiting))
         return self._task.resume_at(first, count, timeout=self._timeout(count))
 
     def _waiting(self, task: AnalogTask) -> int:
-        """Return how many samples to take at once; 0 where one block can wait at most.
+        """Return the number of samples to read at once; 0 for at most one block.
 
-        The device is asked once in the time of a block, and as long as there is more.
+        The device is queried once per block time, and as long as there is more.
         """
         now, block = self.settings.now(), self.settings.block
-        if not self._behind and now - self._asked < block / self.sample_rate:
+        if not self._late_reader and now - self._asked < block / self.sample_rate:
             return 0
         waiting = self._at_once(task.available())
-        self._asked, self._behind = now, waiting > block
+        self._asked, self._late_reader = now, waiting > block
         return waiting
 
     def _at_once(self, waiting: int) -> int:
-        """Return how many of the samples that wait are read at once."""
+        """Return how many of the unread samples are read at once."""
         channels = sum(len(sensor.axes) for sensor in self.sensors)
         return min(waiting, _MOST_VALUES // channels)
 
@@ -229,7 +229,7 @@ class NiStream:
         return count / self.sample_rate + _GRACE
 
     def _blocks(self, samples: FloatArray) -> Iterator[Block]:
-        """Hand over what was read; whoever takes it may pause the stream meanwhile."""
+        """Yield the samples read; the caller may pause the stream meanwhile."""
         segment, size = self._segment, self.settings.block
         for first in range(0, samples.shape[1], size):
             yield self._took(samples[:, first : first + size])
@@ -244,14 +244,14 @@ class NiStream:
             self._progress = self.settings.now()
             return Waiting(self.settings.block)
         block = self._took(task.read(trigger.samples, timeout=_GRACE))
-        # The next one is armed before anybody is asked to hit.
+        # The next block is armed before a hit is requested.
         self.close()
         self._segment += 1
         self.resume()
         return block
 
     def _took(self, samples: FloatArray) -> Block:
-        # Counted before it is told: whoever is told may stop the stream.
+        # Counted before it is yielded: the caller may stop the stream.
         block = Block(samples, self._segment, self._position)
         self._position += samples.shape[1]
         self._progress = self.settings.now()
@@ -261,14 +261,14 @@ class NiStream:
         return block
 
     def _overrun(self, words: str) -> Iterator[Block | StreamGap]:
-        """Go on at the oldest sample that is still there; say what lies before it."""
+        """Continue at the oldest sample in the buffer; yield the gap before it."""
         assert self._task is not None
         resume, samples = read_oldest(self._task, self._position, self._read_from)
         lost, first = resume - self._position, self._position
         gap = StreamGap(
             "overrun", self._segment, first, lost, lost / self.sample_rate, words
         )
-        self._position, self._behind = resume, True
+        self._position, self._late_reader = resume, True
         made = self._made_before + resume
         self.counters.acquired = max(self.counters.acquired, made)
         segment = self._segment
@@ -277,11 +277,11 @@ class NiStream:
             yield from self._blocks(samples)
 
     def _late(self, words: str) -> Waiting:
-        """Wait for samples that are late, for as long as the task can still make them.
+        """Wait for late samples, as long as the task can acquire them.
 
         Raises:
-            Stopped: the task has ended by itself.
-            InstrumentError: the device has made no sample for too long.
+            Stopped: the task has ended.
+            InstrumentError: the device has acquired no sample for too long.
         """
         assert self._task is not None
         settings, made = self.settings, self._task.acquired()
@@ -294,15 +294,15 @@ class NiStream:
                 f"{words}; no sample for {settings.patience:g} s, what was recorded is "
                 "safe: check the clock and the trigger of the device"
             )
-        # A read that ends early may have taken what there was with it.
+        # A read that fails may have consumed the available samples.
         self._moved = self._task.position() != self._position
         return Waiting(0)
 
     def _rearm(self, words: str) -> Iterator[Block | StreamGap]:
-        """Save what the stopped task still holds, and start another.
+        """Save the samples of the stopped task, and start another.
 
         Raises:
-            InstrumentError: the device stops again and again.
+            InstrumentError: the device stops repeatedly.
         """
         settings, since = self.settings, self.settings.now()
         if since - self._progress > settings.patience:
@@ -326,7 +326,7 @@ class NiStream:
         yield StreamGap("rearmed", segment, first, lost, away, words)
 
     def _leftover(self) -> Iterator[Block]:
-        """Yield what can still be read from a task that has stopped."""
+        """Yield the remaining samples of a stopped task."""
         segment = self._segment
         while self._segment == segment:
             samples = self._still_there()
@@ -346,8 +346,8 @@ class NiStream:
         since, first = self.settings.now(), self._position
         self.close()
         self._segment += 1
-        # It has run with this very table: whatever is refused now, a device that has
-        # just been switched on may still learn.
+        # The device has run with this table: a refusal now may be temporary after
+        # switching on.
         self._come_back((InstrumentError,))
         away = self.settings.now() - since
         return StreamGap("back", self._segment, first, 0, away, words)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a stream is asked for, what it yields, and what it counts."""
+"""Settings, items and counters of a stream."""
 
 import time
 from collections.abc import Callable
@@ -25,16 +25,16 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class StreamGap:
-    """What is missing between two blocks.
+    """Missing samples between two blocks.
 
     Attributes:
         kind: ``"overrun"``, ``"lost"`` (the connection, just now), ``"back"``, or
             ``"rearmed"`` (the device had stopped and was started again).
-        segment: number of the segment that ends or goes on.
+        segment: number of the segment that ends or continues.
         first: index of the first sample that is missing in it.
-        samples: how many are known to be missing.
-        seconds: how long nothing was measured [s]; 0 where that is not known yet.
-        words: what the driver said.
+        samples: number known to be missing.
+        seconds: duration without samples [s]; 0 if not known yet.
+        words: message of the driver.
     """
 
     kind: str
@@ -47,10 +47,10 @@ class StreamGap:
 
 @dataclass(frozen=True, slots=True)
 class Waiting:
-    """Nothing has come: a trigger is looked for, or samples are late.
+    """No samples yet: waiting for a trigger, or for late samples.
 
     Attributes:
-        samples: how many fit into the time just waited.
+        samples: number in the time waited.
     """
 
     samples: int
@@ -58,10 +58,10 @@ class Waiting:
 
 @dataclass(frozen=True, slots=True)
 class HardwareTrigger:
-    """A rising edge that the device itself looks for.
+    """A rising edge detected by the device.
 
     Attributes:
-        channel: name of the channel that triggers.
+        channel: name of the trigger channel.
         level: [SI unit of the channel].
         before: samples kept before the edge.
         samples: of the whole block.
@@ -75,14 +75,14 @@ class HardwareTrigger:
 
 @dataclass(frozen=True, slots=True)
 class StreamSettings:
-    """How to stream.
+    """Settings of a stream.
 
     Attributes:
-        sample_rate: asked for [Hz].
+        sample_rate: requested [Hz].
         block: samples per channel of a block.
         buffer: seconds that the driver keeps until they are read [s].
-        patience: how long to wait for a connection that is lost, or for a device that
-            makes no sample [s].
+        patience: longest wait for a lost connection, or for a device without samples
+            [s].
         now: clock [s].
         sleep: waits [s].
     """
@@ -97,14 +97,14 @@ class StreamSettings:
 
 @dataclass(slots=True)
 class Counters:
-    """What the device made against what was read, over all segments.
+    """Acquired and read samples, over all segments.
 
     Attributes:
-        acquired: samples per channel made by the device, as its counter says.
-        unread: of those, still in its buffer when the counter was read, or read from
-            it and not handed over.
-        delivered: samples per channel handed over.
-        unwanted: of those made, left in the buffer when the stream was paused.
+        acquired: samples per channel acquired, by the counter of the device.
+        unread: of those, in the buffer when the counter was read, or read and not yet
+            yielded.
+        delivered: samples per channel yielded.
+        unwanted: of those acquired, left in the buffer when the stream was paused.
     """
 
     acquired: int = 0
@@ -114,5 +114,5 @@ class Counters:
 
     @property
     def lost(self) -> int:
-        """Samples per channel that were made, are not waiting, and were not read."""
+        """Samples per channel that were acquired but neither read nor in the buffer."""
         return self.acquired - self.unread - self.unwanted - self.delivered

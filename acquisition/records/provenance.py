@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Provenance: the steps of processing that a record has been through."""
+"""Provenance: the processing steps of a record."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step of processing, as provenance keeps it.
+    """One processing step of a provenance.
 
     Attributes:
-        name: what was done, for example ``"import"`` or ``"force_window"``.
+        name: of the operation, for example ``"import"`` or ``"force_window"``.
         detail: the parameters and reasons, by name; plain text, numbers or flags.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a bench records: channels, recordings, hits and their verdicts.
+"""Records of a bench: channels, recordings, hits and their verdicts.
 
 Frozen, read-only and in SI inside; `dataclasses.replace` derives one from another.
 """
@@ -19,7 +19,7 @@ from jointbench.acquisition.records.provenance import Provenance
 
 
 class Quantity(StrEnum):
-    """What a channel measures; the value is the word used in files and columns."""
+    """Quantity of a channel; the value is the word in files and columns."""
 
     FORCE = "force"
     ACCELERATION = "acceleration"
@@ -28,7 +28,7 @@ class Quantity(StrEnum):
 
 
 class Verdict(StrEnum):
-    """What became of a hit; only `OK` hits enter an average."""
+    """Verdict on a hit; only `OK` hits enter an average."""
 
     OK = "ok"
     OVERLOAD = "overload"
@@ -45,12 +45,12 @@ class Channel:
 
     Attributes:
         name: unique within a recording, for example ``"a1"``.
-        quantity: what it measures; samples are kept in that quantity's SI unit.
-        point: where it sits on the structure (for a hammer: the default point).
+        quantity: measured; samples are in its SI unit.
+        point: position on the structure (for a hammer: the default point).
         direction: ``"+z"`` and the like; empty if not stated.
         unit: unit the samples were recorded or imported in, for example ``"g"``.
         sensitivity: of the sensor [V per SI unit], or None if not stated.
-        range: largest value the channel can carry [SI unit], or None if unknown.
+        range: full scale of the channel [SI unit], or None if unknown.
     """
 
     name: str
@@ -72,9 +72,10 @@ class Hit:
         stop: index one past the last sample of the segment.
         point: where the hammer struck.
         peak_force: largest force of the hit [N].
-        verdict: `Verdict.OK` or why it is left out.
-        measure: the number behind the verdict (see `reason` for its meaning).
-        reason: one line that says what `measure` is and which rule it met or broke.
+        verdict: `Verdict.OK` or the reason for rejection.
+        measure: number on which the verdict is based (see `reason` for its meaning).
+        reason: one line with the meaning of `measure` and the rule that it met or
+            broke.
     """
 
     start: int
@@ -98,9 +99,9 @@ class Recording:
         channels: one for each row of `samples`.
         start_time: time of the first sample since the session began [s].
         hits: judged hits, in order of time; empty before detection.
-        provenance: how the samples came about.
-        preload: on the joint while this was recorded [N]; None where it was that of
-            the session, or nobody said.
+        provenance: origin and processing steps.
+        preload: on the joint during this recording [N]; None for that of the session,
+            or not given.
     """
 
     name: str
@@ -166,7 +167,7 @@ def response_rows(recording: Recording) -> tuple[int, ...]:
 
 
 def common_response(channels: Sequence[Channel]) -> Quantity:
-    """Return the quantity that all response channels share.
+    """Return the common quantity of all response channels.
 
     Raises:
         ChannelMissing: they measure different quantities, or there is none.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A session: everything that one visit to the bench recorded, and nothing computed."""
+"""A session: all raw data of one measurement, without computed results."""
 
 import uuid
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from jointbench.acquisition.records.surfaces import Surface
 
 @dataclass(frozen=True, slots=True)
 class JointSetup:
-    """How the joint under test was set up; None and empty where nobody said.
+    """Set-up of the joint under test; None or empty where not given.
 
     Attributes:
         preload: normal force that clamps the joint [N].
@@ -31,7 +31,7 @@ class JointSetup:
     masses: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        """Check the masses and keep copies that no caller holds."""
+        """Check the masses and keep private copies."""
         for name, mass in self.masses.items():
             require_positive(f"mass of {name}", mass)
         object.__setattr__(self, "material", dict(self.material))
@@ -44,16 +44,16 @@ class Session:
 
     Attributes:
         uuid: unique name of the session.
-        created: time of its making, ISO 8601 in UTC.
-        software: name and version of the program that made it.
-        simulated: True where no hardware was behind it.
-        operator: who measured; empty if not stated.
+        created: time of creation, ISO 8601 in UTC.
+        software: name and version of the program that created it.
+        simulated: True for simulated hardware.
+        operator: name of the person; empty if not stated.
         notes: free text.
-        source: what the samples came from, for example ``"sim:two-body?seed=1"``.
-        joint: how the joint was set up, or None.
+        source: of the samples, for example ``"sim:two-body?seed=1"``.
+        joint: set-up of the joint, or None.
         recordings: in the order recorded, names unique.
-        surfaces: profiles and maps of the joint's faces, names unique.
-        provenance: how the session came about.
+        surfaces: profiles and maps of the joint's contact surfaces, names unique.
+        provenance: origin and processing steps.
     """
 
     uuid: str
@@ -69,7 +69,7 @@ class Session:
     provenance: Provenance = ()
 
     def __post_init__(self) -> None:
-        """Check that every name is there once."""
+        """Check that every name is unique."""
         for what, records in (
             ("recording", self.recordings),
             ("surface", self.surfaces),
@@ -78,7 +78,7 @@ class Session:
             twice = sorted({name for name in names if names.count(name) > 1})
             if twice or "" in names:
                 raise ShapeError(
-                    f"each {what} of a session needs a name of its own, got "
+                    f"each {what} of a session needs a unique name, got "
                     f"{twice[0] if twice else ''!r} {'twice' if twice else ''}".rstrip()
                 )
 
@@ -94,17 +94,17 @@ def new_session(
     notes: str = "",
     provenance: Provenance = (),
 ) -> Session:
-    """Make a session of now, with a name of its own and this program's version.
+    """Create a session with the current time, a unique name and this program's version.
 
     Args:
-        source: what the samples came from.
-        simulated: True where no hardware was behind it.
+        source: of the samples.
+        simulated: True for simulated hardware.
         recordings: names unique.
         surfaces: names unique.
-        joint: how the joint was set up.
-        operator: who measured.
+        joint: set-up of the joint.
+        operator: name of the person.
         notes: free text.
-        provenance: how the session came about.
+        provenance: origin and processing steps.
     """
     return Session(
         uuid=str(uuid.uuid4()),
@@ -122,7 +122,7 @@ def new_session(
 
 
 def software_version() -> str:
-    """Return name and version of this program, as files state it."""
+    """Return name and version of this program, for files."""
     try:
         return f"jointbench {version('jointbench')}"
     except PackageNotFoundError:  # run from a checkout that was never installed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What every source of samples offers: channels, a rate, and blocks until it ends."""
+"""Interface of every source of samples: channels, sample rate and blocks."""
 
 from collections.abc import Iterator
 from typing import Protocol
@@ -13,12 +13,12 @@ class Source(Protocol):
 
     @property
     def name(self) -> str:
-        """What the session file calls it, for example ``"sim:two-body?seed=1"``."""
+        """Name in the session file, for example ``"sim:two-body?seed=1"``."""
         ...
 
     @property
     def simulated(self) -> bool:
-        """True where no hardware is behind it."""
+        """True for simulated hardware."""
         ...
 
     @property
@@ -37,14 +37,14 @@ class Source(Protocol):
 
 
 class Run(Source, Protocol):
-    """One stretch of a visit to the bench, recorded under one setting of the joint."""
+    """One run of a measurement, recorded under one setting of the joint."""
 
     @property
     def preload(self) -> float | None:
-        """Preload on the joint meanwhile [N]; None where nobody says."""
+        """Preload on the joint during the run [N]; None if not given."""
         ...
 
     @property
     def start_time(self) -> float:
-        """Time of the first sample since the visit began [s]."""
+        """Time of the first sample since the start of the measurement [s]."""
         ...

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a profilometer records: heights on a line or on an area."""
+"""Records of a profilometer: heights on a line or on an area."""
 
 from dataclasses import dataclass, field
 
@@ -16,7 +16,7 @@ from jointbench.acquisition.records.provenance import Provenance
 
 @dataclass(frozen=True, slots=True)
 class SurfaceInstrument:
-    """What is known of the instrument; None where the file does not say.
+    """Data of the instrument; None where the file does not state them.
 
     Attributes:
         name: as the file states it.
@@ -42,8 +42,8 @@ class Profile:
         heights: z [m], shape (n,), finite; 0 where `valid` is False.
         spacing: distance between neighbours [m].
         valid: False where a point is missing, shape (n,).
-        instrument: what measured it.
-        provenance: how the heights came about.
+        instrument: used for the measurement.
+        provenance: origin and processing steps.
     """
 
     name: str
@@ -76,8 +76,8 @@ class Areal:
         heights: z [m], shape (n_rows, n_columns), finite; 0 where not `valid`.
         spacing: distance between neighbours along (rows, columns) = (y, x) [m].
         valid: False where a point is missing, same shape.
-        instrument: what measured it.
-        provenance: how the heights came about.
+        instrument: used for the measurement.
+        provenance: origin and processing steps.
     """
 
     name: str

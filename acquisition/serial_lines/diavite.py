@@ -5,9 +5,9 @@
 its count, never by looking for EOT.
 
 Source:
-    Public protocol notes of the DH-8. They do not say whether heights are signed, nor
-    at which end of the traverse the last point lies: `signed` is an option, and the
-    spacing is taken as traverse over number of points.
+    Public protocol notes of the DH-8. They state neither whether heights are signed nor
+    the end of the traverse with the last point: `signed` is an option, and the spacing
+    is taken as traverse over number of points.
 """
 
 import struct

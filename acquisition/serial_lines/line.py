@@ -197,7 +197,7 @@ class SerialLine:
             raise self._broken("was unplugged", b"") from error
 
     def waiting(self) -> int:
-        """Return how many bytes have arrived that nobody read."""
+        """Return the number of unread bytes."""
         return int(self._port.in_waiting)
 
     def close(self) -> None:

@@ -6,9 +6,9 @@ A command is a header of two letters, a sub-field of three, data and CR; the ans
 
 Source:
     User's manuals 99MBB122A, ch. 17.12 (SJ-210), and 99MBB765A, ch. 22.14 (SJ-410).
-    Their public pages do not print the sub-fields that start and stop a measurement:
-    there is no function for it here, press the key on the instrument. Nor do they
-    print what parts the heights of one file: both a separator and none are read.
+    Their public parts do not list the sub-fields that start and stop a measurement:
+    there is no function for it here, press the key on the instrument. Nor do they print
+    what parts the heights of one file: both a separator and none are read.
 """
 
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Add a surface to a session that is finished; what it holds is not touched."""
+"""Add a surface to a finished session; its other content is unchanged."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -15,24 +15,24 @@ from jointbench.acquisition.session_file.store import read_session, write_sessio
 
 
 def require_addable(path: Path, name: str) -> Session:
-    """Return the session that a surface of a name can be added to.
+    """Return a session to which a surface of a name can be added.
 
     Args:
         path: of the session file.
-        name: of the surface to be.
+        name: of the new surface.
 
     Raises:
         UsageError: the session is being recorded, was cut off, or has such a surface.
         BadData: it cannot be read.
     """
     if is_held(path):
-        raise UsageError(f"'{path}' is being recorded right now; wait until it is done")
+        raise UsageError(f"'{path}' is being recorded; wait until it is done")
     with open_guarded(path) as file:
         live = read_attribute(file, "schema") == LIVE_SCHEMA
     if live:
         raise UsageError(
             f"'{path}' was cut off while it was recorded; `jointbench recover` it, and "
-            "name the session that comes of it"
+            "name the recovered session"
         )
     session = read_session(path)
     if any(surface.name == name for surface in session.surfaces):
@@ -43,7 +43,7 @@ def require_addable(path: Path, name: str) -> Session:
 
 
 def add_surface(path: Path, surface: Surface) -> None:
-    """Write a session anew with one surface more, in its place once it is whole.
+    """Rewrite a session with one more surface; replace the file when complete.
 
     Args:
         path: of the session file.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is in a file, as plain data for people and for JSON; samples stay unread."""
+"""Description of a file as plain data, for users and for JSON; samples are not read."""
 
 import math
 from collections.abc import Iterator
@@ -37,7 +37,7 @@ Description = dict[str, object]
 
 
 def describe_file(path: Path | str) -> Description:
-    """Tell what is in a session file, a results file or another HDF5 file.
+    """Describe the content of a session file, a results file or another HDF5 file.
 
     Args:
         path: of the file.
@@ -50,7 +50,8 @@ def describe_file(path: Path | str) -> Description:
         ``groups`` with their variables, dimensions and units.
 
     Raises:
-        BadData: it cannot be opened, is damaged, or asks for more than a measurement.
+        BadData: it cannot be opened, is damaged, or exceeds the limits of a
+            measurement.
     """
     with open_guarded(path) as file, damage_named(path):
         found: Description = {
@@ -125,7 +126,7 @@ def _recording(file: h5py.File, group: h5py.Group) -> Description:
 def _count_samples(
     group: h5py.Group, n_channels: int, rate: float, start: float
 ) -> int:
-    """Return the samples of each channel, once they are what `read_session` takes."""
+    """Return the samples per channel, after the checks of `read_session`."""
     if not (math.isfinite(rate) and rate > 0 and math.isfinite(start)):
         raise FormatError(
             f"{group.name!r} is damaged: sample_rate is {rate:g} Hz and start_time "
@@ -136,7 +137,7 @@ def _count_samples(
     if not whole or samples.ndim != 2 or samples.shape[0] != n_channels:
         raise FormatError(
             f"{group.name!r} is damaged: its samples must be real numbers of shape "
-            f"({n_channels}, n), one row a channel"
+            f"({n_channels}, n), one row per channel"
         )
     return int(samples.shape[1])
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""From the file of a recording to a finished session, piece by piece.
+"""Convert the file of a recording to a finished session, piece by piece.
 
-Samples go from one file to the other some columns at a time, so that a session of any
-length is finished, or recovered, in the same memory.
+Samples are copied some columns at a time, so that a session of any length is finished,
+or recovered, in constant memory.
 """
 
 from collections.abc import Iterator
@@ -36,20 +36,20 @@ from jointbench.acquisition.session_file.store import (
 from jointbench.acquisition.session_file.streams import write_recording_in_pieces
 from jointbench.acquisition.session_file.surfaces_and_setup import write_provenance
 
-# The time axis packs to less than this share of a byte a sample.
+# Packed size of the time axis, at most [bytes per sample].
 _AXIS_SHARE = 0.125
-_ENTRY_TWICE = 2  # an entry of the log is in the session once as text, once as table
+_ENTRY_TWICE = 2  # a log entry is in the session both as text and as table
 
 
 @dataclass(frozen=True, slots=True)
 class Finished:
-    """What a recording came to.
+    """Summary of a finished recording.
 
     Attributes:
-        samples: per channel that are there and right.
-        hits: in the recordings.
-        damaged: blocks that were left out.
-        ended: whether it came to its end by itself.
+        samples: valid samples per channel.
+        hits: number in the recordings.
+        damaged: number of blocks left out.
+        ended: whether it was ended regularly.
     """
 
     samples: int
@@ -59,17 +59,17 @@ class Finished:
 
 
 def finish_live(source: Path, target: Path, *, overwrite: bool = False) -> Finished:
-    """Write the session that a recording amounts to.
+    """Write the session of a recording.
 
     Args:
-        source: file of the recording, which nobody records into any more.
+        source: file of the recording, which must have ended.
         target: of the session; the source itself is replaced once the session is
-            whole and on the disk.
-        overwrite: replace a file that is there.
+            complete on the disk.
+        overwrite: replace an existing file.
 
     Raises:
         UsageError: there is such a file and `overwrite` is off, or it cannot be
-            written there; the source stays as it is.
+            written there; the source is not changed.
         FormatError: the source is no recording, or damaged at its head.
     """
     new = new_file(
@@ -115,7 +115,7 @@ def _copy(source: Path, live: h5py.File, file: h5py.File) -> Finished:
 def _pieces(
     source: Path, live: h5py.File, span: LiveSpan, room: DiskRoom
 ) -> Iterator[Samples]:
-    """Yield the samples of a span once there is room for them."""
+    """Yield the samples of a span after reserving room for them."""
     pieces = read_pieces(live, span.stored, span.count)
     while True:
         with damage_named(source):

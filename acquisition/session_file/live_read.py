@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A session out of the file of its recording: block by block, each one checked."""
+"""Read the file of a recording block by block, each one checked."""
 
 import json
 import zlib
@@ -25,9 +25,9 @@ class LiveSpan:
     """Blocks that follow each other without a gap, each with a right checksum.
 
     Attributes:
-        segment: uninterrupted stretch of the stream that they belong to.
-        first: index of their first sample in that stretch.
-        stored: index of it in the file.
+        segment: uninterrupted segment of the stream.
+        first: index of their first sample in that segment.
+        stored: index of that sample in the file.
         count: samples per channel.
     """
 
@@ -50,12 +50,12 @@ class LiveSpan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LiveContent:
-    """What is left of a recording; its samples stay in the file.
+    """Valid content of a recording; its samples stay in the file.
 
     Attributes:
         meta: as known before the first sample.
-        spans: what is there, in its order; a span goes over several runs.
-        log: entries whose checksum is right, in their order.
+        spans: valid blocks, in order; a span may cover several runs.
+        log: entries with a valid checksum, in order.
         damaged: blocks that were left out.
     """
 
@@ -66,18 +66,18 @@ class LiveContent:
 
     @property
     def samples(self) -> int:
-        """Samples per channel that are there and right."""
+        """Number of valid samples per channel."""
         return sum(span.count for span in self.spans)
 
 
 def read_live(file: h5py.File) -> LiveContent:
-    """Read the file of a recording through, finished or not, block by block.
+    """Read the file of a recording, finished or not, block by block.
 
     Args:
         file: open for reading.
 
     Raises:
-        FormatError: what was there before the first sample is damaged.
+        FormatError: the data before the first sample are damaged.
     """
     meta = json.loads(str(read_attribute(file, "meta")))
     if not isinstance(meta, dict) or "channels" not in meta:
@@ -100,7 +100,7 @@ def read_pieces(file: h5py.File, stored: int, count: int) -> Iterator[Samples]:
 
 
 def _good(dataset: h5py.Dataset, index: IntArray) -> Iterator[bool]:
-    """Tell of each block whether its samples are those that were written."""
+    """Yield for each block whether its checksum is valid."""
     stored = 0
     for _, _, count, crc in index.T.tolist():
         whole = count > 0 and stored + count <= dataset.shape[1]
@@ -137,7 +137,7 @@ def _follows(one: LiveSpan, other: LiveSpan) -> bool:
 
 
 def _entries(text: bytes) -> Iterator[dict[str, Any]]:
-    """Yield the lines that are whole; the last one of a killed session may not be."""
+    """Yield the complete lines; the last one of a killed session may be cut."""
     if text.count(b"\n") > MAX_ROWS or text.count(b"[") > MAX_JSON:
         raise HostileFile("its log has more entries than any recording")
     for line in text.split(b"\n"):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The file of a session while it is recorded: whatever happens, what was written stays.
+"""The file of a session during recording: written data survive a crash.
 
-Layout, version 1; every dataset is there before the first sample, and HDF5's
+Layout, version 1; every dataset exists before the first sample, and HDF5's
 single-writer mode keeps the file readable at any moment::
 
     /            schema, meta (JSON: uuid, source, channels, ...)
@@ -9,7 +9,7 @@ single-writer mode keeps the file readable at any moment::
     /blocks      (block, 4): segment, first sample in it, count, CRC-32 of the samples
     /log         bytes: one JSON object a line, each with a CRC-32
 
-A thread of its own writes and flushes every block, and forces the disk once a second.
+A separate thread writes and flushes every block, and syncs the disk once a second.
 """
 
 import json
@@ -43,7 +43,7 @@ Entry = Mapping[str, object]
 
 
 def channel_rows(channels: Sequence[Channel]) -> list[dict[str, object]]:
-    """Return channels as the head of a recording states them."""
+    """Return channels as rows for the head of a recording."""
     return [
         {
             "name": channel.name,
@@ -65,8 +65,8 @@ class LiveSession:
         """Create the file and start its writer.
 
         Args:
-            path: of a file that is not there yet.
-            meta: what is known before the first sample, as JSON can hold it.
+            path: of a new file.
+            meta: data known before the first sample, as JSON types.
             channels: rows of every block.
             block: usual samples of a block.
 
@@ -103,7 +103,7 @@ class LiveSession:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Close; an error met meanwhile is raised unless another is on its way."""
+        """Close; an earlier error is raised unless another is being raised."""
         try:
             self.close()
         except InstrumentError:
@@ -111,24 +111,24 @@ class LiveSession:
                 raise
 
     def append(self, samples: FloatArray, *, segment: int, first: int) -> None:
-        """Hand over a block.
+        """Queue a block for writing.
 
         Args:
             samples: SI units, shape (n_channels, n).
-            segment: uninterrupted stretch that they belong to.
-            first: index of the first of them in that stretch.
+            segment: uninterrupted segment of the samples.
+            first: index of the first of them in that segment.
 
         Raises:
             InstrumentError: the disk refused an earlier block.
         """
-        # No more than this one block is ever on its way: a slow disk holds up the
-        # reader, for whom the driver keeps seconds of samples.
+        # At most this one block is queued: a slow disk delays the reader, for whom the
+        # driver buffers seconds of samples.
         self._queue.join()
         self._put((segment, first, samples))
         self.samples += samples.shape[1]
 
     def log(self, entry: Entry) -> None:
-        """Hand over an entry of the log; the time is added.
+        """Queue an entry of the log; the time is added.
 
         Raises:
             InstrumentError: the disk refused something earlier.
@@ -138,7 +138,7 @@ class LiveSession:
         self._put(f"{zlib.crc32(text.encode()):08x} {text}\n".encode())
 
     def close(self) -> None:
-        """Write what waits, force the disk, close the file and let go of the lock.
+        """Write the queue, sync the disk, close the file and release the lock.
 
         Raises:
             InstrumentError: the disk refused something.
@@ -173,7 +173,7 @@ class LiveSession:
             synced = time.monotonic()
             while (item := self._queue.get()) is not None:
                 try:
-                    # After a failure the caller learns of it at the next hand-over.
+                    # After a failure the caller gets the error at the next call.
                     if self._failure is None:
                         room.make(
                             len(item) if isinstance(item, bytes) else item[2].nbytes

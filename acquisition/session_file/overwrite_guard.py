@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What may be replaced by a new session: an earlier one that nobody is recording."""
+"""Check which file a new session may replace: an earlier one that is not recording."""
 
 from pathlib import Path
 
@@ -11,11 +11,11 @@ from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_size
 
 FAMILIES = ("jointbench-session/", "jointbench-live/")
-"""How the layouts of finished sessions and of recordings begin."""
+"""Prefixes of the layouts of finished sessions and of recordings."""
 
 
 def require_session(path: Path) -> None:
-    """Refuse a file that is there and no session of ours.
+    """Refuse an existing file that is no session of the station.
 
     Raises:
         UsageError: it is a folder, a device, a file of another kind, or damaged.
@@ -39,7 +39,7 @@ def require_replaceable(path: Path) -> None:
     """Refuse a file that a new session must not replace.
 
     Raises:
-        UsageError: it is being recorded right now, or is no session of ours.
+        UsageError: it is being recorded right now, or is no session of the station.
     """
     if is_held(path):
         raise UsageError(
@@ -50,7 +50,7 @@ def require_replaceable(path: Path) -> None:
 
 
 def fresh_path(path: Path, word: str = "new") -> Path:
-    """Return a name beside `path` that is free: ``s.new.h5``, ``s.new-2.h5``, ..."""
+    """Return an unused name next to `path`: ``s.new.h5``, ``s.new-2.h5``, ..."""
     number = 1
     while True:
         ending = word if number == 1 else f"{word}-{number}"

@@ -18,7 +18,7 @@ _LONGEST_NAME = 100
 
 
 def free_name(name: str, parent: h5py.Group) -> str:
-    """Return a group name for a record: its own, unless HDF5 or netCDF forbids it."""
+    """Return a group name for a record: its name, unless HDF5 or netCDF forbids it."""
     plain = re.sub(r"[/\x00-\x1f\x7f]", "_", name)[:_LONGEST_NAME].strip()
     if not plain or not (plain[0].isalnum() or plain[0] == "_" or ord(plain[0]) > 127):
         plain = f"_{plain}"
@@ -51,7 +51,7 @@ def number(target: h5py.Group, name: str) -> float:
 
 
 def narrowest(values: FloatArray) -> NDArray[np.float64] | NDArray[np.float32]:
-    """Return values in single precision where that loses not one bit."""
+    """Return values in single precision if that is lossless."""
     with np.errstate(over="ignore"):
         single = values.astype(np.float32)
     return single if np.array_equal(single.astype(np.float64), values) else values

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""From the file of a recording to a session: runs, hits, gaps, and what was lost.
+"""Build a session from the file of a recording: runs, hits, gaps and losses.
 
-The log says where each run begins, what became of each hit, and what went wrong; a run
-becomes one recording, cut where samples are missing, so that no recording pretends to
-be continuous where it is not.
+The log holds the start of each run, the verdict on each hit, and errors. A run becomes
+one recording, cut where samples are missing, so that every recording is continuous.
 """
 
 from bisect import bisect_right
@@ -46,14 +45,14 @@ class _Stretch:
 
 
 def session_from_live(file: h5py.File, content: LiveContent) -> Session:
-    """Make the session that a recording amounts to.
+    """Return the session of a recording.
 
     Args:
         file: of the recording, open for reading.
-        content: of it, whole or what a crash left of it.
+        content: of it, complete or after a crash.
 
     Raises:
-        FormatError: the head of the recording is not what `LiveSession` writes.
+        FormatError: the head of the recording is not that of `LiveSession`.
     """
     outline, spans = outline_live(content)
     recordings = (
@@ -64,10 +63,10 @@ def session_from_live(file: h5py.File, content: LiveContent) -> Session:
 
 
 def outline_live(content: LiveContent) -> tuple[Session, tuple[LiveSpan, ...]]:
-    """Make the session that a recording amounts to, all but its samples.
+    """Return the session of a recording without its samples.
 
     Args:
-        content: of its file, whole or what a crash left of it.
+        content: of its file, complete or after a crash.
 
     Returns:
         The session, its recordings without a sample, and where in the file those of
@@ -116,17 +115,17 @@ def _samples(file: h5py.File, span: LiveSpan, channels: int) -> FloatArray:
 
 
 def lost_samples(log: Sequence[dict[str, Any]]) -> int:
-    """Return how many samples per channel the driver reported as overwritten."""
+    """Return the samples per channel that the driver reported as overwritten."""
     return sum(int(e.get("samples", 0)) for e in log if e.get("kind") == "gap")
 
 
 def is_finished(content: LiveContent) -> bool:
-    """Tell whether the recording came to its end by itself."""
+    """Return whether the recording was ended regularly."""
     return any(entry.get("kind") == "end" for entry in content.log)
 
 
 def _stretches(content: LiveContent) -> Iterator[_Stretch]:
-    """Yield the spans, cut where runs begin; of runs at one sample the last counts."""
+    """Yield the spans, cut at the start of runs; of runs at one sample use the last."""
     before: dict[str, Any] = {"name": "quiet", "purpose": "noise of the hammer"}
     begins: dict[int, dict[str, Any]] = {0: before}
     for entry in content.log:
@@ -175,7 +174,7 @@ def _recording(
 
 
 def _start_time(stretch: _Stretch, rate: float) -> float:
-    """Return the time of the first sample [s]: by its run's own, if that says so."""
+    """Return the time of the first sample [s]: that of its run, if stated."""
     begun = stretch.run.get("start_time")
     if begun is None:
         return stretch.span.stored / rate
@@ -240,7 +239,7 @@ def _joint(recordings: Sequence[Recording], meta: dict[str, Any]) -> JointSetup 
 
 
 def _provenance(content: LiveContent) -> Provenance:
-    """Return the bench's own account: sensors, notes, gaps, settings, continuity."""
+    """Return the log of the bench: sensors, notes, gaps, settings, continuity."""
     steps = [
         Step(str(entry["kind"]), tuple(_plain(entry, tuple(entry)).items()))
         for entry in content.log
@@ -276,5 +275,5 @@ def _channel(row: dict[str, Any]) -> Channel:
 
 
 def recovered_path(path: Path) -> Path:
-    """Return where `recover` puts what it saves of a file."""
+    """Return the path for the session recovered from a file."""
     return path.with_name(f"{path.stem}.recovered{path.suffix}")

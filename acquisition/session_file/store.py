@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The session file: raw data and how they came about, in netCDF-compatible HDF5.
+"""The session file: raw data with provenance, in netCDF-compatible HDF5.
 
 Layout, version 1::
 
@@ -10,8 +10,8 @@ Layout, version 1::
     /surfaces/<surface>  heights and the mask of the points that are there
     /provenance          what was done, step by step
 
-Results never go into it: they are written beside it, so that raw data can be made
-read-only. See `streams` and `extras` for the groups.
+Results are written to a separate file, so that raw data can be made read-only. See
+`streams` and `extras` for the groups.
 """
 
 from collections.abc import Iterator
@@ -48,7 +48,7 @@ from jointbench.acquisition.session_file.surfaces_and_setup import (
 
 SESSION_SCHEMA = "jointbench-session/1"
 SESSION_TITLE = "jointbench session: raw recordings and surfaces"
-# What damaged content makes h5py, NumPy, JSON and the records raise.
+# Exceptions of h5py, NumPy, JSON and the records for damaged content.
 _DAMAGE = (KeyError, ValueError, TypeError, OSError, RuntimeError, OverflowError)
 _TEXTS = ("uuid", "created", "software", "operator", "notes", "source")
 
@@ -56,12 +56,12 @@ _TEXTS = ("uuid", "created", "software", "operator", "notes", "source")
 def write_session(
     session: Session, path: Path | str, *, overwrite: bool = False
 ) -> None:
-    """Write a session so that it is there whole or not at all.
+    """Write a session completely or not at all.
 
     Args:
         session: what to write.
         path: of the file, usually ``*.h5``.
-        overwrite: replace a file that is there.
+        overwrite: replace an existing file.
 
     Raises:
         UsageError: there is such a file and `overwrite` is off, it is being recorded,
@@ -78,7 +78,7 @@ def write_session(
 
 
 def write_head(file: h5py.File, session: Session) -> None:
-    """Write what a session says of itself, all but its recordings and surfaces."""
+    """Write the attributes of a session, without recordings and surfaces."""
     write_attributes(file, {name: getattr(session, name) for name in _TEXTS})
     write_attributes(file, {"simulated": bool(session.simulated)})
     write_setup(file, session.joint)
@@ -95,10 +95,10 @@ def _own_file(path: Path, *, overwrite: bool) -> Iterator[h5py.File]:
 
 
 def read_session(path: Path | str) -> Session:
-    """Read a session, bit for bit as it was written.
+    """Read a session, bit for bit as written.
 
-    A recording that was killed, or still goes on, opens as the session that is in it
-    so far; its file is not touched.
+    A recording that was killed, or is still running, opens as the session recorded so
+    far; its file is not changed.
 
     Args:
         path: of a file that `write_session` or `LiveSession` made.
@@ -106,7 +106,7 @@ def read_session(path: Path | str) -> Session:
     Raises:
         BadData: it cannot be opened.
         FormatError: it is no session file, of a later layout, or damaged.
-        HostileFile: it asks for more than a measurement would.
+        HostileFile: it exceeds the limits of a measurement.
     """
     with open_guarded(path) as file, damage_named(path):
         if read_attribute(file, "schema") == LIVE_SCHEMA:
@@ -117,10 +117,10 @@ def read_session(path: Path | str) -> Session:
 
 @contextmanager
 def damage_named(path: Path | str) -> Iterator[None]:
-    """Turn whatever damaged content raises into one line that names the file.
+    """Convert exceptions for damaged content to one line with the file name.
 
     Raises:
-        FormatError: in place of the error met inside.
+        FormatError: instead of the original error.
     """
     try:
         yield
@@ -135,7 +135,7 @@ def damage_named(path: Path | str) -> Iterator[None]:
 
 
 def require_schema(file: h5py.File, schema: str, path: Path | str) -> None:
-    """Raise `FormatError` unless a file says that it has the layout `schema`."""
+    """Raise `FormatError` unless a file has the layout `schema`."""
     found = read_attribute(file, "schema")
     if found == schema:
         return
@@ -143,7 +143,7 @@ def require_schema(file: h5py.File, schema: str, path: Path | str) -> None:
     if isinstance(found, str) and found.startswith(f"{family}/"):
         way = "read it with the version of jointbench that wrote it, or a later one"
     else:
-        way = "`jointbench inspect` tells what is in it"
+        way = "`jointbench inspect` lists its content"
     raise FormatError(
         f"{named(path)} has the layout {shown(found)}, {schema!r} is needed; {way}"
     )

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Recordings and hits as groups of a session file; `store` puts them together.
+"""Recordings and hits as groups of a session file; used by `store`.
 
-Each recording is one group that xarray opens by itself::
+Each recording is one group that xarray can open::
 
     /stream/<recording>   samples (channel, time), time, and one row a channel of
                           channel_name, quantity, point, direction, unit, ...;
                           attribute preload [N] where it is this recording's own
     /hits/<recording>     start, trigger, stop, peak_force, verdict, reason (hit)
 
-The time axis is a plain coordinate to whoever opens the file, but stored as whole
-numbers with `scale_factor` and `add_offset`: a ramp of small integers packs to almost
-nothing, where a ramp of doubles would cost a third of the samples themselves. What
-counts on reading back is the attribute `sample_rate`. Samples are doubles, or single
-precision where that loses not one bit.
+The time axis is a plain coordinate for readers, but stored as integers with
+`scale_factor` and `add_offset`: a ramp of small integers compresses to almost nothing,
+a ramp of doubles to a third of the size of the samples. The sample rate is read from
+the attribute `sample_rate`. Samples are doubles, or single precision if that is
+lossless.
 """
 
 from collections.abc import Iterable, Sequence
@@ -79,11 +79,11 @@ def write_recording_in_pieces(
     count: int,
     pieces: Iterable[NDArray[np.float32]],
 ) -> None:
-    """Write a recording whose samples would fill the memory.
+    """Write a recording whose samples exceed the memory.
 
     Args:
         file: to write to, on the disk.
-        recording: all of it but its samples.
+        recording: without its samples.
         position: among the recordings.
         count: samples per channel.
         pieces: the samples in single precision, each of shape (n_channels, n), finite.
@@ -165,7 +165,7 @@ def recording_from_group(
 
 
 def read_preload(group: h5py.Group) -> float | None:
-    """Return the preload of a recording [N], None where it has none of its own."""
+    """Return the preload of a recording [N], None if it has no separate one."""
     return float(number(group, "preload")) if "preload" in group.attrs else None
 
 
@@ -173,7 +173,7 @@ def read_channels(group: h5py.Group) -> tuple[Channel, ...]:
     """Read the channels of a recording, not its samples.
 
     Raises:
-        UnitError: samples are stored in another unit than the quantity's own.
+        UnitError: samples are stored in another unit than that of the quantity.
     """
     rows = zip(
         read_texts(group["channel_name"]),
@@ -198,7 +198,7 @@ def read_channels(group: h5py.Group) -> tuple[Channel, ...]:
 
 
 def read_hits(file: h5py.File, group: h5py.Group) -> tuple[Hit, ...]:
-    """Read the hits of the recording in `group`; none where none were stored."""
+    """Read the hits of the recording in `group`; empty if none are stored."""
     hits = find_group(file, "hits")
     name = str(group.name).rsplit("/", 1)[-1]
     stored = None if hits is None else find_group(hits, name)
@@ -293,7 +293,7 @@ def _write_hits(file: h5py.File, stream: h5py.Group, recording: Recording) -> No
         long_name="what became of the hit",
     )
     measures = [float(hit.measure) for hit in hits]
-    words = "the number behind the verdict, see reason"
+    words = "number of the verdict, see reason"
     write_variable(group, "measure", measures, ("hit",), long_name=words)
     for key, long_name, texts in (
         ("point", "where the hammer struck", [hit.point for hit in hits]),

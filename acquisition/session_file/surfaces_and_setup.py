@@ -114,7 +114,7 @@ def read_spacing(group: h5py.Group) -> tuple[float, ...]:
 
 
 def read_instrument(group: h5py.Group) -> SurfaceInstrument:
-    """Return what is stored of the instrument of a surface."""
+    """Return the stored data of the instrument of a surface."""
     numbers = {
         key: float(number(group, key))
         for key in _INSTRUMENT_NUMBERS
@@ -131,7 +131,7 @@ def _write_instrument(group: h5py.Group, instrument: SurfaceInstrument) -> None:
 
 
 def write_setup(file: h5py.File, joint: JointSetup | None) -> None:
-    """Write how the joint was set up; nothing at all where nobody said."""
+    """Write the set-up of the joint; nothing if not given."""
     if joint is None:
         return
     group = file.create_group("setup")
@@ -146,7 +146,7 @@ def write_setup(file: h5py.File, joint: JointSetup | None) -> None:
 
 
 def read_setup(file: h5py.File) -> JointSetup | None:
-    """Return how the joint was set up, or None where nobody said."""
+    """Return the set-up of the joint, or None if not given."""
     group = find_group(file, "setup")
     if group is None:
         return None
@@ -203,10 +203,10 @@ def write_provenance(file: h5py.File, session: Session) -> None:
 
 
 def read_provenance(file: h5py.File) -> dict[_Owner, Provenance]:
-    """Return the steps by what they belong to, for example ("recording", "hit 1").
+    """Return the steps by their owner, for example ("recording", "hit 1").
 
     Raises:
-        FormatError: the details are not what `write_provenance` writes.
+        FormatError: the details are not those of `write_provenance`.
     """
     group = find_group(file, "provenance")
     if group is None:

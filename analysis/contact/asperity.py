@@ -26,7 +26,7 @@ from jointbench.analysis.contact.material import (
 )
 from jointbench.analysis.contact.models import ContactModel, regime_laws
 
-# Far above every regime bound; a power of it must not overflow.
+# Far above every regime bound; powers of it must not overflow.
 _LARGEST_LOG_RATIO = 300.0
 
 
@@ -35,8 +35,8 @@ def log_ratio_at_unit_area(
 ) -> FloatArray:
     """Return ln(delta / delta_c) of a contact of 1 m^2 [-].
 
-    It stays a number of moderate size where the critical area, its exponential over e,
-    is beyond every double.
+    It is of moderate size where the critical area, its exponential over e, overflows a
+    double.
 
     Args:
         model: topography and yield criterion count.
@@ -67,7 +67,7 @@ def log_critical_area(
         material: modulus and what else the yield criterion needs.
 
     Returns:
-        ln(a_c / m^2); above some 700 the area itself is beyond every double.
+        ln(a_c / m^2); above about 700 the area itself overflows a double.
 
     Source:
         Appl. Sci. 2023, 13, 11680, eqs. (23) and (41); from a = g R delta and
@@ -142,7 +142,7 @@ def asperity_stiffness(
 ) -> FloatArray:
     """Return dP/d(approach) of one contact of exp(`log_area`) m^2 [N/m].
 
-    The radius is held while the interference grows.
+    The radius is constant while the interference grows.
 
     Args:
         model: laws of the regimes.

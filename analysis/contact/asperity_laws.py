@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class Regime(StrEnum):
-    """How far an asperity is deformed; from the smallest contacts to the largest."""
+    """Regime of deformation, from the smallest contacts to the largest."""
 
     PLASTIC = "plastic"
     ELASTIC_PLASTIC_2 = "elastic_plastic_2"
@@ -16,7 +16,7 @@ class Regime(StrEnum):
 
 
 REGIMES = tuple(Regime)
-# Interference over critical interference at which one regime gives way to the next:
+# Interference over critical interference at which one regime changes to the next:
 # plastic above 110, second elastic-plastic stage above 6, first above 1.
 REGIME_BOUNDS = (math.inf, 110.0, 6.0, 1.0, 0.0)
 
@@ -46,17 +46,17 @@ class PowerLaw:
 
 @dataclass(frozen=True, slots=True)
 class FullyPlastic:
-    """Load of an asperity as P = pressure_factor * hardness * a; 0 bears nothing."""
+    """Load of an asperity as P = pressure_factor * hardness * a; 0 for no load."""
 
     pressure_factor: float
 
 
 AsperityLaw = PowerLaw | FullyPlastic
-# Contacts of a regime that was taken out of a model.
+# Contacts of a regime that was removed from a model.
 ABSENT = FullyPlastic(0.0)
 
 
 def bears_nothing(law: AsperityLaw) -> bool:
-    """Tell whether contacts of this law carry no load at all."""
+    """Return whether contacts of this law carry no load."""
     factor = law.coefficient if isinstance(law, PowerLaw) else law.pressure_factor
     return factor == 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The physical case that a contact model predicts: handed on whole, as one record."""
+"""The physical case of a contact prediction, as one record."""
 
 from dataclasses import dataclass, field, replace
 
@@ -22,10 +22,10 @@ class ContactConditions:
         material: of both bodies.
         hardness_sd: standard deviation of the hardness [Pa].
         friction_factor_sd: standard deviation of the friction factor k_mu [-].
-        damping: what a damping coefficient is made of, or None for no damping.
-        tangential_load: already on the joint [N].
+        damping: definition of the damping coefficient, or None for no damping.
+        tangential_load: applied to the joint [N].
         friction: coefficient of friction [-]; matters under a tangential load only.
-        nominal_area: apparent area [m^2], which only guards the real area, or None.
+        nominal_area: apparent area [m^2], only to check the real area, or None.
     """
 
     material: ContactMaterial
@@ -43,7 +43,7 @@ class ContactCase:
 
     Attributes:
         model: see `CONTACT_MODELS`.
-        surface: the one surface that stands for both faces, with its spread.
+        surface: the equivalent surface of both contact surfaces, with its spread.
         preload: normal force on the joint, with its standard deviation [N].
         conditions: material, tangential load and so on.
         gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
@@ -62,12 +62,12 @@ class ContactCase:
 
     @property
     def dimension(self) -> float:
-        """Fractal dimension as the model wants it: of a line (2D) or a surface [-]."""
+        """Fractal dimension as the model defines it: line (2D) or surface [-]."""
         return self.surface.dimension_for(self.model)
 
     @property
     def fractal(self) -> FractalSurface:
-        """The surface as the sums over its contacts take it."""
+        """The surface as input of the sums over its contacts."""
         return FractalSurface(
             np.array(self.dimension),
             np.array(self.surface.roughness),
@@ -90,5 +90,5 @@ class ContactCase:
         )
 
     def without_damping(self) -> "ContactCase":
-        """Return the case with no damping asked for."""
+        """Return the case without damping."""
         return replace(self, conditions=replace(self.conditions, damping=None))

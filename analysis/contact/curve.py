@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Predict many rough joints at once, and refuse what no joint can be."""
+"""Predict many rough joints at once, and refuse impossible input."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,12 +13,12 @@ from jointbench.analysis.contact.model_catalogue import contact_model
 from jointbench.analysis.contact.models import ContactModel
 from jointbench.analysis.contact.solve import solve_largest_area
 
-# From a single atom's grip to a mountain's weight [N].
+# From the force of a single atom to the weight of a mountain [N].
 _LOAD_RANGE = (1e-9, 1e12)
-# G is no length on the surface: height goes as G^(D - lowest), so smooth surfaces of
-# low dimension have G far below an atom, and only the upper end is a size [m].
+# G is no length on the surface: height scales as G^(D - lowest), so smooth surfaces of
+# low dimension have G far below an atom's size; only the upper limit is a length [m].
 _ROUGHNESS_RANGE = (1e-60, 1.0)
-# Real surfaces are described with 1.5; the function is sparse far below this [-].
+# Real surfaces are described with 1.5; it is sparse at far smaller values [-].
 _LARGEST_GAMMA = 1e3
 
 
@@ -37,20 +37,20 @@ def contact_curve(
 
     Args:
         model: name or record; see `CONTACT_MODELS`.
-        dimension: fractal dimension as the model's topography wants it [-].
+        dimension: fractal dimension as the model's topography defines it [-].
         roughness: fractal roughness G [m].
         material: composite modulus, hardness and so on.
         preload: [N].
-        hardness: in place of the material's own [Pa].
-        friction: in place of the material's friction factor [-].
+        hardness: replaces that of the material [Pa].
+        friction: replaces the material's friction factor [-].
         gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
 
     Returns:
         Areas, and load and stiffness by regime, of the broadcast shape.
 
     Raises:
-        BadData: a number outside the model's range, or outside what a solid joint can
-            have, or numbers that together overflow.
+        BadData: a number outside the model's range, or impossible for a solid joint, or
+            numbers that together overflow.
     """
     model = contact_model(model) if isinstance(model, str) else model
     hard = np.asarray(material.hardness if hardness is None else hardness, dtype=float)
@@ -64,7 +64,7 @@ def contact_curve(
     )
     require_surface(model, surface)
     _require_within("preload", force, _LOAD_RANGE, "N", "4000")
-    with np.errstate(all="ignore"):  # what overflows is refused just below
+    with np.errstate(all="ignore"):  # overflow is refused below
         log_largest = solve_largest_area(model, surface, material, force)
         sums = joint_sums(model, surface, material, log_largest)
     _require_finite(model, sums)
@@ -79,7 +79,8 @@ def require_surface(model: ContactModel, surface: FractalSurface) -> None:
         surface: of one or many joints.
 
     Raises:
-        BadData: dimension, roughness, hardness or gamma is none of a real surface.
+        BadData: dimension, roughness, hardness or gamma is impossible for a real
+            surface.
     """
     low = model.topography.lowest_dimension
     value = surface.dimension

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Damping of a joint from the energy that its contacts lose, and its conventions.
+"""Damping of a joint from the energy loss of its contacts, and its conventions.
 
-What is lost is the loss of a first loading to the preload. A small vibration about
-the preload loses less: take these numbers for an upper bound, not for a cycle's loss.
+The loss is that of a first loading to the preload. A small vibration about the preload
+loses less: these numbers are an upper bound, not the loss of a cycle.
 """
 
 import math
@@ -20,14 +20,14 @@ from jointbench.analysis.contact.models import ContactModel
 
 
 class EnergyForm(StrEnum):
-    """How the lost and the stored energy of the contacts are found."""
+    """Method for the lost and the stored energy of the contacts."""
 
     KOGUT_ETSION = "kogut-etsion"
     TWO_REGIME = "two-regime"
 
 
 class LossConvention(StrEnum):
-    """What a loss factor is: W_d/W_e, or W_d/(2 pi W_max); 2 pi apart, nearly."""
+    """Definition of the loss factor: W_d/W_e, or W_d/(2 pi W_max); about 2 pi apart."""
 
     ENERGY_RATIO = "energy-ratio"
     PER_RADIAN = "per-radian"
@@ -35,10 +35,10 @@ class LossConvention(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class DampingChoice:
-    """What a damping coefficient is to be made of.
+    """Definition of a damping coefficient.
 
     Attributes:
-        mass: that moves on the joint [kg]; sets the frequency sqrt(K/M) ...
+        mass: moving mass on the joint [kg]; sets the frequency sqrt(K/M) ...
         frequency: ... unless it is given [Hz].
         form: of the energies.
         convention: of the loss factor.
@@ -75,16 +75,16 @@ def loss_factor(
     """Return the loss factor of a joint's first loading [-].
 
     Args:
-        model: whose laws act.
+        model: its laws are used.
         surface: dimension, roughness and hardness of one or many surfaces.
         material: effective modulus and yield properties.
         log_largest: ln(a_l / m^2), broadcast with the surfaces.
         form: two regimes as in Zhang's model, or Kogut and Etsion's laws with
             Etsion's unloading.
-        convention: which quotient.
+        convention: of the quotient.
 
     Returns:
-        Loss factor, infinite where nothing is stored.
+        Loss factor, infinite where no energy is stored.
     """
     if form is EnergyForm.TWO_REGIME:
         stored, lost = two_regime_energy(model, surface, material, log_largest)
@@ -101,7 +101,7 @@ def loss_factor(
 def damping_coefficient(
     factor: FloatArray, stiffness: FloatArray, choice: DampingChoice
 ) -> FloatArray:
-    """Return the viscous coefficient that loses as much at one frequency [N s/m].
+    """Return the viscous coefficient with the same loss at one frequency [N s/m].
 
     Args:
         factor: loss factor in the convention of `choice` [-].
@@ -118,5 +118,5 @@ def damping_coefficient(
 
 
 def damping_ratio(damping: float, stiffness: float, mass: float) -> float:
-    """Return C/(2 sqrt(K M)) [-]; above 1 no mode can be seen."""
+    """Return C/(2 sqrt(K M)) [-]; above 1 there is no oscillating mode."""
     return damping / (2 * math.sqrt(stiffness * mass))

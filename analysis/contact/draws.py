@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How uncertain a predicted joint stiffness is: draws through the contact model."""
+"""Uncertainty of a predicted joint stiffness, by draws through the contact model."""
 
 from dataclasses import dataclass
 
@@ -41,8 +41,8 @@ class StiffnessInterval:
         lower: lower end of the central interval, same unit.
         upper: upper end, same unit.
         level: probability that the interval covers [-].
-        draws: how many draws it rests on.
-        outside: share of draws whose dimension left the model's range, drawn again.
+        draws: number of draws.
+        outside: share of draws with a dimension outside the model's range, drawn again.
     """
 
     median: float
@@ -59,9 +59,9 @@ def predict_interval(
     """Predict an interval of the normal stiffness.
 
     Args:
-        case: the joint, with how uncertain its inputs are.
+        case: the joint, with the uncertainty of its inputs.
         level: probability of the interval [-].
-        draws: how many.
+        draws: number of draws.
         seed: of the draws; the same seed gives the same interval.
 
     Returns:
@@ -100,11 +100,11 @@ def central_interval(
 
 
 def draw_inputs(case: ContactCase, *, draws: int, seed: int) -> DrawnInputs:
-    """Draw what goes into a contact model; the same seed draws the same.
+    """Draw the inputs of a contact model; the same seed gives the same draws.
 
     Args:
-        case: its numbers are the centres, and its model's range of dimensions counts.
-        draws: how many.
+        case: its numbers are the centres; its model sets the range of dimensions.
+        draws: number of draws.
         seed: of the draws.
 
     Returns:
@@ -129,7 +129,7 @@ def draw_inputs(case: ContactCase, *, draws: int, seed: int) -> DrawnInputs:
 def _draw_surface(
     case: ContactCase, *, draws: int, random: np.random.Generator
 ) -> tuple[FloatArray, FloatArray, float]:
-    """Return dimensions in range, ln(G/roughness), and the share drawn in vain."""
+    """Return dimensions in range, ln(G/roughness), and the share of rejected draws."""
     spread, model, dimension = case.spread, case.model, case.dimension
     first, second = random.standard_normal((2, 4 * draws))
     dimensions = dimension + spread.dimension * first
@@ -141,7 +141,7 @@ def _draw_surface(
         raise BadData(
             f"fractal dimension {dimension:g} +- {spread.dimension:g} is mostly "
             f"outside {low:g} to {low + 1:g} of model {model.name!r}; "
-            "measure more or longer profiles, or take another model"
+            "measure more or longer profiles, or choose another model"
         )
     return (
         dimensions[inside][:draws],

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Work of loading a rough joint, and what of it unloading gives back.
+"""Work of loading a rough joint, and the part recovered by unloading.
 
-Work is the integral of the load laws themselves, so that full plasticity takes
-the load that it bears; only the recovered part needs quadrature, for the exponents of
-the unloading law change with the interference.
+Work is the integral of the load laws themselves, so that full plasticity includes its
+load; only the recovered part needs quadrature, because the exponents of the unloading
+law change with the interference.
 """
 
 import math
@@ -24,7 +24,7 @@ from jointbench.analysis.contact.joint_sums import power_integral
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, regime_laws
 
-# e^-45 of an integral is below rounding; that length is cut into panels of Gauss's.
+# e^-45 of an integral is below rounding; that length is divided into Gauss panels.
 _LONGEST = 45.0
 _PANELS = 6
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -36,9 +36,9 @@ class JointEnergy:
     """Work done on a joint by its first loading, by regime.
 
     Attributes:
-        loading: work of the load along the way [J], shape (4, ...), as `REGIMES`.
-        recovered: what unloading gives back [J], same shape.
-        dissipated: what it does not, contact by contact never negative [J].
+        loading: work of the load [J], shape (4, ...), as `REGIMES`.
+        recovered: by unloading [J], same shape.
+        dissipated: loading less recovered, not negative for any contact [J].
     """
 
     loading: FloatArray
@@ -48,7 +48,7 @@ class JointEnergy:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Stage:
-    """One regime: load is factor * P_c * s^exponent, work so far is `before`."""
+    """One regime: load is factor * P_c * s^exponent, `before` the work below it."""
 
     factor: FloatArray
     exponent: float
@@ -62,13 +62,13 @@ class _Stage:
         return np.asarray(self.before + self.factor * (s**p - self.lower**p) / p)
 
     def recovered(self, s: FloatArray) -> FloatArray:
-        """Return what unloading one contact from `s` gives back [P_c delta_c]."""
+        """Return the recovered work of unloading one contact from `s` [P_c delta_c]."""
         return np.asarray(self.factor * s ** (self.exponent + 1) * recovered_share(s))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Scale:
-    """What all regimes share."""
+    """Factors common to all regimes."""
 
     excess: FloatArray
     log_x: FloatArray
@@ -98,18 +98,18 @@ def joint_energy(
     material: ContactMaterial,
     log_largest: FloatArray,
 ) -> JointEnergy:
-    """Return the energies of a joint loaded once, and unloaded as Etsion has it.
+    """Return the energies of a joint loaded once, and unloaded by Etsion's law.
 
     Args:
-        model: whose load laws do the work.
+        model: its load laws are integrated.
         surface: dimension, roughness and hardness of one or many surfaces.
         material: effective modulus and yield properties.
         log_largest: ln(a_l / m^2), broadcast with the surfaces.
 
     Returns:
         Loading, recovered and dissipated work by regime. Elastic contacts lose
-        nothing. Just above yield the unloading law would give back more than the load
-        law took (it jumps by 3 % there): such a contact dissipates nothing.
+        nothing. Just above yield the unloading law would return more than the load law
+        stored (it jumps by 3 % there): such a contact dissipates nothing.
     """
     scale = _scale(model, surface, material, log_largest)
     stages = _stages(model, surface, material)
@@ -138,7 +138,7 @@ def two_regime_energy(
     """Return stored and dissipated energy where a contact is elastic or plastic [J].
 
     Args:
-        model: its elastic law stores; below the critical area all flows.
+        model: its elastic law stores; below the critical area all contacts are plastic.
         surface: dimension, roughness and hardness.
         material: effective modulus and yield properties.
         log_largest: ln(a_l / m^2).
@@ -225,7 +225,7 @@ def _loading(scale: _Scale, stage: _Stage) -> FloatArray:
     """Return the loading work of all contacts of a stage [J]."""
     e, p = scale.excess, stage.exponent + 1
     high = -math.log(stage.lower) / e if stage.lower else scale.log_x
-    if math.isinf(stage.upper):  # down to no area at all; both exponents are positive
+    if math.isinf(stage.upper):  # down to zero area; both exponents are positive
         high = np.minimum(high, scale.log_x)
         first = np.exp(scale.log_unit + (1 + e) * high) / (1 + e)
         rest = np.exp(scale.log_unit + (1 + e - p * e) * high) / (1 + e - p * e)
@@ -250,7 +250,7 @@ def _between(
 def _recovered(
     scale: _Scale, stage: _Stage, lower: FloatArray | float, upper: float
 ) -> FloatArray:
-    """Integrate what contacts between two interference ratios give back [J]."""
+    """Integrate the recovered work of contacts between two interference ratios [J]."""
     e = scale.excess
     start = np.maximum(np.log(lower), -e * scale.log_x)
     # The integrand falls as exp(-decay t) in t = ln s, and in full plasticity faster.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Numbers of the fractal surface on which the asperities sit."""
+"""Parameters of a fractal surface with asperities."""
 
 from dataclasses import dataclass
 
@@ -16,14 +16,14 @@ from jointbench.analysis.contact.models import ContactModel
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FractalSurface:
-    """Numbers of one or many fractal surfaces, broadcast against each other.
+    """Parameters of one or many fractal surfaces, broadcast against each other.
 
     Attributes:
-        dimension: fractal dimension as the model's topography wants it [-].
+        dimension: fractal dimension as the model's topography defines it [-].
         roughness: fractal roughness G [m].
         hardness: [Pa].
         gamma: frequency ratio of the Weierstrass-Mandelbrot function [-].
-        friction: in place of the material's friction factor [-], or None.
+        friction: replaces the material's friction factor [-], or None.
     """
 
     dimension: FloatArray

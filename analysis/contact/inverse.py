@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The way back: largest contact from real area or stiffness, preload from both."""
+"""Inverse problem: largest contact from real area or stiffness, preload from both."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,7 +27,7 @@ def largest_area_of_real_area(
     """Return the largest contact area of a given real area [m^2].
 
     Args:
-        model: its topography and population count.
+        model: its topography and population are used.
         surface: dimension of one or many surfaces.
         real_area: sum of all contact areas [m^2].
 
@@ -52,7 +52,7 @@ def log_largest_of_stiffness(
     """Return ln(a_l / m^2) at which the joint has a given stiffness; it is unique.
 
     Args:
-        model: the terms that act.
+        model: its terms.
         surface: dimension, roughness and hardness.
         material: effective modulus and yield properties.
         stiffness: normal stiffness [N/m], broadcast with the surfaces, positive.
@@ -67,7 +67,8 @@ def log_largest_of_stiffness(
     if not np.all((wanted > 0) & np.isfinite(wanted)):
         raise BadData("stiffness must be finite and positive; give e.g. '3e7 N/m'")
     shape = np.broadcast(wanted, surface.dimension, surface.roughness, surface.hardness)
-    # Below the fully plastic bound there is none; far above the critical area, plenty.
+    # Stiffness is zero below the fully plastic bound, and large far above the critical
+    # area.
     critical = log_critical_area(model, surface, material)
     low = np.full(shape.shape, _LOG_AREAS[0]) + np.minimum(critical, 0.0)
     high = np.full(shape.shape, _LOG_AREAS[1])
@@ -96,7 +97,7 @@ def preload_of(
     """Return the preload at which a joint has a given real area or stiffness [N].
 
     Args:
-        model: the terms that act.
+        model: its terms.
         surface: dimension, roughness and hardness.
         material: effective modulus and yield properties.
         real_area: sum of all contact areas [m^2], or
@@ -129,14 +130,14 @@ def approach_stiffness(
     """Return dP'/d(approach) of a joint [N/m].
 
     Args:
-        model: the terms that act.
+        model: its terms.
         surface: dimension, roughness and hardness.
         material: effective modulus and yield properties.
         sums: of that model.
 
     Returns:
-        Derivative of the total load by the interference of the largest contact: as
-        the bodies approach, it grows, and the distribution of contacts with it.
+        Derivative of the total load by the interference of the largest contact: it
+        grows as the bodies approach, and the distribution of contacts with it.
     """
     e = excess(model, surface)
     total = sums.load.sum(axis=0)

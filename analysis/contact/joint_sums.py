@@ -4,8 +4,8 @@
 Every law is a power of the contact area, so all sums are
 A * scale * J(s; lo, hi), J the integral of a^(s-1) between the regime's bounds, both
 clipped to the largest area. Areas and factors are kept as logarithms: the bounds span
-thousands of decades as the fractal dimension nears its ends, so that no area, the
-critical one least of all, may serve as a unit.
+thousands of decades as the fractal dimension nears its ends, so no area, least of all
+the critical one, can serve as a unit.
 """
 
 import math
@@ -54,14 +54,14 @@ class JointSums:
 
     @property
     def critical_area(self) -> FloatArray:
-        """Area below which asperities yield a_c [m^2]; inf beyond every double."""
+        """Area below which asperities yield a_c [m^2]; inf where a double overflows."""
         with np.errstate(over="ignore"):
             return np.asarray(np.exp(self.log_critical_area))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Sum:
-    """What all parts of one sum share: a_l, bounds, factors; arrays that broadcast."""
+    """Common parts of one sum: a_l, bounds, factors; arrays that broadcast."""
 
     excess: FloatArray
     log_ratio: FloatArray  # ln of delta / delta_c at 1 m^2
@@ -94,12 +94,12 @@ def power_integral(
         exponent: s, any shape; 0 gives the logarithm.
         log_low: ln of the lower limit, finite.
         log_high: ln of the upper limit, finite and at least `log_low`.
-        log_factor: ln of a factor, taken into the exponent against overflow.
+        log_factor: ln of a factor, included in the exponent against overflow.
 
     Returns:
         The integral, 0 where the limits meet; exact to rounding at and near s = 0.
     """
-    # Factor out the end that weighs more: the rest lies between 0 and 1.
+    # Factor out the larger end: the rest is between 0 and 1.
     width = log_high - log_low
     span = np.abs(exponent) * width
     small = span < 1e-5
@@ -118,7 +118,7 @@ def joint_sums(
     """Sum load and stiffness over all contacts up to the largest.
 
     Args:
-        model: the terms that act.
+        model: its terms.
         surface: dimension, roughness and hardness of one or many surfaces.
         material: effective modulus and yield properties.
         log_largest: ln(a_l / m^2), broadcast with the surfaces.
@@ -128,7 +128,7 @@ def joint_sums(
 
     Source:
         Appl. Sci. 2023, 13, 11680, eqs. (24)-(48), and 2025, 15, 9040, eqs. (6)-(8),
-        re-derived: there each regime and dimension has a formula of its own, with
+        re-derived: there each regime and dimension has a separate formula, with
         misprints. Note: limits are clipped to the largest area, which the papers omit.
     """
     total = _prepare(model, surface, material, log_largest)
@@ -153,7 +153,7 @@ def _prepare(
     material: ContactMaterial,
     log_largest: FloatArray,
 ) -> _Sum:
-    """Collect the factors that all regimes share."""
+    """Collect the factors common to all regimes."""
     e = excess(model, surface)
     kappa = surface_yield_ratio(model, surface, material)
     stiff = math.log(4 / 3 * material.effective_modulus)
@@ -183,7 +183,7 @@ def _load(total: _Sum, law: AsperityLaw, upper: float, lower: float) -> FloatArr
         return power_integral(exponent, *total.limits(upper, lower), factor)
     exponent = (1 - e) / 2
     factor = total.log_population + total.log_hard + math.log(law.pressure_factor)
-    if math.isinf(upper):  # down to no area at all; the exponent is positive
+    if math.isinf(upper):  # down to zero area; the exponent is positive
         return np.asarray(np.exp(factor + exponent * total.bound(lower)) / exponent)
     return power_integral(exponent, *total.limits(upper, lower), factor)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the two bodies of a joint are made of, and when their asperities yield."""
+"""Materials of the two bodies of a joint, and the yield criterion of asperities."""
 
 import math
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from jointbench.acquisition.basics.array_checks import require_positive
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 
-# From far below the softest gel to ten times the modulus of diamond [Pa]; what lies
-# outside is a number in the wrong unit.
+# From far below the softest gel to ten times the modulus of diamond [Pa]; values
+# outside are in the wrong unit.
 PRESSURE_RANGE = (1e3, 1e13)
 
 
@@ -24,7 +24,7 @@ class ContactMaterial:
         effective_modulus: composite modulus E* [Pa].
         hardness: of the softer body [Pa].
         poisson: Poisson ratio of the bodies [-].
-        yield_strength: of the softer body [Pa]; None stands for hardness / 2.8.
+        yield_strength: of the softer body [Pa]; None means hardness / 2.8.
         friction_factor: correction of the yield pressure for friction [-].
     """
 
@@ -35,7 +35,7 @@ class ContactMaterial:
     friction_factor: float = 1.0
 
     def __post_init__(self) -> None:
-        """Check that every number is one a solid can have."""
+        """Check that every number is possible for a solid."""
         require_positive("effective_modulus", self.effective_modulus)
         require_positive("hardness", self.hardness)
         require_positive("friction_factor", self.friction_factor)
@@ -92,7 +92,7 @@ def yield_ratio(
     Args:
         criterion: the choice of the model.
         material: modulus, Poisson ratio, friction factor, yield strength.
-        hardness: [Pa], any shape; in place of the material's own.
+        hardness: [Pa], any shape; replaces that of the material.
 
     Returns:
         kappa [-], shape of `hardness`.

@@ -32,7 +32,7 @@ KOGUT_ETSION_1 = PowerLaw(1.03, 1.425)
 KOGUT_ETSION_2 = PowerLaw(1.40, 1.263)
 PRINTED_STAGE_2 = PowerLaw(1.40, 1.236)
 PLASTIC_PROFILE = FullyPlastic(1.0)
-# In the surface geometry `a` is half the truncated area: full plasticity bears 2 H a.
+# In the surface geometry `a` is half the truncated area: full plasticity carries 2 H a.
 PLASTIC_SURFACE = FullyPlastic(2.0)
 _PAPER_2023 = "Appl. Sci. 2023, 13, 11680"
 _PAPER_2025 = "Appl. Sci. 2025, 15, 9040"
@@ -99,8 +99,8 @@ def contact_model(name: str, mode: str = Mode.CORRECTED) -> ContactModel:
 
     Args:
         name: one of `CONTACT_LAWS`.
-        mode: ``corrected``: lost notation restored, misprints mended; ``as-printed``:
-            with the laws and factors that the papers chose.
+        mode: ``corrected``: lost notation restored, misprints corrected;
+            ``as-printed``: with the laws and factors that the papers chose.
 
     Returns:
         The model; the papers' own joint sums are in `printed_2023`.
@@ -173,8 +173,8 @@ def _model_fault(model: ContactModel) -> str:
 def _as_printed(model: ContactModel) -> ContactModel:
     """Return `model` with the choices of its paper."""
     if model.name == "mb_2d":
-        # The original takes a = pi r^2 and P = 4 E r^3 / (3 R): with R and delta of
-        # the profile that is 4 sqrt(pi)/3 E G^(D-1) a^((3-D)/2), and k = 2 E r.
+        # The original uses a = pi r^2 and P = 4 E r^3 / (3 R): with R and delta of the
+        # profile that is 4 sqrt(pi)/3 E G^(D-1) a^((3-D)/2), and k = 2 E r.
         root = math.sqrt(math.pi)
         elastic = PowerLaw(math.pi * root, 1.5, 1.5 * root)
         return replace(model, elastic=elastic, mode=Mode.AS_PRINTED)

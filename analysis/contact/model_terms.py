@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Terms of a contact model by name: put one in, take one out, see what it does."""
+"""Terms of a contact model by name, to add or remove them."""
 
 from dataclasses import replace
 from enum import StrEnum
@@ -24,7 +24,7 @@ from jointbench.analysis.contact.topography import PROFILE, SURFACE
 
 
 class ContactTerm(StrEnum):
-    """A part of a contact model that can be there or not."""
+    """A part of a contact model that can be added or removed."""
 
     ELASTIC = "elastic"
     ELASTIC_PLASTIC_1 = "elastic_plastic_1"
@@ -36,7 +36,7 @@ class ContactTerm(StrEnum):
 
 
 def model_terms(model: ContactModel) -> frozenset[ContactTerm]:
-    """Return the terms that act in `model`."""
+    """Return the terms present in `model`."""
     present = {
         ContactTerm.ELASTIC: isinstance(model.elastic, PowerLaw),
         ContactTerm.ELASTIC_PLASTIC_1: isinstance(model.first, PowerLaw),
@@ -50,18 +50,18 @@ def model_terms(model: ContactModel) -> frozenset[ContactTerm]:
 
 
 def with_term(model: ContactModel, term: ContactTerm, *, present: bool) -> ContactModel:
-    """Return `model` with a term put in or taken out.
+    """Return `model` with a term added or removed.
 
     Args:
         model: to start from.
-        term: what to switch.
-        present: whether it shall act.
+        term: the term to switch.
+        present: whether it is to be present.
 
     Returns:
-        The model as it is where nothing changes. A missing elastic-plastic stage flows
-        fully plastically, as in Majumdar and Bhushan 1991; missing elastic or plastic
-        contacts bear nothing; without friction, yield is set by the mean contact
-        pressure; without the third dimension the surface is a profile, and its
+        The unchanged model where the term is as requested. A missing elastic-plastic
+        stage becomes fully plastic, as in Majumdar and Bhushan 1991; missing elastic or
+        plastic contacts carry no load; without friction, yield is set by the mean
+        contact pressure; without the third dimension the surface is a profile, and its
         fractal dimension one lower.
     """
     if (term in model_terms(model)) is present:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Contact models of a rough joint as data: terms that are chosen, not code paths.
+"""Contact models of a rough joint as data, with terms to choose.
 
 A model is a topography (profile or surface), a yield criterion, a law for each of four
-deformation regimes and an interaction term. Take one with `contact_model`, and change
-a term with `dataclasses.replace(model, interaction=Interaction.NONE)`.
+deformation regimes and an interaction term. Get one with `contact_model`, and change a
+term with `dataclasses.replace(model, interaction=Interaction.NONE)`.
 """
 
 import math
@@ -22,7 +22,7 @@ from jointbench.analysis.contact.topography import Topography
 
 
 class Interaction(StrEnum):
-    """Whether asperities feel that their neighbours sink the mean surface."""
+    """Whether neighbouring asperities lower the mean surface."""
 
     NONE = "none"
     SELF_CONSISTENT = "self_consistent"
@@ -30,7 +30,7 @@ class Interaction(StrEnum):
 
 
 class Mode(StrEnum):
-    """Whose formulas: mended and consistent, or those that the papers print."""
+    """Formulas to use: corrected and consistent, or as printed in the papers."""
 
     CORRECTED = "corrected"
     AS_PRINTED = "as-printed"
@@ -38,10 +38,10 @@ class Mode(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ContactModel:
-    """One contact model: every field is a term that can be exchanged by itself.
+    """One contact model: every field is a term that can be replaced alone.
 
     Attributes:
-        name: as `contact_model` takes it.
+        name: as in `contact_model`.
         topography: profile (2D) or surface (3D).
         yielding: what sets the critical interference.
         elastic: law of contacts above the critical area.
@@ -52,7 +52,7 @@ class ContactModel:
         population: factor f of the contact-area distribution [-]; 1 counts one
             contact of the largest area.
         source: paper and chapter.
-        mode: mended, or with the papers' own choices.
+        mode: corrected, or with the choices of the papers.
     """
 
     name: str
@@ -109,19 +109,19 @@ _PRINTED_SHARE = 3 * math.pi / 16
 def interaction_share(model: ContactModel) -> float:
     """Return x, the asperity's own share of the interference it shares [-].
 
-    The rest, 1 - x, is the sinking of the mean surface around it.
+    The rest, 1 - x, is the displacement of the mean surface around it.
 
     Args:
-        model: its interaction term and its topography decide.
+        model: its interaction term and topography are used.
 
     Returns:
         1 without interaction, 3 pi/16 as printed; else the root of
-        (16/(9 g)) x^3 = (1 - x)^2, which makes Hertz's law and the sinking
-        F/(E sqrt a) bear the same load.
+        (16/(9 g)) x^3 = (1 - x)^2, at which Hertz's law and the displacement F/(E sqrt
+        a) give the same load.
 
     Source:
-        Appl. Sci. 2023, 13, 11680, eqs. (17)-(18), solved. Note: the papers put
-        3 pi/16 for x, at which the two expressions for the load differ by 17 %.
+        Appl. Sci. 2023, 13, 11680, eqs. (17)-(18), solved. Note: the papers use 3 pi/16
+        for x, at which the two expressions for the load differ by 17 %.
     """
     if model.interaction is Interaction.NONE:
         return 1.0
@@ -142,14 +142,14 @@ def _balanced_share(shape: float) -> float:
 
 
 def regime_laws(model: ContactModel) -> tuple[AsperityLaw, ...]:
-    """Return the laws that act in a joint, in the order of `REGIMES`.
+    """Return the laws of a joint, in the order of `REGIMES`.
 
     Args:
         model: its four laws and its interaction term.
 
     Returns:
-        From small contacts to large; with interaction an elastic contact bears
-        x^(3/2) of what its geometric interference would.
+        From small contacts to large; with interaction an elastic contact carries
+        x^(3/2) of the load of its geometric interference.
     """
     elastic = model.elastic
     if isinstance(elastic, PowerLaw) and model.interaction is Interaction.AS_PRINTED:

@@ -24,14 +24,14 @@ from jointbench.analysis.contact.printed_formulas import (
 from jointbench.analysis.contact.tangential import tangential_stiffness
 
 DAMPING_REASON = (
-    "no damping: say what mass moves on the joint, or at what frequency, to have the "
-    "loss of a first loading as N s/m; a small vibration loses less, identify it"
+    "no damping: give the mass or the frequency on the joint for the loss of a "
+    "first loading as N s/m; a small vibration loses less, identify it"
 )
 
-# Above this many times the largest contact, the real area is made of contacts far
-# smaller than any the model's surface was measured at.
+# Above this ratio to the largest contact, the real area consists of contacts far
+# smaller than any measured scale of the surface.
 _MANY_CONTACTS = 100.0
-# ln of the largest area written as a plain number; no planet has 10^30 m^2.
+# ln of the largest area written as a plain number [ln m^2].
 _LARGEST_LOG_SHOWN = 30 * math.log(10)
 
 
@@ -49,24 +49,24 @@ class ContactState:
 
     Attributes:
         model: name of the model.
-        mode: mended, or with the choices and sums of its paper.
+        mode: corrected, or with the choices and sums of its paper.
         preload: [N].
         normal_stiffness: sum of the stiffnesses of all contacts at their present
             sizes [N/m]; as in the papers, not the derivative of the load by the
             approach of the bodies.
         approach_stiffness: derivative of the load by the interference of the largest
-            contact, which is how far the bodies approach while it grows [N/m].
+            contact, the approach of the bodies while it grows [N/m].
         tangential_stiffness: of the elastic contacts only [N/m].
-        loss_factor: of a first loading, in the convention asked for [-], or None.
+        loss_factor: of a first loading, in the requested convention [-], or None.
         damping: [N s/m]; None where no mass or frequency is given, `DAMPING_REASON`.
         largest_area: area of the largest contact a_l [m^2].
-        critical_area: area below which asperities yield a_c [m^2]; inf where it is
-            beyond every double, as near the lower end of the dimension.
+        critical_area: area below which asperities yield a_c [m^2]; inf where a double
+            overflows, as near the lower end of the dimension.
         real_area: sum of all contact areas [m^2].
         load_parts: load carried by each regime [N].
         stiffness_parts: stiffness of each regime [N/m].
         verdict: whether to use it.
-        reasons: one line for each thing the verdict rests on, or to keep in mind.
+        reasons: one line for each basis of the verdict, or caution.
     """
 
     model: str
@@ -90,13 +90,12 @@ def predict_contact(case: ContactCase) -> ContactState:
     """Predict one joint.
 
     Args:
-        case: model, surface, preload and conditions; how uncertain they are is not
-            looked at.
+        case: model, surface, preload and conditions; their uncertainties are not used.
 
     Returns:
-        Stiffness, areas, parts by regime, verdict with reasons. As printed, the
-        largest area is that of the paper's own laws summed right, because the printed
-        loads of 2023 can be negative; stiffness is to the letter.
+        Stiffness, areas, parts by regime, verdict with reasons. As printed, the largest
+        area is from the correct sums of the paper's laws, because the printed loads of
+        2023 can be negative; stiffness is exactly as printed.
 
     Raises:
         BadData: a number outside the model's range.
@@ -160,7 +159,7 @@ def _state(case: ContactCase, sums: JointSums, *, tangential: float) -> ContactS
 
 
 def _to_the_letter(state: ContactState, case: ContactCase) -> ContactState:
-    """Put the printed sums in place of the mended ones, and say what is wrong."""
+    """Replace the corrected sums by the printed ones, and report the errors."""
     surface = {
         "dimension": case.dimension,
         "roughness": case.surface.roughness,
@@ -185,7 +184,7 @@ def _to_the_letter(state: ContactState, case: ContactCase) -> ContactState:
 
 
 def _with_damping(state: ContactState, case: ContactCase) -> ContactState:
-    """Add loss factor and damping, where they are asked for."""
+    """Add loss factor and damping, where requested."""
     choice = case.conditions.damping
     if choice is None:
         return state
@@ -207,7 +206,7 @@ def _with_damping(state: ContactState, case: ContactCase) -> ContactState:
 def _judge(
     sums: JointSums, nominal_area: float | None
 ) -> tuple[ContactVerdict, list[str]]:
-    """Say whether the stiffness of one joint can be used, and why."""
+    """Return the verdict on the stiffness of one joint, with reasons."""
     verdict = ContactVerdict.USABLE
     reasons: list[str] = []
     largest, real = float(sums.largest_area), float(sums.real_area)
@@ -220,7 +219,7 @@ def _judge(
     if real > _MANY_CONTACTS * largest:
         reasons.append(
             f"the real area is {real / largest:.3g} times the largest contact: at this "
-            "dimension it rests on contacts smaller than any profile resolves"
+            "dimension it consists of contacts smaller than any profile resolves"
         )
     if not sums.stiffness.sum() > 0:
         verdict = ContactVerdict.FULLY_PLASTIC
@@ -238,7 +237,7 @@ def _judge(
 
 
 def _area(log_area: FloatArray) -> str:
-    """Write an area given by its logarithm, beyond the largest double too."""
+    """Format an area given by its logarithm, also beyond the largest double."""
     if log_area < _LARGEST_LOG_SHOWN:
         return f"{float(np.exp(log_area)):.3g} m^2"
     return f"10^{float(log_area) / math.log(10):.0f} m^2"

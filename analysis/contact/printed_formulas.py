@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the papers print, beside the same sums done right: each fault and its size."""
+"""Printed formulas of the papers compared with the correct sums."""
 
 import math
 from collections.abc import Callable
@@ -28,8 +28,8 @@ class PrintedTerm:
         equation: number in Appl. Sci. 2023, 13, 11680.
         quantity: ``"load"``, ``"stiffness"`` or ``"critical area"``.
         regime: that it sums over; None for an area.
-        printed: its value [N, N/m or m^2, whatever its dimensions say].
-        mended: the paper's own laws summed right, same state and unit.
+        printed: its value [N, N/m or m^2, for any dimensions of the formula].
+        mended: correct sum of the paper's laws, same state and unit.
         fault: what is wrong with it; empty where it is right.
     """
 
@@ -42,7 +42,7 @@ class PrintedTerm:
 
     @property
     def factor(self) -> float:
-        """Printed over mended [-]; 0 where there is nothing to sum."""
+        """Printed over mended [-]; 0 for an empty sum."""
         return self.printed / self.mended if self.mended else 0.0
 
 
@@ -72,7 +72,7 @@ _ROWS: dict[str, tuple[tuple[int, str, Regime | None, _Formula, str], ...]] = {
             "load",
             Regime.PLASTIC,
             eq.plastic_load_2d,
-            "110 stands inside the power of the area, and D - 2 for 2 - D: negative",
+            "110 is inside the power of the area, and D - 2 for 2 - D: negative",
         ),
         (31, "stiffness", Regime.ELASTIC, eq.elastic_stiffness, ""),
         (
@@ -137,16 +137,16 @@ def printed_terms(
     gamma: float = 1.5,
     critical_area: float | None = None,
 ) -> tuple[PrintedTerm, ...]:
-    """Evaluate the printed sums of a 2023 model, each beside the mended sum.
+    """Evaluate the printed sums of a 2023 model, each with the corrected sum.
 
     Args:
         name: ``"modified_2d"`` or ``"friction_3d"``; others have no printed sums.
-        dimension: of the profile or of the surface, as the model wants it [-].
+        dimension: of the profile or of the surface, as the model defines it [-].
         roughness: G [m].
         material: composite modulus, hardness, yield strength, friction factor.
-        largest_area: a_l [m^2], above the critical area, as the paper supposes.
+        largest_area: a_l [m^2], above the critical area, as the paper assumes.
         gamma: of the Weierstrass-Mandelbrot function [-].
-        critical_area: that the formulas take [m^2]; the mended one if not given.
+        critical_area: for the formulas [m^2]; default is the corrected one.
 
     Returns:
         One row for each formula; none for a model whose paper prints no such sums.
@@ -196,11 +196,11 @@ def printed_stiffness_parts(
     largest_area: float,
     gamma: float = 1.5,
 ) -> tuple[float, dict[Regime, float]] | None:
-    """Return critical area and stiffness of each regime to the letter of the print.
+    """Return critical area and stiffness of each regime exactly as printed.
 
     Args:
         name: of the model.
-        dimension: as the model wants it [-].
+        dimension: as the model defines it [-].
         roughness: G [m].
         material: composite modulus, hardness and so on.
         largest_area: a_l [m^2].
@@ -238,15 +238,15 @@ def printed_warnings(
 
     Args:
         name: of the model.
-        dimension: as the model wants it [-].
+        dimension: as the model defines it [-].
         roughness: G [m].
         material: composite modulus, hardness and so on.
         preload: [N].
         gamma: of the Weierstrass-Mandelbrot function [-].
 
     Returns:
-        A line for each choice of the paper, with what it alone makes of K at equal
-        preload, and one for each misprinted sum, with printed over mended.
+        A line for each choice of the paper, with its effect alone on K at equal
+        preload, and one for each misprinted sum, with printed over corrected.
     """
     right, wrong = contact_model(name), contact_model(name, Mode.AS_PRINTED)
     state = {"dimension": dimension, "roughness": roughness, "gamma": gamma}
@@ -268,7 +268,7 @@ def printed_warnings(
     )
     lines += [
         f"{name} as printed: eq. ({t.equation}), {t.quantity}: {t.fault}; "
-        f"{t.factor:.4g} times the same laws summed right"
+        f"{t.factor:.4g} times the correct sum of the same laws"
         for t in terms
         if t.fault
     ]
@@ -282,17 +282,17 @@ def _size(value: float, usual: float) -> str:
 
 
 def _evaluate(formula: _Formula, inputs: eq.PrintedInputs) -> float:
-    """Return what a printed formula gives; some divide by zero at one dimension."""
+    """Return the value of a printed formula; some divide by zero at one dimension."""
     try:
         value = formula(inputs)
     except (ZeroDivisionError, OverflowError) as error:
         raise BadData(
             f"the printed formula {formula.__name__} has no value at D = {inputs.D:g} "
-            f"({error}); take mode 'corrected' or another D"
+            f"({error}); use mode 'corrected' or another D"
         ) from error
     if not math.isfinite(value):
         raise BadData(
             f"the printed formula {formula.__name__} gives {value:g} at D = "
-            f"{inputs.D:g}; take mode 'corrected' or another D"
+            f"{inputs.D:g}; use mode 'corrected' or another D"
         )
     return value

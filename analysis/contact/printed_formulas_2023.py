@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The joint sums of Appl. Sci. 2023, 13, 11680, to the letter, misprints and all.
+"""The joint sums of Appl. Sci. 2023, 13, 11680, exactly as printed, with misprints.
 
-Nothing here is to be used for a joint: it is what `corrected` is laid beside. Numbers
-are written as the paper writes them, where its flattened text can be read at all.
+Nothing here is to be used for a joint: it is the comparison for `corrected`. Numbers
+    are written as in the paper, where its flattened text is legible.
 """
 
 import math
@@ -90,7 +90,7 @@ def first_stage_load_2d(p: PrintedInputs) -> float:
 def second_stage_load_2d(
     p: PrintedInputs, *, exponent_of_roughness: float = 0.8472
 ) -> float:
-    """Eq. (27) [N]; the exponent of G is printed .8472, the dimensions ask .472."""
+    """Eq. (27) [N]; the exponent of G is printed .8472, dimensions require .472."""
     D = p.D
     scale = 161.8203 * D * p.E**0.472 * p.G ** (exponent_of_roughness * (D - 1))
     scale *= p.H**0.528 * p.k**0.528 * p.a_l ** (0.5 * D)
@@ -134,7 +134,7 @@ def second_stage_stiffness_2d(
 
 
 def critical_area_3d(p: PrintedInputs) -> float:
-    """Eq. (41) [m^2]: pi stands inside the bracket and before it."""
+    """Eq. (41) [m^2]: pi is inside the bracket and before it."""
     D, power = p.D, 2 / (2 - p.D)
     kappa = 33 * math.pi * p.k_mu * p.phi / 40
     area = 2 ** ((3 * D - 11) / (2 - D)) * kappa**power

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The largest contact area that carries a load, for many joints at once.
 
-The regimes below the one that the largest contact is in are full: their integrals are
-constants of the joint, so a step of the search takes one partial integral only, and
-all of it in logarithms, for areas span hundreds of decades.
+The regimes below that of the largest contact are complete: their integrals are
+    constants of the joint, so a step of the search needs only one partial integral. All
+    is in logarithms, because areas span hundreds of decades.
 """
 
 import math
@@ -27,10 +27,10 @@ from jointbench.analysis.contact.fractal_surface import (
 from jointbench.analysis.contact.material import ContactMaterial
 from jointbench.analysis.contact.models import ContactModel, regime_laws
 
-# Joints are taken so many at a time: their arrays fit the processor's cache.
+# Joints per batch: their arrays fit the processor's cache.
 _BLOCK = 4096
 _MOST_STEPS = 100
-# Some 20 ulp of ln(area): a step below this is rounding.
+# About 20 ulp of ln(area): a step below this is rounding.
 _STEP_TOLERANCE = 3e-15
 
 
@@ -51,10 +51,10 @@ def solve_largest_area(
     material: ContactMaterial,
     load: FloatArray,
 ) -> FloatArray:
-    """Find the largest contact area that carries `load`; load rises with it strictly.
+    """Find the largest contact area that carries `load`; load rises with it.
 
     Args:
-        model: the terms that act.
+        model: its terms.
         surface: dimension, roughness and hardness.
         material: effective modulus and yield properties.
         load: preload [N], broadcast with the surfaces, positive.
@@ -85,7 +85,7 @@ def _regimes(
     hardness: FloatArray,
     load: FloatArray,
 ) -> _Regimes:
-    """Collect exponent, factor and bound of each regime, and what lies below it."""
+    """Collect exponent, factor and bound of each regime, and the load below it."""
     wanted = np.log(load) - np.log(model.population * (1 + e) / 2)
     elastic = np.log(4 / 3 * modulus * kappa / model.topography.shape) - wanted
     hard = np.log(hardness) - wanted
@@ -146,10 +146,11 @@ def _excess_load(
 
 
 def _search(regimes: _Regimes) -> FloatArray:
-    """Return ln a_l: Newton's steps inside a bracket that only shrinks."""
+    """Return ln a_l by Newton steps inside a shrinking bracket."""
     first = np.isfinite(regimes.log_scale).argmax(axis=0)
     edge = np.take_along_axis(regimes.log_low, first[None], axis=0)[0]
-    # Where all is plastic load is a multiple of area, and start is the solution.
+    # Where all contacts are plastic, load is proportional to area, and the start is the
+    # solution.
     here = np.log(regimes.exponent[0]) - regimes.log_scale[0]
     here = np.where(first > 0, edge + 1.0, here)
     difference, slope = _excess_load(regimes, here)
@@ -162,7 +163,7 @@ def _search(regimes: _Regimes) -> FloatArray:
         inside = (newton > low) & (newton < high)
         following = np.where(inside, newton, 0.5 * (low + high))
         step = np.abs(following - here)
-        # At its bracket's end a solution is where it cannot be told from rounding.
+        # At the end of its bracket a solution is exact to rounding.
         here = following
         difference, slope = _excess_load(regimes, here)
         low = np.where(difference < 0, here, low)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How uncertain the inputs of a contact model are."""
+"""Uncertainty of the inputs of a contact model."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.errors import UsageError
 
 @dataclass(frozen=True, slots=True)
 class ContactSpread:
-    """Standard deviations of what goes into a contact model.
+    """Standard deviations of the inputs of a contact model.
 
     Attributes:
         dimension: of the fractal dimension [-].
@@ -39,5 +39,5 @@ class ContactSpread:
                 )
         if not -1 <= self.correlation <= 1:
             raise UsageError(
-                f"correlation is {self.correlation!r}, it lies between -1 and 1"
+                f"correlation is {self.correlation!r}, it must be between -1 and 1"
             )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From a fractal fit to what a contact model needs: D, G, and how far they are sure."""
+"""Inputs of a contact model from a fractal fit: D, G and their uncertainty."""
 
 from dataclasses import dataclass, field
 
@@ -22,7 +22,7 @@ _STEP = 1e-5
 
 @dataclass(frozen=True, slots=True)
 class SurfaceLevel:
-    """What a fit knows best of a surface beside D: S at its pivot.
+    """The best determined number of a surface besides D: S at its pivot.
 
     Attributes:
         pivot: lag at which D and S are nearly independent [m].
@@ -37,14 +37,14 @@ class SurfaceLevel:
 
 @dataclass(frozen=True, slots=True)
 class ContactSurface:
-    """A rough face, or two faces as one, as a contact model takes it.
+    """A rough contact surface, or two as one, as input of a contact model.
 
     Attributes:
         dimension: of a line on the surface, 1 < D < 2 [-].
         roughness: fractal roughness G of that line [m].
         spread: standard deviations of D and ln G, and their correlation.
-        level: what the fit told; None where D and G were given as numbers.
-        cautions: what to keep in mind about the heights behind it.
+        level: result of the fit; None where D and G were given as numbers.
+        cautions: cautions about the underlying heights.
     """
 
     dimension: float
@@ -55,7 +55,7 @@ class ContactSurface:
 
     @property
     def roughness_interval(self) -> tuple[float, float] | None:
-        """2.5 % and 97.5 % points of G [m]; None where no spread is known."""
+        """2.5 % and 97.5 % points of G [m]; None without a spread."""
         if self.spread.log_roughness == 0:
             return None
         reach = float(np.exp(NORMAL_97_5 * self.spread.log_roughness))
@@ -63,28 +63,28 @@ class ContactSurface:
 
     @property
     def roughness_known(self) -> bool:
-        """Whether G may be told: given as a number, or fitted within a decade."""
+        """Whether G can be reported: given as a number, or fitted within a decade."""
         interval = self.roughness_interval
         if self.level is None or interval is None:
             return True
         return bool(interval[1] <= WIDEST_ROUGHNESS * interval[0])
 
     def dimension_for(self, model: ContactModel) -> float:
-        """Return D as `model` wants it: of a line (2D) or of the surface, D + 1."""
+        """Return D as `model` defines it: of a line (2D) or of the surface, D + 1."""
         return self.dimension + (model.topography.lowest_dimension - 1)
 
 
 def contact_surface(fit: FractalFit) -> ContactSurface:
-    """Turn a fit into the input of a contact model, uncertainty included.
+    """Return a fit as the input of a contact model, with its uncertainty.
 
     Args:
-        fit: of one face, or of the sum S_a + S_b of two.
+        fit: of one contact surface, or of the sum S_a + S_b of two.
 
     Returns:
         D, G and their joint spread, propagated from (D, ln S at the pivot).
 
     Raises:
-        BadData: the surface has no scaling range; the fit's reason is passed on.
+        BadData: the surface has no scaling range; the message holds the fit's reason.
 
     Source:
         ln G = (ln S_p - ln C(D) - (4 - 2D) ln tau_p) / (2 (D - 1)), from Appl. Sci.

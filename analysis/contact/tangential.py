@@ -56,13 +56,13 @@ def tangential_stiffness(
     Args:
         model: its topography and elastic law relate normal stiffness to area.
         sums: of that model.
-        material: its Poisson ratio is taken for both bodies.
-        tangential_load: already on the joint [N]; 0 is no slip.
+        material: its Poisson ratio is used for both bodies.
+        tangential_load: applied to the joint [N]; 0 is no slip.
         friction: coefficient of friction [-]; matters under a tangential load only.
 
     Returns:
         Sum of 8 G' r over the elastic contacts, r = sqrt(a/pi), times the share that
-        sticks when all contacts bear the same T/P; shape (...).
+        sticks when all contacts carry the same T/P; shape (...).
 
     Source:
         Mindlin 1949; Johnson, Contact Mechanics (1985), sec. 7.2, with

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile and surface geometry: what sets an asperity's interference and radius."""
+"""Profile and surface geometry: interference and radius of an asperity."""
 
 import math
 from collections.abc import Callable
@@ -12,7 +12,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class Topography:
-    """Kind of fractal surface: what sets an asperity's interference and radius.
+    """Kind of fractal surface, which sets an asperity's interference and radius.
 
     With the excess e = D - `lowest_dimension`, both kinds obey the same formulas:
     interference delta = c a^((1-e)/2), a = `shape` R delta, and a distribution of
@@ -20,7 +20,7 @@ class Topography:
 
     Attributes:
         name: ``"profile"`` or ``"surface"``.
-        lowest_dimension: fractal dimension at which the kind begins [-].
+        lowest_dimension: lower limit of the fractal dimension [-].
         shape: g in a = g R delta [-].
         log_interference: ln c of excess [-], roughness G [m] and gamma [-].
     """

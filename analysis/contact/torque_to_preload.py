@@ -9,7 +9,7 @@ from jointbench.acquisition.basics.errors import BadData
 
 @dataclass(frozen=True, slots=True)
 class Preload:
-    """A normal force and how well it is known.
+    """A normal force with its uncertainty.
 
     Attributes:
         value: [N].
@@ -30,17 +30,18 @@ def preload_from_torque(
     nut_factor_sd: float = 0.0,
     bolt_scatter: float = 0.0,
 ) -> Preload:
-    """Turn a tightening torque into the preload of all bolts together.
+    """Convert a tightening torque to the total preload of all bolts.
 
     Args:
         torque: on each bolt [N m].
         diameter: nominal diameter of the bolts [m].
-        bolts: how many carry the joint.
+        bolts: number of bolts in the joint.
         nut_factor: K in F = T/(K d) [-]; about 0.2 dry, 0.15 oiled.
         torque_sd: error of the wrench, the same for all bolts [N m].
-        nut_factor_sd: how well the mean nut factor is known, same for all bolts [-].
+        nut_factor_sd: standard deviation of the mean nut factor, same for all bolts
+            [-].
         bolt_scatter: relative scatter of the force from bolt to bolt [-]; independent,
-            so it averages out over the bolts.
+            so it averages over the bolts.
 
     Returns:
         Sum over the bolts and its standard deviation.

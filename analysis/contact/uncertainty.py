@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How far stiffness and damping are sure, and which input leaves the most open."""
+"""Uncertainty of stiffness and damping, and the share of each input."""
 
 import math
 from collections.abc import Mapping
@@ -29,13 +29,13 @@ _Z = 1.959963984540054  # normal quantile of 97.5 %
 
 @dataclass(frozen=True, slots=True)
 class Uncertainty:
-    """One predicted quantity with its uncertainty, found twice.
+    """One predicted quantity with its uncertainty by two methods.
 
     Attributes:
         interval: central 95 % of the draws.
         first_order: lower and upper end by linear propagation in the logarithm.
-        shares: of the variance, by input, largest first; D and G are one input, for a
-            fit of a surface makes them go together.
+        shares: of the variance, by input, largest first; D and G are one input, because
+            a fit of a surface correlates them.
     """
 
     interval: StiffnessInterval
@@ -44,7 +44,7 @@ class Uncertainty:
 
     @property
     def dominant(self) -> str | None:
-        """The input that leaves the most open, if any does."""
+        """The input with the largest share of the variance, if any."""
         return next((name for name, share in self.shares.items() if share > 0), None)
 
 
@@ -55,7 +55,7 @@ class JointUncertainty:
     Attributes:
         stiffness: of the normal stiffness [N/m].
         tangential: of the tangential stiffness without slip [N/m].
-        damping: of the damping [N s/m]; None where it was not asked for.
+        damping: of the damping [N s/m]; None where not requested.
     """
 
     stiffness: Uncertainty
@@ -66,12 +66,12 @@ class JointUncertainty:
 def predict_uncertainty(
     case: ContactCase, *, draws: int = 2000, seed: int = 0
 ) -> JointUncertainty:
-    """Propagate what is not sure of the inputs, by draws and to first order.
+    """Propagate the uncertainty of the inputs, by draws and to first order.
 
     Args:
-        case: the joint, with how uncertain its inputs are; the spread of the preload
-            holds the nut factor's.
-        draws: how many.
+        case: the joint, with the uncertainty of its inputs; the spread of the preload
+            includes the nut factor's.
+        draws: number of draws.
         seed: of the draws.
 
     Returns:
@@ -108,7 +108,7 @@ def _steps(case: ContactCase) -> DrawnInputs:
 
 
 def _evaluate(case: ContactCase, inputs: DrawnInputs) -> list[FloatArray]:
-    """Return both stiffnesses, and damping where it is asked for, of all inputs."""
+    """Return both stiffnesses, and damping where requested, of all inputs."""
     sums = contact_curve(
         case.model,
         dimension=inputs.dimension,

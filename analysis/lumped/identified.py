@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What an identification of a joint answers, ready for a file or a report."""
+"""Result of a joint identification, for a file or a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 
 class IdentificationVerdict(StrEnum):
-    """How far the measurement decides the joint; "cannot be determined" is a result."""
+    """How far the joint is determined; "cannot be determined" is a result."""
 
     DETERMINED = "determined"
     PARTLY = "partly determined"
@@ -29,10 +29,10 @@ class JointParameter:
         value: of the best solution [unit]; one of many where it is not identifiable.
         sd: its standard deviation [unit]; None where it is not identifiable.
         interval: of 95 % [unit]; where it is not identifiable, the union over all
-            solutions that the measurement admits. An end is None where it is open.
+            admissible solutions. An end is None where it is open.
         unit: ``"N/m"`` or ``"N s/m"``.
         identifiable: whether the measurement determines it.
-        reason: why not, and what to measure; empty if it is.
+        reason: reason for none, and what to measure; empty if identifiable.
     """
 
     name: str
@@ -46,12 +46,12 @@ class JointParameter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solution:
-    """One distinct set of parameters that is at least locally best.
+    """One distinct set of parameters that is at least locally optimal.
 
     Attributes:
         parameters: value [SI] by name.
-        chi2: misfit: sum of squared residuals over their variances [-].
-        admissible: whether the measurement leaves it standing beside the best.
+        chi2: sum of squared residuals over their variances [-].
+        admissible: whether the measurement does not exclude it against the best.
         natural_frequency: predicted [Hz], shape (n_modes,).
         damping_ratio: predicted [-], shape (n_modes,).
     """
@@ -72,15 +72,15 @@ class Identification:
     """Joint parameters from measured modes.
 
     Attributes:
-        verdict: how far they are determined.
-        reasons: one line for each thing the verdict rests on.
-        parameters: stiffness and damping of every link sought.
-        solutions: all distinct ones, the best first.
+        verdict: how far the parameters are determined.
+        reasons: one line for each basis of the verdict.
+        parameters: stiffness and damping of every identified link.
+        solutions: all distinct solutions, the best first.
         measured_frequency: [Hz], shape (n_modes,).
         energy_share: part of each mode's strain energy in each link of the best
             solution [-], shape (n_modes, n_links); a small share means that the mode
-            says little about the link.
-        degrees_of_freedom: measurements minus unknowns; known masses count as both.
+            hardly determines the link.
+        degrees_of_freedom: measurements minus unknowns; known masses count in both.
         model: the lumped model with the best solution's values.
     """
 
@@ -101,7 +101,7 @@ class Identification:
         """Return the parameter called `name`.
 
         Raises:
-            KeyError: it was not sought.
+            KeyError: it was not identified.
         """
         return {one.name: one for one in self.parameters}[name]
 

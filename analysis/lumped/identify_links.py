@@ -30,19 +30,19 @@ from jointbench.analysis.lumped.measured_modes import MeasuredModes
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
 _NO_FIT = (
-    "the model does not fit the modes, so its value describes nothing; check masses, "
+    "the model does not fit the modes, so its value has no meaning; check masses, "
     "mode numbers and links, then identify again"
 )
-# The model does not fit if noise alone would do worse this seldom.
-_MISFIT = 1e-3
-# More than this standard deviation in ln counts as not determined (100 %).
+# The model does not fit if the probability of a larger chi2 is below this.
+_POOR_FIT = 1e-3
+# Standard deviation in ln above which a parameter is not determined (100 %).
 _LARGEST_LOG_SD = 1.0
-# Beyond this one the number itself means nothing: no measurement decides it.
+# Above this one the value has no meaning: no measurement determines it.
 _NO_SD = 1e3
 # 95 % of a normal distribution.
 _Z = 1.959963984540054
-# A search may end at many points of a continuum, or at poor local optima: list so many
-# rivals of the best, and as many that fell.
+# A search may end at many points of a continuum, or at poor local optima: most rivals
+# of the best that are listed, and most excluded solutions.
 _LISTED = 7
 
 
@@ -59,17 +59,17 @@ def identify_links(
     """Find the stiffness and damping of links from measured modes.
 
     Args:
-        model: weighed bodies, and links. The stiffness and damping of a link that is
-            sought count only as a start, unless their standard deviations are given.
+        model: weighed bodies, and links. The stiffness and damping of an unknown link
+            are only a start, unless their standard deviations are given.
         measured: natural frequencies, damping ratios and, if there are any, shapes.
-        unknown: names of the links sought; default all.
-        mode_numbers: which of the model's modes, from 0, each measured one is; default
+        unknown: names of the links to identify; default all.
+        mode_numbers: index of the model's mode, from 0, for each measured one; default
             the lowest.
         starts: of the search over decades of stiffness.
         seed: of the starts.
 
     Returns:
-        Values with standard deviations (enlarged where the misfit shows that the given
+        Values with standard deviations (enlarged where chi2 shows that the given
         uncertainties are too small), every distinct solution, and a verdict. Two
         frequencies of two bodies in a chain have two exact solutions: without mode
         shapes the answer is "several solutions".
@@ -206,27 +206,28 @@ def _interval(
 
 
 def _undecided(value: float, sd: float, unit: str, scale: float) -> str:
-    """Say why one parameter is not determined by itself; empty if it is."""
+    """Return why one parameter is not determined; empty if it is."""
     if sd < _LARGEST_LOG_SD * value:
         return ""
     if unit == "N/m":
         return (
-            "its standard deviation exceeds its value: what was measured does not "
-            "decide it; measure a mode that strains this link, or more modes"
+            "its standard deviation exceeds its value: the measurement does not "
+            "determine it; measure a mode that strains this link, or more modes"
         )
     if not sd < _NO_SD * max(value, scale):
         return (
-            "what was measured does not decide it; measure the damping ratio of a mode "
-            "that strains this link"
+            "the measurement does not determine it; measure the damping ratio of a "
+            "mode that strains this link"
         )
     return (
-        f"it cannot be told from zero (95 % below {value + 2 * sd:.3g} {unit}); "
-        "damping ratios with smaller uncertainty would tell"
+        f"it cannot be distinguished from zero (95 % below {value + 2 * sd:.3g} "
+        f"{unit}); "
+        "measure damping ratios with smaller uncertainty"
     )
 
 
 def _rivals(problem: JointProblem, values: Sequence[float], unit: str) -> str:
-    """Say which values fit equally well, and what would separate them."""
+    """Return which values fit equally well, and what would separate them."""
     listed = " or ".join(f"{value:.4g}" for value in values[: _LISTED + 1])
     return f"{listed} {unit} fit equally well; {_separator(problem)}"
 
@@ -245,8 +246,8 @@ def _judge(
     parameters: Sequence[JointParameter],
     freedom: int,
 ) -> tuple[IdentificationVerdict, tuple[str, ...]]:
-    """Return the verdict on the whole, and its reasons."""
-    limit = chi2_distribution.isf(_MISFIT, freedom) if freedom > 0 else _SEPARATES
+    """Return the verdict on the identification, and its reasons."""
+    limit = chi2_distribution.isf(_POOR_FIT, freedom) if freedom > 0 else _SEPARATES
     undecided = [one for one in parameters if not one.identifiable]
     reasons = [f"{one.name}: {one.reason}" for one in undecided]
     if best.chi2 > limit:
@@ -262,7 +263,7 @@ def _judge(
             0,
             f"{problem.measured_numbers} measured numbers leave a continuum of "
             f"solutions for {len(parameters)} unknowns; measure more modes, or give "
-            "what is known of a link",
+            "known values of a link",
         )
     elif rivals and undecided:
         reasons.insert(

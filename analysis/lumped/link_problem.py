@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The least-squares problem behind a joint identification.
+"""The least-squares problem of a joint identification.
 
-Unknowns: ln stiffness of the links sought, their damping over a common scale (linear,
-since it may be zero), and ln mass of every body that was not weighed exactly. Rows:
-measured minus predicted over its standard deviation; a weighed mass, or a stiffness or
-damping known beforehand, is one more measurement.
+Unknowns: ln stiffness of the unknown links, their damping over a common scale (linear,
+since it may be zero), and ln mass of every body whose mass is not exact. Rows: measured
+minus predicted over its standard deviation; a weighed mass, or a stiffness or damping
+known beforehand, is one more measurement.
 """
 
 from collections.abc import Sequence
@@ -22,14 +22,14 @@ from jointbench.analysis.lumped.measured_modes import MeasuredModes
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointProblem:
-    """What is unknown, what was measured, and which mode is which.
+    """Unknowns, measured modes, and their assignment.
 
     Attributes:
-        model: start values of what is unknown, fixed values of the rest.
+        model: start values of the unknowns, fixed values of the rest.
         measured: modes with uncertainty.
         mode_numbers: index of the model's mode for each measured one.
-        stiff: indices of the links whose stiffness is sought.
-        damped: indices of the links whose damping is sought.
+        stiff: indices of the links with unknown stiffness.
+        damped: indices of the links with unknown damping.
         weighed: indices of the bodies whose mass is not exact.
         damping_scale: unit of the damping unknowns [N s/m].
         outputs: degree of freedom of each measured output.
@@ -46,12 +46,12 @@ class JointProblem:
 
     @property
     def size(self) -> int:
-        """How many unknowns there are, masses included."""
+        """Number of unknowns, masses included."""
         return self.stiff.size + self.damped.size + self.weighed.size
 
     @property
     def measured_numbers(self) -> int:
-        """How many frequencies, damping ratios and shape components were measured."""
+        """Number of measured frequencies, damping ratios and shape components."""
         n_modes = self.measured.natural_frequency.size
         each = 1 if self.measured.damping_ratio is None else 2
         if self.measured.shapes is not None:
@@ -66,22 +66,22 @@ def pose_problem(
     unknown: Sequence[str] | None = None,
     mode_numbers: Sequence[int] | None = None,
 ) -> JointProblem:
-    """Say what is to be found from what.
+    """Set up the identification problem.
 
     Args:
         model: masses; stiffness and damping of the links that are known.
         measured: modes with uncertainty.
-        unknown: names of the links sought; default all.
-        mode_numbers: which of the model's oscillating modes, from 0, each measured
-            one is; default the lowest.
+        unknown: names of the links to identify; default all.
+        mode_numbers: index of the model's oscillating mode, from 0, for each measured
+            one; default the lowest.
 
     Returns:
-        The problem; damping is sought only where damping ratios were measured.
+        The problem; damping is unknown only where damping ratios were measured.
 
     Raises:
         BadData: more modes than the model can have, or one response given twice.
-        UsageError: a link, body or mode number that does not exist, or a body that
-            weighs what no tested body can weigh.
+        UsageError: a link, body or mode number that does not exist, or a body whose
+            mass is impossible for a test.
     """
     require_tested_masses(model)
     n_modes = measured.natural_frequency.size
@@ -107,7 +107,7 @@ def pose_problem(
 
 
 def model_at(problem: JointProblem, unknowns: FloatArray) -> LumpedModel:
-    """Return the model with the values that `unknowns` stand for."""
+    """Return the model with the values of `unknowns`."""
     log_stiffness, damping, log_mass = split(problem, unknowns)
     links, bodies = list(problem.model.links), list(problem.model.bodies)
     for i, value in zip(problem.stiff, log_stiffness, strict=True):
@@ -122,7 +122,7 @@ def model_at(problem: JointProblem, unknowns: FloatArray) -> LumpedModel:
 def split(
     problem: JointProblem, unknowns: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return ln stiffness, damping over its scale, ln mass over the weighed one."""
+    """Return ln stiffness, damping over its scale, ln mass over the weighed mass."""
     first, second = problem.stiff.size, problem.stiff.size + problem.damped.size
     return unknowns[:first], unknowns[first:second], unknowns[second:]
 
@@ -178,7 +178,7 @@ def _matrices(
 def _change(
     problem: JointProblem, unknowns: FloatArray, pole: complex, mass: FloatArray
 ) -> tuple[ComplexArray, FloatArray]:
-    """Return how each unknown changes the dynamic stiffness: a and v of a v v^T."""
+    """Return the change of dynamic stiffness by each unknown: a and v of a v v^T."""
     rows = incidence(problem.model)
     log_stiffness, damping, _ = split(problem, unknowns)
     factor = np.concatenate(
@@ -224,7 +224,7 @@ def _shape_rows(
     """Return the rows of one shape, each component over the largest measured one."""
     measured = problem.measured
     if measured.shapes is None or measured.shape_sd is None:
-        raise UsageError("shapes were asked for but not measured")
+        raise UsageError("shapes were requested but not measured")
     lead = int(np.argmax(np.abs(measured.shapes[row])))
     wanted = measured.shapes[row] / measured.shapes[row, lead]
     sd = np.hypot(
@@ -243,7 +243,7 @@ def _shape_rows(
 def _prior_rows(
     problem: JointProblem, unknowns: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return one row for each number that was known beforehand."""
+    """Return one row for each prior."""
     log_stiffness, damping, _ = split(problem, unknowns)
     links, bodies = problem.model.links, problem.model.bodies
     centre, sd = np.zeros(problem.size), np.full(problem.size, np.inf)
@@ -265,7 +265,7 @@ def _prior_rows(
 
 
 def _links(model: LumpedModel, unknown: Sequence[str] | None) -> IntArray:
-    """Return the indices of the links sought."""
+    """Return the indices of the unknown links."""
     names = [link.name for link in model.links]
     missing = [name for name in unknown or () if name not in names]
     if missing:
@@ -275,7 +275,7 @@ def _links(model: LumpedModel, unknown: Sequence[str] | None) -> IntArray:
 
 
 def _require_numbers(numbers: IntArray, n_modes: int, n_bodies: int) -> None:
-    """Raise unless every measured mode has a mode of the model of its own."""
+    """Raise unless every measured mode has a separate mode of the model."""
     if numbers.size != n_modes or np.any(np.diff(numbers) <= 0) or numbers.min() < 0:
         raise UsageError(
             f"mode numbers {numbers.tolist()} for {n_modes} measured modes; give one "
@@ -289,7 +289,7 @@ def _require_numbers(numbers: IntArray, n_modes: int, n_bodies: int) -> None:
 
 
 def _require_own_outputs(measured: MeasuredModes) -> None:
-    """Raise where two outputs sit on one body, or two bodies read one channel."""
+    """Raise where two outputs are on one body, or two bodies share one channel."""
     names = measured.outputs
     for at, name in enumerate(names):
         if name in names[:at]:
@@ -303,5 +303,5 @@ def _require_own_outputs(measured: MeasuredModes) -> None:
                 raise BadData(
                     f"bodies {names[before]!r} and {name!r} read the same output: "
                     "their shapes agree to the last digit in every mode; give each "
-                    "body the channel that sits on it"
+                    "body its own channel"
                 )

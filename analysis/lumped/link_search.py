@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""All distinct solutions of a joint identification, by many starts."""
+"""Find all distinct solutions of a joint identification, from many starts."""
 
 import math
 from collections.abc import Callable
@@ -12,21 +12,21 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.lumped.link_problem import JointProblem, residuals, split
 
-# Starts spread this far, as a factor, beyond the stiffnesses m omega^2 of the bench.
+# Range of the starts, as a factor beyond the stiffnesses m omega^2 of the bench.
 _START_SPREAD = 100.0
-# Bounds of ln stiffness lie this far, as a factor, beyond the starts.
+# Bounds of stiffness, as a factor beyond the starts.
 _BOUND_SPREAD = 1e6
-# Row that no real measurement reaches: the model has lost an oscillating mode.
+# Residual of a model that has lost an oscillating mode, above any measured one.
 _FAR = 1e6
 # Singular values below this mean a standard deviation of 1e8 in ln: not determined.
 _FLAT = 1e-8
 # A direction this uncertain in ln, 1e5, is open: solutions form a continuum.
 _OPEN = 1e-5
-# An end is no optimum if the next step promises a chi2 lower by more than this ...
+# A point is no optimum if the next step predicts a decrease of chi2 above this ...
 _STILL_FALLS = 1e-3
 # ... or than this share of it.
 _STILL_FALLS_SHARE = 1e-3
-# Two optima are one if the way between them is this short in standard deviations ...
+# Two optima are one if their distance in standard deviations is below this ...
 _SAME_DISTANCE = 1.0
 # ... or if all stiffnesses agree to this, whatever the uncertainty.
 _SAME_LOG = 1e-4
@@ -40,8 +40,8 @@ class LinkOptimum:
         unknowns: see `JointProblem`, shape (size,).
         chi2: sum of the squared residuals [-].
         slopes: derivatives of the residuals, shape (n_rows, size).
-        arrived: whether no step leads further down; a search in a narrow valley may
-            run out of steps.
+        arrived: whether the search converged; in a narrow valley it may reach the step
+            limit.
     """
 
     unknowns: FloatArray
@@ -51,12 +51,12 @@ class LinkOptimum:
 
     @property
     def flat(self) -> bool:
-        """Whether the data leave a direction open: one of a continuum of solutions."""
+        """Whether the solution is one of a continuum: a direction is not determined."""
         size = np.linalg.svd(self.slopes, compute_uv=False)
         return bool(size.size < self.unknowns.size or size.min() < _OPEN)
 
     def covariance(self) -> FloatArray:
-        """Return the covariance of the unknowns, large where nothing decides them."""
+        """Return the covariance of the unknowns, large where undetermined."""
         _, size, directions = np.linalg.svd(self.slopes, full_matrices=True)
         floor = np.full(self.unknowns.size, _FLAT)
         floor[: size.size] = np.maximum(size, _FLAT)
@@ -66,18 +66,18 @@ class LinkOptimum:
 def find_optima(
     problem: JointProblem, *, starts: int, seed: int
 ) -> tuple[LinkOptimum, ...]:
-    """Search from many starts and keep what is distinct.
+    """Search from many starts and keep the distinct optima.
 
     Args:
-        problem: what is sought from what.
-        starts: how many, spread over decades of stiffness by a Latin hypercube.
-        seed: of the spread.
+        problem: unknowns and measured modes.
+        starts: number of starts, a Latin hypercube over decades of stiffness.
+        seed: of the Latin hypercube.
 
     Returns:
         Distinct local solutions, the best first.
 
     Raises:
-        BadData: the model has too few oscillating modes wherever one starts.
+        BadData: the model has too few oscillating modes at every start.
     """
     found = [
         optimum
@@ -175,7 +175,7 @@ def _descend(problem: JointProblem, start: FloatArray) -> LinkOptimum | None:
 
 
 def _arrived(left: FloatArray, slopes: FloatArray) -> bool:
-    """Tell whether a Gauss-Newton step would not lower chi2 by what counts."""
+    """Return whether a Gauss-Newton step would not lower chi2 significantly."""
     directions, size, _ = np.linalg.svd(slopes, full_matrices=False)
     falls = float(np.sum((directions[:, size > _OPEN].T @ left) ** 2))
     return falls <= _STILL_FALLS + _STILL_FALLS_SHARE * float(left @ left)
@@ -184,7 +184,7 @@ def _arrived(left: FloatArray, slopes: FloatArray) -> bool:
 def _remember_last(
     problem: JointProblem, n_rows: int
 ) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
-    """Return an evaluation that serves values and slopes of a point from one solve."""
+    """Return an evaluation that caches values and slopes of the last point."""
     last: dict[bytes, tuple[FloatArray, FloatArray]] = {}
 
     def evaluate(unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -199,7 +199,7 @@ def _remember_last(
 
 
 def _same(problem: JointProblem, one: LinkOptimum, other: LinkOptimum) -> bool:
-    """Say whether two optima are one: equal, or not separable by the data."""
+    """Return whether two optima are one: equal, or not separable by the data."""
     logs = split(problem, one.unknowns)[0] - split(problem, other.unknowns)[0]
     if np.all(np.abs(logs) < _SAME_LOG):
         return True

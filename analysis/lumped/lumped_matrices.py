@@ -53,13 +53,13 @@ def predict_frf(
     outputs: Sequence[str] | None = None,
     inputs: Sequence[str] | None = None,
 ) -> Frf:
-    """Predict what a hammer test would measure.
+    """Predict the FRF of a hammer test.
 
     Args:
         model: bodies and links, all stiffnesses known.
         frequency: lines [Hz], shape (n_lines,), ascending.
         kind: receptance, mobility or accelerance.
-        outputs: bodies whose motion is wanted; default all.
+        outputs: bodies with a response; default all.
         inputs: bodies that are struck; default all.
 
     Returns:

@@ -12,16 +12,16 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 
 GROUND = "ground"
-# A microgram to a million tonnes [kg]: nothing a hammer tests is outside, and
-# eigenvalues of masses beyond lose all their digits.
+# A microgram to a million tonnes [kg]: no test object is outside, and eigenvalues for
+# larger masses lose all their digits.
 _MASS_RANGE = (1e-9, 1e9)
-# Far above any link or body [SI], also in units that stand in for newton and metre;
-# beyond, squares in the eigenvalue problem overflow.
+# Far above any link or body [SI], also in other units; squares of larger values
+# overflow in the eigenvalue problem.
 _LARGEST_NUMBER = 1e30
 
 
 class Output(IntEnum):
-    """What the channels measure: the power of s that turns displacement into it."""
+    """Quantity of the channels: the power of s that relates it to displacement."""
 
     DISPLACEMENT = 0
     VELOCITY = 1
@@ -50,12 +50,12 @@ class Link:
     Attributes:
         name: unique in its model.
         ends: names of the bodies at its negative and its positive end; one may be
-            ``"ground"``, which is the negative end wherever it stands.
+            ``"ground"``, which is always the negative end.
         stiffness: nominal [N/m]; 0 where not known yet.
         damping: nominal, viscous [N s/m].
         stiffness_spread: prior sd of log(stiffness / nominal) [-]; None for no prior.
         damping_spread: prior sd of log(damping / nominal) [-]; None for no prior.
-        joint: True where effects of joints may sit.
+        joint: True where effects of joints may act.
     """
 
     name: str
@@ -73,7 +73,7 @@ class ResponseChannel:
 
     Attributes:
         name: for example ``"a1"``.
-        body: name of the body it sits on.
+        body: name of its body.
     """
 
     name: str
@@ -89,9 +89,9 @@ class LumpedModel:
     Attributes:
         bodies: each one degree of freedom, in this order in every matrix.
         links: at least one.
-        channels: in the order of the rows of a response; empty where the bodies
-            themselves name the outputs.
-        output: what all channels measure.
+        channels: in the order of the rows of a response; empty where the bodies name
+            the outputs.
+        output: quantity of all channels.
     """
 
     bodies: tuple[Body, ...]
@@ -189,7 +189,7 @@ class LumpedModel:
 
 
 def require_tested_masses(model: LumpedModel) -> None:
-    """Raise unless every body weighs what a body under a hammer can weigh.
+    """Raise unless every mass is possible for a hammer test.
 
     Raises:
         UsageError: one is lighter than a microgram or heavier than a million tonnes.
@@ -218,7 +218,7 @@ def _require_ends(link: Link, names: Sequence[str]) -> None:
 
 
 def _require_mass(body: Body, least: float, most: float) -> None:
-    """Raise unless the mass of a body lies within limits [kg]."""
+    """Raise unless the mass of a body is within limits [kg]."""
     if not least <= body.mass <= most:
         low, high = _MASS_RANGE
         raise UsageError(
@@ -228,7 +228,7 @@ def _require_mass(body: Body, least: float, most: float) -> None:
 
 
 def _require_moderate(link: str, what: str, value: float) -> None:
-    """Raise where a link is stiffer, or damps more, than doubles can carry."""
+    """Raise where the stiffness or damping of a link would overflow."""
     if value > _LARGEST_NUMBER:
         raise UsageError(
             f"{what} of link {link!r} is {value:g}, at most {_LARGEST_NUMBER:g} in SI "

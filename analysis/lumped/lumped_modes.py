@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Complex modes of a lumped model, and how they move with its parameters."""
+"""Complex modes of a lumped model, and their derivatives by its parameters."""
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    freeze,
+)
 from jointbench.analysis.lumped.lumped_matrices import (
     damping_matrix,
     mass_matrix,
@@ -14,10 +18,11 @@ from jointbench.analysis.lumped.lumped_matrices import (
 )
 from jointbench.analysis.lumped.lumped_model import LumpedModel, require_tested_masses
 
-# The pull of springs on a piece of the bench as a whole, relative to their size: below,
-# it is rounding, and the piece is free.
+# Relative stiffness against rigid motion of a part of the bench below which it is
+# rounding, and the part is free.
 _FREE = 1e-12
-# Above this damping ratio a pole pair counts as two decays: it has no frequency left.
+# Above this damping ratio a pole pair counts as two decays: it has no natural
+# frequency.
 _OVERDAMPED = 1 - 1e-9
 
 
@@ -62,7 +67,7 @@ def solve_modes(model: LumpedModel) -> ComplexModes:
         and its conjugate.
 
     Raises:
-        UsageError: a body weighs what no tested body can weigh.
+        UsageError: a mass is impossible for a hammer test.
 
     Source:
         Ewins, Modal Testing (2000), sec. 2.7.
@@ -89,8 +94,8 @@ def modes_of(
     root = np.sqrt(mass)
     moving = _straining(stiffness, root)
     n, m = moving.shape
-    # Displacements that strain, then all velocities: motions that no spring holds have
-    # no displacement here, and leave no double pole at zero.
+    # Straining displacements, then all velocities: motions without a restoring spring
+    # have no displacement here, and no double pole at zero.
     state = np.zeros((m + n, m + n))
     state[:m, m:] = moving.T
     state[m:, :m] = -(stiffness / np.outer(root, root)) @ moving
@@ -108,16 +113,31 @@ def modes_of(
 def _straining(stiffness: FloatArray, root: FloatArray) -> FloatArray:
     """Return the motions that strain springs, times the root of mass, orthonormal.
 
-    Free are the pieces of the bench that no spring ties to the ground, as a whole: a
-    soft spring beside a stiff one ties as well.
+    The parts of the bench without a spring to the ground are free; a soft spring in
+    parallel with a stiff one also ties a part.
     """
-    count, piece = connected_components(stiffness != 0.0, directed=False)
-    own = (piece == np.arange(count)[:, None]).astype(float)
-    pull = np.abs(np.einsum("pi,ij,pj->p", own, stiffness, own))
-    size = np.einsum("pi,ij,pj->p", own, np.abs(stiffness), own)
-    free = (own[pull <= _FREE * size] * root).T
+    own = _pieces(stiffness != 0.0).astype(float)
+    restoring = np.abs(((own @ stiffness) * own).sum(axis=1))
+    size = ((own @ np.abs(stiffness)) * own).sum(axis=1)
+    free = (own[restoring <= _FREE * size] * root).T
     turn, _ = np.linalg.qr(free, mode="complete")
     return np.asarray(turn[:, free.shape[1] :])
+
+
+def _pieces(tied: BoolArray) -> BoolArray:
+    """Return which bodies hang together, a row a piece, (n_pieces, n_bodies).
+
+    By squaring, which for a handful of bodies is sooner than a search of a graph.
+
+    Args:
+        tied: True where a link joins two bodies, symmetric, shape (n, n).
+    """
+    count = len(tied)
+    reached = tied | np.eye(count, dtype=np.bool_)
+    for _ in range(count.bit_length()):
+        reached = reached @ reached
+    first = np.argmax(reached, axis=1)
+    return np.asarray(reached[first == np.arange(count)])
 
 
 def _normalised(
@@ -151,7 +171,7 @@ def mode_derivatives(
     Args:
         pole: [rad/s].
         shape: of any scale, shape (n,).
-        reference: component that is held at 1.
+        reference: component that is fixed at 1.
         matrices: diagonal of M, C and K.
         change: factors a, shape (n_parameters,), and vectors v, shape (n_parameters,
             n), of the derivatives a v v^T of the dynamic stiffness

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Modes as measured, with their uncertainty: what an identification starts from."""
+"""Measured modes with their uncertainty, the input of an identification."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -25,7 +25,7 @@ class MeasuredModes:
             n_outputs), or None if not measured.
         shape_sd: of the real and of the imaginary part of `shapes`, in their scale,
             shape (n_modes, n_outputs), or None.
-        outputs: the body that each output sits on.
+        outputs: the body of each output.
     """
 
     natural_frequency: FloatArray
@@ -57,7 +57,7 @@ class MeasuredModes:
 
 
 def _require_pair(modes: MeasuredModes, name: str, sd: str) -> None:
-    """Raise where a measured quantity comes without its uncertainty."""
+    """Raise where a measured quantity lacks its uncertainty."""
     if (getattr(modes, name) is None) != (getattr(modes, sd) is None):
         raise BadData(f"{name} and {sd} belong together; give both or neither")
 

@@ -6,7 +6,7 @@
 Every run is added to `continuity.json` beside this script, with the driver's counter
 against what was stored, the CPU of client and store, and the load of the computer;
 `docs/bench-continuity.md` is written from that file alone. The search takes more
-channels and samples a second until a run does not hold, and goes on where an earlier
+channels and samples a second until a run does not hold, and continues where an earlier
 search ended.
 """
 
@@ -36,7 +36,7 @@ LADDER = (
     *((48, 102_400.0), (64, 102_400.0), (64, 204_800.0)),
     *((96, 204_800.0), (128, 204_800.0), (128, 409_600.0), (128, 819_200.0)),
 )
-BEHIND = 1.0
+LATE = 1.0
 """A run holds if the device is no further ahead than this at its end [s]."""
 
 
@@ -83,7 +83,7 @@ class Run:
     def holds(self) -> bool:
         """Whether nothing was lost and the client kept up."""
         whole = self.lost == 0 and self.gaps == 0 and self.damaged == 0
-        return whole and self.unread <= BEHIND * self.rate
+        return whole and self.unread <= LATE * self.rate
 
 
 def serve(parent: Connection, modules: int, rate: float) -> None:
@@ -92,7 +92,7 @@ def serve(parent: Connection, modules: int, rate: float) -> None:
     from jointbench.simulators.measuring.operator import SimulatedOperator
     from jointbench.simulators.plates.plates_bench import PlatesBench
 
-    bench = PlatesBench(hand=SimulatedOperator(interval=2.0))
+    bench = PlatesBench(operator=SimulatedOperator(interval=2.0))
     setup = ChassisSetup(bench=bench, modules=modules, top_rate=rate)
     with SimulatedChassis(setup) as server:
         parent.send(server.address)
@@ -209,10 +209,10 @@ def page(runs: list[Run]) -> str:
             "## The most that holds",
             "",
             f"Each point takes {found[0].seconds:g} s; it holds where nothing is lost "
-            f"and the device is at most {BEHIND:g} s ahead at the end.",
+            f"and the device is at most {LATE:g} s ahead at the end.",
             "",
             "| channels x rate | million samples a second | CPU of client and store [% "
-            "of a core] | behind at the end [s] | lost | holds | load |",
+            "of a core] | late at the end [s] | lost | holds | load |",
             "|---|---|---|---|---|---|---|",
             *(point(run) for run in found),
             "",
@@ -234,10 +234,10 @@ def row(run: Run) -> str:
 
 def point(run: Run) -> str:
     """Return a point of the search as a line of the table."""
-    share, behind = 100 * run.cpu / run.seconds, run.unread / run.rate
+    share, late = 100 * run.cpu / run.seconds, run.unread / run.rate
     return (
         f"| {run.channels} x {run.rate:g} Hz | {run.channels * run.rate / 1e6:.2f} | "
-        f"{share:.1f} | {behind:.2f} | {run.lost} | "
+        f"{share:.1f} | {late:.2f} | {run.lost} | "
         f"{'yes' if run.holds else 'no'} | {run.load} |"
     )
 

@@ -3,8 +3,8 @@
     python benchmarks/acquisition/kills.py --kills 60 > docs/bench-kills.md
 
 Each child measures the same seeded plan on the simulated chassis; samples depend on
-their index alone, so the session of a child that was left alive tells every sample
-that a killed one may hold. A quarter of the kills fall while the file is finished.
+their index alone, so the session of a child that was not killed gives every sample that
+a killed one may hold. A quarter of the kills fall while the file is finished.
 """
 
 import argparse
@@ -32,28 +32,28 @@ PLAN = Path(__file__).parents[2] / "examples" / "plates.toml"
 SOURCE = "sim:plates?seed=5"
 
 
-class Telling(TextScreen):
-    """Tell the parent how many samples were handed to the store."""
+class Reporting(TextScreen):
+    """Report to the parent how many samples were passed to the store."""
 
     def __init__(self, parent: Connection) -> None:
         super().__init__(console("-"))
         self.parent, self.count = parent, 0
 
     def begin(self, channels: object, sample_rate: float) -> None:
-        """Tell that recording has begun."""
+        """Report the start of the recording."""
         self.parent.send(0)
 
     def say(self, line: str) -> None:
-        """Say nothing."""
+        """Print nothing."""
 
     def ask(self, condition: object, done: int, total: int) -> None:
-        """Say nothing."""
+        """Print nothing."""
 
     def hit(self, news: object) -> None:
-        """Say nothing."""
+        """Print nothing."""
 
     def block(self, samples: np.ndarray) -> None:
-        """Tell how many samples were handed over."""
+        """Report how many samples were passed."""
         self.count += samples.shape[1]
         self.parent.send(self.count)
 
@@ -72,7 +72,7 @@ def short_plan(folder: Path) -> MeasurePlan:
 def child(plan: MeasurePlan, out: Path, parent: Connection) -> None:
     """Measure until killed."""
     with open_chassis(SOURCE) as opened:
-        measure(plan, opened, out, Telling(parent))
+        measure(plan, opened, out, Reporting(parent))
     parent.send(-1)
 
 
@@ -82,14 +82,14 @@ def stream(session: Session) -> np.ndarray:
 
 
 def one(plan: MeasurePlan, out: Path, stop_at: int | None, delay: float) -> int:
-    """Start a child, kill it at a count and a delay; return the last count told."""
+    """Start a child, kill it at a count and a delay; return the last reported count."""
     here, there = multiprocessing.Pipe(duplex=False)
     process = multiprocessing.get_context("fork").Process(
         target=child, args=(plan, out, there)
     )
     process.start()
     there.close()
-    told = 0
+    reported = 0
     while True:
         try:
             count = here.recv()
@@ -97,18 +97,18 @@ def one(plan: MeasurePlan, out: Path, stop_at: int | None, delay: float) -> int:
             break
         if count < 0:
             break
-        told = count
-        if stop_at is not None and told >= stop_at:
+        reported = count
+        if stop_at is not None and reported >= stop_at:
             time.sleep(delay)
             os.kill(process.pid, signal.SIGKILL)
             while here.poll(0.2):
                 try:
-                    told = max(told, here.recv())
+                    reported = max(reported, here.recv())
                 except EOFError:
                     break
             break
     process.join()
-    return told
+    return reported
 
 
 def main() -> None:
@@ -132,7 +132,7 @@ def main() -> None:
             out = folder / f"{number}.h5"
             late = number % 4 == 3
             stop = total if late else draw.randrange(1, total)
-            told = one(plan, out, stop, draw.uniform(0.0, 0.6 if late else 0.05))
+            reported = one(plan, out, stop, draw.uniform(0.0, 0.6 if late else 0.05))
             try:
                 session = read_session(out)
             except BadData as error:
@@ -140,11 +140,11 @@ def main() -> None:
                 continue
             opened += 1
             if not session.recordings:
-                lost.append(told)
+                lost.append(reported)
                 continue
             found = stream(session)
             wrong += not np.array_equal(found, truth[:, : found.shape[1]])
-            lost.append(max(0, told - found.shape[1]))
+            lost.append(max(0, reported - found.shape[1]))
             finished += any(s.name == "end" for s in session.provenance)
             out.unlink()
     print("# Killed while recording\n")
@@ -153,7 +153,7 @@ def main() -> None:
     print(f"- of those, recordings that had already logged their end: {finished}")
     print(f"- files with a sample that differs from the unkilled session: {wrong}")
     print(
-        f"- samples handed over and not found: at most {max(lost)}, "
+        f"- samples passed to the store and not found: at most {max(lost)}, "
         f"that is {max(lost) / block:.2f} blocks of {block}"
     )
     print(f"- kills that lost nothing: {sum(n == 0 for n in lost)}")

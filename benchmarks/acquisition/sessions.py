@@ -29,7 +29,11 @@ from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates import PlatesDesign, natural_frequencies
 from jointbench.simulators.plates.plates_bench import PlatesBench
 from jointbench.station.measure.bench_session import Measured, measure
-from jointbench.station.measure.chassis import OpenChassis, SimulatedHand, open_chassis
+from jointbench.station.measure.chassis import (
+    OpenChassis,
+    OperatorOfSimulation,
+    open_chassis,
+)
 from jointbench.station.measure.plan import read_plan
 from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.pipeline.chain import run_chain
@@ -46,7 +50,7 @@ VERDICTS = {
 
 
 class Quiet(TextScreen):
-    """Say nothing."""
+    """Print nothing."""
 
     def __init__(self) -> None:
         super().__init__(console("-"))
@@ -78,10 +82,12 @@ def many_hits(folder: Path, seed: int) -> None:
         'most_rejected = 100\nlength = "0.5 s"'
     )
     path.write_text(plan_text(hits).replace("25.6 kHz", "12.8 kHz"), encoding="utf-8")
-    bench = PlatesBench(hand=SimulatedOperator(seed=seed, fates=fates(seed)), seed=seed)
+    bench = PlatesBench(
+        operator=SimulatedOperator(seed=seed, fates=fates(seed)), seed=seed
+    )
     with SimulatedChassis(ChassisSetup(bench=bench, speed=math.inf)) as server:
         chassis = Chassis(server.address)
-        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        opened = OpenChassis(chassis, "sim:", True, OperatorOfSimulation(chassis))
         out = folder / "hits.h5"
         measured = measure(read_plan(path), opened, out, Quiet())
         chassis.close()

@@ -52,20 +52,20 @@ def table(paper: str, claims: list[Claim]) -> str:
 
 
 DAMPING = """
-## Energies behind the loss factor
+# Energies of the loss factor
 
 The papers print eta = W_d/W_e and nothing else. Two forms are built: the two-regime
 form (elastic contacts store 2/5 P delta, all others lose H a delta/2), and the form
 that follows Kogut and Etsion's laws (work = integral of the load law; unloading as
 Etsion, Kligerman and Kadin 2005 have it). An earlier evaluation of the second was
-missed by 4 to 32 % where plasticity matters. Derived anew: it took the work of full
+missed by 4 to 32 % where plasticity matters. Derived again: it took the work of full
 plasticity as 2 pi R delta H in both dimensions, while its load there was H a. The work
-must be the integral of the load that is borne. With a = pi R delta (surface),
-2 pi R delta H is 2 H a, which is what `corrected` bears: there the two agree, and the
-earlier one was wrong in its load. With a = pi^2 R delta (profile) it is 0.64 H a: work
-without a load. With that choice our sums meet its W_e to 1e-14 and its W_d to 1.4e-4.
-That rest is its quadrature's: it runs over the kink where a contact begins to lose
-(s = 1.248), and it begins at 1e-12 of the fully plastic bound, which we allow for.
+must be the integral of the load that is borne. With a = pi R delta (surface), 2 pi R
+delta H is 2 H a, which is what `corrected` bears: there the two agree, and the earlier
+one was wrong in its load. With a = pi^2 R delta (profile) it is 0.64 H a: work without
+a load. With that choice our sums meet its W_e to 1e-14 and its W_d to 1.4e-4. That rest
+is its quadrature's: it runs over the kink where a contact begins to lose (s = 1.248),
+and it begins at 1e-12 of the fully plastic bound, which we allow for.
 
 E = 69.3 GPa, HB 231, G = 1 nm, 1 kN, no interaction:
 

@@ -69,7 +69,7 @@ def equation(name: str, terms: list[PrintedTerm]) -> Claim:
     first = terms[0]
     what = f"eq. ({first.equation}), {first.quantity} of {name}"
     sizes = between([term.factor for term in terms])
-    evidence = f"printed over the same laws summed right: {sizes}"
+    evidence = f"printed over the correct sum of the same laws: {sizes}"
     if not first.fault:
         return Claim(PAPER, what, "a closed form", REPRODUCES, evidence)
     return Claim(PAPER, what, "a closed form", CORRECTED, f"{first.fault}; {evidence}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lay the sum of contacts beside the frozen boundary-element table, as a page.
+"""Compare the sum of contacts with the frozen boundary-element table, as a page.
 
 python benchmarks/contact/oracle_page.py   writes docs/contact-oracle.md
 """
@@ -226,7 +226,7 @@ TAIL = """
 
 - **Exponent.** The oracle's K rises a little slower than p. The closed form comes near
   it at D = 2.5 and falls behind at smaller D: there its load is borne by the largest
-  contacts, its stiffness by the smallest, and the law K ~ P^(q/p_el) says so.
+  contacts, its stiffness by the smallest, as the law K ~ P^(q/p_el) states.
 - **Level.** The closed form gives {level} of the oracle's K. The main reason is what
   is summed: K of the papers is the sum of single-contact stiffnesses at their present
   sizes, the oracle's is the derivative of the load by the mean gap, new contacts
@@ -256,12 +256,12 @@ Marble (E* = 29.3 GPa), H = 1.5 GPa, by the surface's D:
 |---|---|---|---|---|---|---|---|---|
 """
 READING = """
-An earlier sheet gives 17 to 27 % for this gain and names no state. Both are right: it
-is the range at D = 2.54, where it runs from {low:.0f} to {high:.0f} % over the states
-above (18 to 26 % from G = 1 nm, 0.1 kN to 0.1 nm, 1 kN). There is no one number: it
-depends on D most of all, because D says which share of the stiffness is borne by
-elastic-plastic contacts. It is nothing where the largest contact itself has yielded
-(small D, large G), and a loss of 4 % at D = 2.8.
+An earlier calculation gives 17 to 27 % for this gain and names no state. Both are
+right: it is the range at D = 2.54, where it runs from {low:.0f} to {high:.0f} % over
+the states above (18 to 26 % from G = 1 nm, 0.1 kN to 0.1 nm, 1 kN). There is no one
+number: it depends on D most of all, because D sets the share of the stiffness carried
+    by elastic-plastic contacts. It is nothing where the largest contact itself has
+yielded (small D, large G), and a loss of 4 % at D = 2.8.
 """
 
 if __name__ == "__main__":

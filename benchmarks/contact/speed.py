@@ -67,7 +67,7 @@ def plain(dimension: float, roughness: float, preload: float) -> tuple[float, fl
 
 
 def main() -> None:
-    """Time both on the same joints and say how far they agree."""
+    """Time both on the same joints, and report their agreement."""
     random = np.random.default_rng(1)
     dimension = 2 + random.uniform(0.2, 0.85, MANY)
     roughness = 10 ** random.uniform(-12, -8, MANY)

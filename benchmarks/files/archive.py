@@ -3,10 +3,10 @@
 
     python benchmarks/files/archive.py FOLDER --sessions 2000 --poisoned 40
 
-The first sessions are visits to the simulated two-body bench, each with its own seed,
-one of four specimens (a folder each) and one of five torques; the others are the same
-visits with fresh sensor noise on top, so that no two files agree. A poisoned file is
-unusable in one of ten ways; `poison.json` says which is which, for whoever judges the
+The first sessions are measurements of the simulated two-body bench, each with its own
+seed, one of four specimens (a folder each) and one of five torques; the others are the
+same measurements with fresh sensor noise added, so that no two files agree. A poisoned
+file is unusable in one of ten ways; `poison.json` lists them, for the check of the
 quarantine.
 """
 
@@ -34,8 +34,8 @@ NOISE = 0.01
 """Standard deviation of the fresh noise, as of the sensors themselves [N, m/s^2]."""
 
 
-def visit(number: int) -> Session:
-    """Return the session of one visit."""
+def measurement(number: int) -> Session:
+    """Return one simulated session."""
     torque = TORQUES[number // SPECIMENS % len(TORQUES)]
     url = (
         f"sim:two-body?seed={number + 1}&hits=4&interval=0.7&sample_rate={RATE:g}"
@@ -45,7 +45,7 @@ def visit(number: int) -> Session:
 
 
 def noisier(session: Session, number: int) -> Session:
-    """Return a visit with noise of its own on top, hits as they were judged."""
+    """Return a session with added noise, hits as judged before."""
     rng = np.random.default_rng(number)
 
     def louder(recording: Recording) -> Recording:
@@ -160,10 +160,10 @@ POISONS: dict[str, tuple[Callable[[Path], None], tuple[str, ...]]] = {
 
 
 def make(task: tuple[Path, int, Path | None]) -> None:
-    """Write one session: a visit, or one that is there with other noise."""
+    """Write one session: a new one, or an earlier one with other noise."""
     path, number, base = task
     path.parent.mkdir(parents=True, exist_ok=True)
-    whole = visit(number) if base is None else noisier(read_session(base), number)
+    whole = measurement(number) if base is None else noisier(read_session(base), number)
     write_session(whole, path, overwrite=True)
 
 
@@ -172,7 +172,7 @@ def make_archive(
     *,
     sessions: int,
     poisoned: int,
-    visits: int = 250,
+    measurements: int = 250,
     jobs: int = 2,
     seed: int = 1,
 ) -> dict[str, str]:
@@ -182,8 +182,10 @@ def make_archive(
     paths = [
         folder / f"plate-{i % SPECIMENS}" / f"visit-{i:04d}.h5" for i in range(sessions)
     ]
-    first = [(path, i, None) for i, path in enumerate(paths[:visits])]
-    rest = [(paths[i], i, paths[i % visits]) for i in range(visits, sessions)]
+    first = [(path, i, None) for i, path in enumerate(paths[:measurements])]
+    rest = [
+        (paths[i], i, paths[i % measurements]) for i in range(measurements, sessions)
+    ]
     with multiprocessing.get_context("forkserver").Pool(jobs) as pool:
         for tasks in (first, rest):
             for _ in pool.imap_unordered(make, tasks, chunksize=4):
@@ -209,7 +211,7 @@ def main() -> None:
         options.folder,
         sessions=options.sessions,
         poisoned=options.poisoned,
-        visits=options.visits,
+        measurements=options.visits,
     )
     print(f"{options.sessions} sessions, {len(named)} of them poisoned")
 

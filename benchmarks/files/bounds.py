@@ -35,18 +35,18 @@ def read_one(reader: str, path: Path) -> dict[str, object]:
     begun = time.process_time()
     try:
         READERS[reader](path)
-        told = "read"
+        outcome = "read"
     except JointbenchError as error:
         lines = str(error).splitlines()
-        told = "refused" if len(lines) == 1 else "many lines"
+        outcome = "refused" if len(lines) == 1 else "many lines"
     except BaseException as error:  # noqa: BLE001 - what is sought
-        told = f"{type(error).__name__}: {error}"[:80]
+        outcome = f"{type(error).__name__}: {error}"[:80]
     # The peak of this process: getrusage counts that of its parent before the start.
     status = Path("/proc/self/status").read_text(encoding="ascii")
     used = int(status.partition("VmHWM:")[2].split()[0]) * 1024
     below = resource.getrusage(resource.RUSAGE_CHILDREN)
     return {
-        "told": told,
+        "outcome": outcome,
         "cpu": time.process_time() - begun + below.ru_utime + below.ru_stime,
         "memory": used + below.ru_maxrss * 1024,
     }
@@ -59,13 +59,17 @@ def measure(reader: str, path: Path) -> dict[str, object]:
     try:
         return dict(json.loads(done.stdout.splitlines()[-1]))
     except (IndexError, ValueError):
-        return {"told": f"ended by signal {-done.returncode}", "cpu": HANG, "memory": 0}
+        return {
+            "outcome": f"ended by signal {-done.returncode}",
+            "cpu": HANG,
+            "memory": 0,
+        }
 
 
 def is_kept(found: dict[str, object], size: int) -> bool:
-    """Tell whether a reader kept to the bounds."""
+    """Return whether a reader kept to the bounds."""
     return (
-        found["told"] in {"read", "refused"}
+        found["outcome"] in {"read", "refused"}
         and float(str(found["cpu"])) <= CPU
         and float(str(found["memory"])) <= MEMORY + 4 * size
     )
@@ -100,7 +104,7 @@ def main() -> int:
         print(
             f"| {one.reader} | {one.words} | {size / 1e6:.3g} | "
             f"{float(str(found['cpu'])):.1f} | {float(str(found['memory'])) / 1e6:.0f} "
-            f"| {(MEMORY + 4 * size) / 1e6:.0f} | {found['told']}"
+            f"| {(MEMORY + 4 * size) / 1e6:.0f} | {found['outcome']}"
             f"{'' if kept else ' **NOT KEPT**'} |",
             flush=True,
         )

@@ -97,7 +97,7 @@ def repeated(
 def numbers(
     size: float, *, columns: int, head: str = "", gap: str = "", sep: str = ","
 ):
-    """Return what writes a table of honest numbers, the first an even time."""
+    """Return what writes a table of plain numbers, the first an even time."""
 
     def make(path: Path, scale: float) -> None:
         rows = max(10, int(size * scale / (11 * columns)))

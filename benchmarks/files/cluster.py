@@ -55,7 +55,7 @@ def multiplied(folder: Path, archive: Path, results: Path, times: int) -> Path:
 
 
 def idle_words(folder: Path, archive: Path, recipe: Path, way: list[str]) -> str:
-    """Say what a file and a start cost where all is done, pool and cluster."""
+    """Report the cost of a file and of a start without work, for pool and cluster."""
     many = multiplied(folder, archive, folder / "pool", TIMES)
     few = min(many.iterdir())
     counts = [len(list(place.rglob("*.h5"))) for place in (few, many)]

@@ -175,7 +175,7 @@ def mutate(data: bytes, draw: random.Random) -> bytes:
 
 
 def read_all(pipe: Connection) -> None:
-    """Read files under a cap until told to stop; tell what became of each."""
+    """Read files under a memory limit until stopped; report the outcome of each."""
     warnings.simplefilter("ignore")
     with Path("/proc/self/statm").open(encoding="ascii") as file:
         now = int(file.read().split()[0]) * resource.getpagesize()
@@ -187,15 +187,15 @@ def read_all(pipe: Connection) -> None:
             return
         try:
             READERS[reader][1](path)
-            told = ("read", "")
+            outcome = ("read", "")
         except JointbenchError as error:
             lines = len(str(error).splitlines())
-            told = ("refused", "") if lines == 1 else ("many lines", str(error))
+            outcome = ("refused", "") if lines == 1 else ("many lines", str(error))
         except MemoryError:
-            told = ("memory", traceback.format_exc(limit=-3))
+            outcome = ("memory", traceback.format_exc(limit=-3))
         except Exception:  # noqa: BLE001 - what is sought
-            told = ("traceback", traceback.format_exc(limit=-4))
-        pipe.send(told)
+            outcome = ("traceback", traceback.format_exc(limit=-4))
+        pipe.send(outcome)
 
 
 def start() -> tuple[multiprocessing.Process, Connection]:
@@ -224,16 +224,16 @@ def fuzz(files: int, seed: int, folder: Path) -> tuple[Counter, list[str], float
         begun = time.monotonic()
         pipe.send((name, path))
         try:
-            told = pipe.recv() if pipe.poll(CLOCK) else ("hang", "")
+            outcome = pipe.recv() if pipe.poll(CLOCK) else ("hang", "")
         except (EOFError, OSError):
-            told = ("crash", "")
+            outcome = ("crash", "")
         slowest = max(slowest, time.monotonic() - begun)
-        found[name, told[0]] += 1
-        if told[0] not in {"read", "refused"}:
-            wrong.append(f"{name}, file {number}: {told[0]} {told[1]}")
+        found[name, outcome[0]] += 1
+        if outcome[0] not in {"read", "refused"}:
+            wrong.append(f"{name}, file {number}: {outcome[0]} {outcome[1]}")
             kept = folder.parent / f"fuzz-{number}-{path.name}"
             kept.write_bytes(path.read_bytes())
-            if told[0] in {"crash", "hang"}:
+            if outcome[0] in {"crash", "hang"}:
                 child.kill()
                 child.join()
                 child, pipe = start()

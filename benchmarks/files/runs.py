@@ -86,7 +86,7 @@ def ledger_lines(path: Path) -> list[dict[str, object]]:
 
 
 def load_words() -> str:
-    """Say what the machine was doing besides."""
+    """Report the other load of the machine."""
     load = os.getloadavg()
     return (
         f"{os.cpu_count()} cores; load averages when it ended "

@@ -3,8 +3,8 @@
 
     python benchmarks/files/speedup.py --archive FOLDER --files 200 --rounds 3
 
-On a machine that does other work besides, the ratio of two runs says little, so pairs
-of runs alternate, and the load is told.
+On a machine that does other work besides, the ratio of two runs is unreliable, so pairs
+of runs alternate, and the load is reported.
 """
 
 import argparse

@@ -47,7 +47,7 @@ class Case:
         Args:
             decibel: rms of each FRF over that of its noise [dB].
             seed: of the noise.
-            known: whether the record says how large the noise is.
+            known: whether the record states the noise.
         """
         rms = np.sqrt(np.mean(np.abs(self.exact) ** 2, axis=2, keepdims=True))
         sd = rms * 10.0 ** (-decibel / 20.0)

@@ -43,7 +43,7 @@ CPU seconds of the whole process, assembly or reading included, memory its large
 
 
 def solve(cells: Sequence[int], solver: str) -> list[float]:
-    """Return the elastic frequencies [Hz] with a solver of ours."""
+    """Return the elastic frequencies [Hz] with a solver of the station."""
     stiffness, mass = assemble(box_mesh(PLATE, cells), MARBLE)
     found = lowest_modes(stiffness, mass, RIGID + ELASTIC, Solver(solver))
     frequencies: list[float] = found.natural_frequency[RIGID:].tolist()
@@ -118,7 +118,7 @@ def run(cells: Sequence[int], solver: str) -> tuple[list[float], float, float]:
 
 
 def main() -> None:
-    """Run every solver that is there and lay the numbers side by side."""
+    """Run every installed solver and tabulate the results."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--cells", type=int, nargs=3, default=(56, 34, 8))
     parser.add_argument("--one", choices=[str(s) for s in Solver])

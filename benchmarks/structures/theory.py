@@ -83,7 +83,7 @@ planes likewise. Frequencies are trusted to 0.5 %, damping ratios to 5 % (mesh a
 plate theory differ by about so much). Verdict: {verdict}.
 The faces are synthetic (D = 1.54, G = 1 nm each) and have nothing to do with the
 simulator's springs: that law and joint disagree is what this table should show.
-Tangential stiffness comes out too large, and rising with torque: a mesh gives way
+Tangential stiffness comes out too large, and rising with torque: a mesh is compliant
 around the bolt spots (8 G r/(2 - nu) a side, about 4e9 N/m in all, in series), the
 simulator's point springs on plates do not. In the normal direction it is 2 to 5 %.
 
@@ -257,7 +257,7 @@ def simulated(session: Path | None) -> str:
 
 
 def _error(row: Mapping[str, object]) -> str:
-    """Say how far a row's identified value lies from the simulator's."""
+    """Return the deviation of a row's identified value from the simulator's."""
     quantity, torque, value = row["quantity"], row["torque_n_m"], row["identified"]
     assert isinstance(quantity, str)
     assert isinstance(torque, float)

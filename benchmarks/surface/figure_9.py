@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Redraws the 2023 paper's Fig. 9 and says what "smoother with D" means in it.
+"""Redraw Fig. 9 of the 2023 paper, and find the meaning of "smoother with D" in it.
 
 python -m benchmarks.surface.figure_9 writes docs/surface-figure-9.png (left to right
 D = 2.1, 2.4, 2.6, 2.8; above the two ridges of the paper, below twenty) and prints a

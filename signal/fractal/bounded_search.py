@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Least squares of a few bounded parameters, quick enough for thousands of fits."""
+"""Fast least squares of a few bounded parameters."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 
 _MOST_STEPS = 40
-"""Steps of one search; fits of a surface take about 10, hopeless ones go on [-]."""
+"""Most steps of one search; fits of a surface take about 10 [-]."""
 _MOST_TRIALS = 12
 """Trial dampings of one step [-]."""
 _SETTLED = 1e-7
@@ -19,14 +19,14 @@ _DIFFERENCE = 1e-6
 _FIRST_DAMPING = 1e-3
 """Damping of the first step over the curvature [-]."""
 _EASE, _TIGHTEN = 0.2, 5.0
-"""Factors on the damping after a step that helped, and after one that did not [-]."""
+"""Factors on the damping after an accepted and after a rejected step [-]."""
 
 _Residual = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """Where a search ended.
+    """Result of a search.
 
     Attributes:
         parameters: shape (n_parameters,).
@@ -46,16 +46,16 @@ def search(
 
     Args:
         residual: residuals for parameters, whitened.
-        start: parameters to begin with, shape (n,).
+        start: start values, shape (n,).
         lower: bounds, shape (n,).
         upper: bounds, shape (n,).
 
     Returns:
-        The end of the search, a local least.
+        The end of the search, a local minimum.
 
     Source:
         Levenberg-Marquardt with the damping relative to the curvature: Marquardt,
-        SIAM J. Appl. Math. 11 (1963) 431. Parameters that lean against a bound stand.
+        SIAM J. Appl. Math. 11 (1963) 431. Parameters at an active bound are fixed.
     """
     here = np.clip(start, lower, upper)
     gap = residual(here)
@@ -101,7 +101,7 @@ def _step(
     lower: FloatArray,
     upper: FloatArray,
 ) -> FloatArray:
-    """Return the damped step of the parameters that may move."""
+    """Return the damped step of the free parameters."""
     slope = jacobian.T @ gap
     free = ~(((here <= lower) & (slope > 0)) | ((here >= upper) & (slope < 0)))
     size = np.linalg.norm(jacobian, axis=0)

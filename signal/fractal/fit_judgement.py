@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Judges an accepted fit: does it show a fractal surface, and over which lags?"""
+"""Judge whether an accepted fit shows a fractal surface, and over which lags."""
 
 from dataclasses import dataclass
 
@@ -11,13 +11,13 @@ from jointbench.signal.fractal.self_affine import InstrumentModel
 from jointbench.signal.fractal.verdict_records import SurfaceVerdict
 
 FLAT_RATIO = 1.5
-"""Largest over smallest S below which S is called flat: noise and no surface [-]."""
+"""Largest over smallest S below which S is flat: noise without a surface [-]."""
 DIMENSION_MARGIN = 0.02
 """D closer to 1 is a smooth form, closer to 2 unrelated heights [-]."""
 UNKNOWN_DIMENSION_SD = 0.1
-"""Standard deviation of D above which the fit does not tell D [-]."""
+"""Standard deviation of D above which the fit does not determine D [-]."""
 SPIKY_KURTOSIS = 15.0
-"""Kurtosis of height differences above which few jumps make up S [-]: Gaussian
+"""Kurtosis of height differences above which a few jumps dominate S [-]: Gaussian
 surfaces have 3, worn and scratched ones up to about 10."""
 
 
@@ -26,8 +26,8 @@ class Judgement:
     """A verdict on one accepted fit.
 
     Attributes:
-        verdict: the word; `SurfaceVerdict.FRACTAL` where nothing speaks against it.
-        reason: one line with the numbers behind it.
+        verdict: `SurfaceVerdict.FRACTAL` where no rule excludes it.
+        reason: one line with the numbers.
     """
 
     verdict: SurfaceVerdict
@@ -35,19 +35,19 @@ class Judgement:
 
     @property
     def scales(self) -> bool:
-        """Whether the surface scales over some lags of the fit."""
+        """Whether the surface has a power law over some lags of the fit."""
         return self.verdict in {SurfaceVerdict.FRACTAL, SurfaceVerdict.BAND}
 
 
 def judge(choice: Choice) -> Judgement:
-    """Say what an accepted fit shows.
+    """Return the verdict on an accepted fit.
 
     Args:
         choice: the accepted fit.
 
     Returns:
-        The first rule that speaks against a fractal surface, or the power law; with
-        a corner it holds within a band only.
+        The first rule that excludes a fractal surface, or the power law; with a corner
+        it holds within a band only.
     """
     for rule in (_flat, _spiky, _hidden, _not_between_limits):
         judgement = rule(choice)
@@ -66,12 +66,12 @@ def _flat(choice: Choice) -> Judgement | None:
     return Judgement(
         SurfaceVerdict.INSTRUMENT,
         f"S changes by less than a factor {FLAT_RATIO:g} over {_range(choice)}: "
-        f"white noise of {noise:.3g} nm, no surface to be seen",
+        f"white noise of {noise:.3g} nm, the surface is not resolved",
     )
 
 
 def _spiky(choice: Choice) -> Judgement | None:
-    """Find steps and spikes: few large differences make up the mean."""
+    """Find steps and spikes: a few large differences dominate the mean."""
     tails = choice.problem.estimate.kurtosis
     worst = max(float(np.median(tails)), float(np.median(tails[: 1 + tails.size // 4])))
     if worst <= SPIKY_KURTOSIS:
@@ -79,12 +79,12 @@ def _spiky(choice: Choice) -> Judgement | None:
     return Judgement(
         SurfaceVerdict.NONE,
         f"height differences have kurtosis {worst:.3g} (Gaussian 3, limit "
-        f"{SPIKY_KURTOSIS:g}): a few steps or spikes make up S, not roughness",
+        f"{SPIKY_KURTOSIS:g}): a few steps or spikes dominate S, not roughness",
     )
 
 
 def _hidden(choice: Choice) -> Judgement | None:
-    """Find surfaces of which instrument or corner leave less than a decade."""
+    """Find surfaces with less than a decade between instrument and corner."""
     band, seen = choice.band, choice.fit.seen
     if spans_decade(band):
         return None
@@ -110,11 +110,11 @@ def _not_between_limits(choice: Choice) -> Judgement | None:
     dimension, sd = choice.dimension, choice.dimension_sd
     said = f"D = {dimension:.3f} +- {sd:.2g} over {_range(choice)}"
     if dimension - 2 * sd < 1 + DIMENSION_MARGIN:
-        ending = "not told from a smooth form (D = 1)"
+        ending = "not distinguished from a smooth form (D = 1)"
     elif dimension + 2 * sd > 2 - DIMENSION_MARGIN:
-        ending = "not told from unrelated heights (D = 2)"
+        ending = "not distinguished from unrelated heights (D = 2)"
     elif sd > UNKNOWN_DIMENSION_SD:
-        ending = "the data do not tell D"
+        ending = "the data do not determine D"
     else:
         return None
     return Judgement(SurfaceVerdict.NONE, f"{said}: {ending}")
@@ -128,7 +128,7 @@ def _power_law(choice: Choice) -> str:
         f"chi2 {fit.chi2:.1f} for {fit.dof} degrees of freedom"
     )
     if tolerance > 0:
-        words += f" with {100 * tolerance:g} % of misfit allowed"
+        words += f" with a tolerance of {100 * tolerance:g} %"
     if fit.model.instrument is not InstrumentModel.NONE:
         words += f", with {choice.instrument_words()}"
     if fit.model.rolls_off:
@@ -138,12 +138,12 @@ def _power_law(choice: Choice) -> str:
 
 
 def _range(choice: Choice) -> str:
-    """Return the lags over which the power law is said to hold, in words."""
+    """Return the stated range of the power law as text."""
     lag = choice.fit.lag
     return _lags(choice, choice.band or (float(lag[0]), float(lag[-1])))
 
 
 def _lags(choice: Choice, band: tuple[float, float]) -> str:
-    """Return a band of lags in words; `band` in samples."""
+    """Return a band of lags as text; `band` in samples."""
     low, high = (1e6 * choice.problem.estimate.spacing * end for end in band)
     return f"lags {low:.3g} to {high:.3g} um"

@@ -1,43 +1,45 @@
 # SPDX-License-Identifier: MIT
-"""What a structure function and a model of it have to say to each other in a fit."""
+"""The fit of a model to a structure function: data, lags and covariance."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, read_only
 from jointbench.signal.fractal.levelling_loss import levelling_loss
 from jointbench.signal.fractal.self_affine import TIP_TOLERANCE, SeenSurface, rolled_off
 from jointbench.signal.fractal.structure_covariance import Seen, structure_covariance
 from jointbench.signal.surface.structure_function import StructureFunction
 
 PLANE_LOSS = 0.5
-"""Part of a mean line's loss that a mean plane costs: between 0 and 1, unknown [-]."""
+"""Loss by a mean plane over that by a mean line: between 0 and 1, unknown [-]."""
 
 INDEPENDENT_ROWS = 8.0
-"""Rows farther apart than this are profiles of their own [samples]."""
+"""Rows farther apart than this are independent profiles [samples]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FractalProblem:
-    """A structure function at the lags of a fit, with its covariance laid out.
+    """A structure function at the lags of a fit, with its covariance.
 
     Attributes:
         estimate: at the lags of the fit; all values above 0.
         covariance_of: relative covariance of the values for any model.
-        tolerance: relative misfit allowed at each lag beside its scatter [-].
+        tolerance: relative model error allowed at each lag in addition to its scatter
+            [-].
+        lag: lags of the estimate [samples], shape (n_lags,).
     """
 
     estimate: StructureFunction
     covariance_of: Callable[[Seen], FloatArray]
     tolerance: float = 0.0
+    lag: FloatArray = field(init=False)
 
-    @property
-    def lag(self) -> FloatArray:
-        """Lags [samples]."""
-        lag: FloatArray = self.estimate.lag / self.estimate.spacing
-        return lag
+    def __post_init__(self) -> None:
+        """Work out the lags once: a search looks at them thousands of times."""
+        lag = self.estimate.lag / self.estimate.spacing
+        object.__setattr__(self, "lag", read_only(lag))
 
     @property
     def pivot(self) -> float:
@@ -46,16 +48,16 @@ class FractalProblem:
 
     @property
     def axes(self) -> int:
-        """Directions the instrument acts in: all around on a map whose rows relate."""
-        face = self.estimate.faces[0]
-        hangs_together = face.row_distance < INDEPENDENT_ROWS * face.spacing
-        return 2 if face.profiles > 1 and hangs_together else 1
+        """Directions in which the instrument acts: 2 on a map with related rows."""
+        sampling = self.estimate.samplings[0]
+        hangs_together = sampling.row_distance < INDEPENDENT_ROWS * sampling.spacing
+        return 2 if sampling.profiles > 1 and hangs_together else 1
 
     def loss(self, seen: SeenSurface) -> FloatArray:
-        """Return what levelling takes from S at the fit's lags [m^2].
+        """Return the loss of S by levelling at the fit's lags [m^2].
 
-        A surface that stops growing rougher within the profile has less of a slope
-        to lose.
+        A surface with a corner within the profile has a smaller slope, and so a smaller
+        loss.
         """
         points = float(self.estimate.points)
         part = 1.0 if self.estimate.separate else PLANE_LOSS
@@ -75,35 +77,34 @@ class FractalProblem:
 
     @property
     def tails(self) -> float:
-        """How much more S scatters than for Gaussian differences [-].
+        """Variance of S over that of Gaussian differences [-].
 
         The variance of a mean of squares is in proportion to kurtosis - 1.
         """
         return max(1.0, (float(np.median(self.estimate.kurtosis)) - 1) / 2)
 
     def scatter(self, seen: SeenSurface) -> FloatArray:
-        """Return the covariance of S over what `seen` shows, shape (n, n) [-]."""
+        """Return the covariance of S over the S of `seen`, shape (n, n) [-]."""
         spacing = self.estimate.spacing
         scatter = self.covariance_of(lambda lag: seen.seen(lag / spacing))
         tailed: FloatArray = self.tails * scatter
         return tailed
 
-    def misfit(self, seen: SeenSurface) -> FloatArray:
-        """Return the covariance of what the model leaves open, as `scatter` [-].
+    def model_error(self, seen: SeenSurface) -> FloatArray:
+        """Return the covariance of the model error, as `scatter` [-].
 
-        Where a misfit is allowed, and on a map, the whole loss by levelling enters
-        once more as an unknown of that size: how much a mean plane takes is not known,
-        and a surface may lack waves longer than the profile, which bends S likewise.
-        The loss of a self-affine profile is known exactly. Of the path of a tip the
-        form is known to a percent only.
+        With a tolerance, and on a map, the whole loss by levelling is added as an
+        unknown of that size: the loss by a mean plane is not known, and a surface may
+        lack waves longer than the profile, which bends S in the same way. The loss of a
+        self-affine profile is known exactly, the form of a tip's path to one percent.
         """
         if seen.traced:
             return TIP_TOLERANCE**2 * np.eye(self.lag.size)
         if self.tolerance == 0 and self.estimate.separate:
             return np.zeros((self.lag.size, self.lag.size))
         loss = self.loss(seen) / seen.seen(self.lag)
-        misfit: FloatArray = self.tolerance**2 * np.eye(loss.size)
-        return misfit + np.outer(loss, loss)
+        error: FloatArray = self.tolerance**2 * np.eye(loss.size)
+        return error + np.outer(loss, loss)
 
     def within(self, keep: BoolArray) -> "FractalProblem":
         """Return the problem at the lags marked in `keep` only."""
@@ -115,10 +116,10 @@ class FractalProblem:
         )
 
     def straight(self, *, up_to: float = np.inf) -> SeenSurface:
-        """Return the power law through the values, without weights: a start.
+        """Return the unweighted power law through the values, as a start.
 
         Args:
-            up_to: longest lag to take [samples]; three lags are taken at least.
+            up_to: longest lag to use [samples]; at least three lags are used.
         """
         count = max(3, int(np.count_nonzero(self.lag <= up_to)))
         log_lag = np.log(self.lag[:count])
@@ -129,5 +130,5 @@ class FractalProblem:
 
 
 def pose(estimate: StructureFunction, *, tolerance: float = 0.0) -> FractalProblem:
-    """Lay out the fit of a structure function at the lags it has."""
+    """Prepare the fit of a structure function at its lags."""
     return FractalProblem(estimate, structure_covariance(estimate), tolerance)

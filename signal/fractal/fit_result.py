@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Puts a fit and its judgement into the record that the station reports."""
+"""Build the record that the station reports from a fit and its judgement."""
 
 from dataclasses import replace
 
@@ -51,7 +51,7 @@ def accepted_fit(
 ) -> FractalFit:
     """Return the record of an accepted fit.
 
-    A surface that hides behind its instrument keeps curve and instrument, but gets no
+    A surface that the instrument masks keeps curve and instrument, but has no
     dimension.
     """
     fit, problem = choice.fit, choice.problem
@@ -89,8 +89,8 @@ def _instrument(choice: Choice) -> tuple[InstrumentParameter, ...]:
     deviation = np.sqrt(np.diag(fit.covariance))[2:].tolist()
     found = []
     if fit.model.instrument.has_noise:
-        # The fit has the variance; a standard deviation moves half as much, and of
-        # no noise at all only the size that would have been seen is known.
+        # The fit gives the variance; the relative sd of a standard deviation is half of
+        # that. Without noise only the size that would have been detected is known.
         scale = float(np.sqrt(0.5 * problem.estimate.value.min()))
         share, share_sd = float(fit.parameters[2]), float(deviation.pop(0))
         size = np.sqrt(max(share, share_sd))
@@ -104,7 +104,7 @@ def _instrument(choice: Choice) -> tuple[InstrumentParameter, ...]:
 
 
 def _scaling(choice: Choice, gamma: float, constant: ConstantForm) -> Scaling:
-    """Return D and S at the best pivot of the fit, and G that follows from them."""
+    """Return D and S at the best pivot of the fit, and the resulting G."""
     fit, problem = choice.fit, choice.problem
     # (s, ln S at pivot) -> (D, ln S at pivot): D = 2 - s / 2.
     turn = np.diag([-0.5, 1.0])
@@ -140,6 +140,6 @@ def _scaling(choice: Choice, gamma: float, constant: ConstantForm) -> Scaling:
 
 
 def _shift(covariance: FloatArray, pivot: float, lag: FloatArray) -> float:
-    """Return how far to move ln pivot, inside the fit, to uncouple D and S there."""
+    """Return the shift of ln pivot, within the fit, that decouples D and S."""
     best = covariance[0, 1] / (2 * covariance[0, 0])
     return float(np.clip(best, np.log(lag[0] / pivot), np.log(lag[-1] / pivot)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Fractal dimension D and roughness G of a surface, or why it has none."""
+"""Fractal dimension D and roughness G of a surface, or the reason for none."""
 
 from dataclasses import dataclass, replace
 
@@ -27,22 +27,22 @@ from jointbench.signal.surface.structure_constant import (
 from jointbench.signal.surface.structure_function import StructureFunction
 
 FIT_LAGS = 25
-"""Lags of the fit: more add cost, not knowledge [-]."""
+"""Lags of the fit; more add cost, not information [-]."""
 LONGEST_FIT_SHARE = 0.1
-"""Longest lag of the fit over the length of a profile [-]: beyond, too few
+"""Longest lag of the fit over the length of a profile [-]; beyond it too few
 independent pairs are left for a Gaussian description of their mean."""
 LONGEST_MAP_SHARE = 0.2
 """The same on a map, where every row adds pairs [-]."""
 MAP_PROFILES = 16
-"""Profiles from which on a surface counts as a map [-]."""
+"""Least number of profiles of a map [-]."""
 MODEL_TOLERANCE = 0.02
-"""Relative misfit of S that still passes as a power law [-], tried where the
-scatter alone rejects it: real surfaces are never exact, long ones always show it."""
+"""Relative error of S tolerated in a power law [-], tried where the scatter alone
+rejects it: real surfaces are never exact, and long ones show it."""
 
 
 @dataclass(frozen=True, slots=True)
 class FractalLine:
-    """Fractal parameters read off a straight line through lg S over lg lag.
+    """Fractal parameters of a straight line through lg S over lg lag.
 
     Attributes:
         dimension: D of a profile [-].
@@ -60,7 +60,7 @@ def fractal_from_line(
     gamma: float = DEFAULT_GAMMA,
     constant: ConstantForm = "corrected",
 ) -> FractalLine:
-    """Turn a line lg S = slope lg lag + intercept into D and G.
+    """Convert a line lg S = slope lg lag + intercept to D and G.
 
     Args:
         slope: of the line, between 0 and 2 [-].
@@ -89,11 +89,12 @@ def fit_fractal(
     gamma: float = DEFAULT_GAMMA,
     constant: ConstantForm = "corrected",
 ) -> FractalFit:
-    """Fit D and G together with the instrument, or say why there is no D.
+    """Fit D and G together with the instrument, or give the reason for no D.
 
     Generalised least squares with the exact covariance of S for Gaussian heights;
     the smallest of five instrument models that the data support. Tried in turn: all
-    lags within their scatter; all lags with 2 % of misfit; bands of a decade or more.
+    lags within their scatter; all lags with a tolerance of 2 %; bands of a decade or
+    more.
 
     Args:
         estimate: of one surface, or of two combined.
@@ -110,8 +111,8 @@ def fit_fractal(
         Covariance of the increments of fractional Brownian motion: Istas and Lang,
         Ann. Inst. H. Poincare 33 (1997) 407. Structure function and G: S1 eq. (9).
     """
-    structure_constant(1.5, gamma, constant)  # refuse nonsense before the work
-    # Differences within half a step of the heights are no Gaussian ones.
+    structure_constant(1.5, gamma, constant)  # refuse bad input first
+    # Differences within half a height step are not Gaussian.
     rough = estimate.only(estimate.value > 0.25 * estimate.quantum**2)
     for_fit, for_slope = _thinned(rough)
     if not _worth_a_fit(rough.only(for_fit)):
@@ -153,7 +154,7 @@ def _search(problem: FractalProblem) -> tuple[Choice, Judgement | None]:
 def _one_side(
     problem: FractalProblem, whole: Choice, kink: Kink
 ) -> tuple[Choice, Judgement]:
-    """Fit the wider side of a bend of the spectrum, and say what lies beyond it."""
+    """Fit the wider side of a bend of the spectrum, and report the bend."""
     lag = problem.lag
     sides = sorted((lag <= kink.lag, lag >= kink.lag), key=lambda k: -_octaves(lag[k]))
     spacing = 1e6 * problem.estimate.spacing
@@ -183,7 +184,7 @@ def _longest_share(estimate: StructureFunction) -> float:
 
 
 def _thinned(estimate: StructureFunction) -> tuple[BoolArray, BoolArray]:
-    """Mark the lags of the fit, and those of the slope, which goes on beyond."""
+    """Mark the lags of the fit, and those of the slope, which reach further."""
     share = estimate.lag / (estimate.spacing * estimate.points)
     inside = share <= _longest_share(estimate) * (1 + 1e-9)
     keep = np.zeros(estimate.lag.size, dtype=np.bool_)
@@ -205,7 +206,7 @@ def _worth_a_fit(estimate: StructureFunction) -> bool:
 
 
 def _too_short(estimate: StructureFunction) -> Judgement:
-    """Say why there is nothing to fit."""
+    """Return the reason for too few lags to fit."""
     count, share = estimate.lag.size, 100 * _longest_share(estimate)
     if count == 0:
         reason = (
@@ -221,12 +222,12 @@ def _too_short(estimate: StructureFunction) -> Judgement:
 
 
 def _too_coarse(estimate: StructureFunction) -> Judgement | None:
-    """Say that the instrument's steps hide the surface, where that is the cause."""
+    """Return the judgement that the height steps mask the surface, if they do."""
     if estimate.quantum == 0 or not _worth_a_fit(estimate.only(_thinned(estimate)[0])):
         return None
     return Judgement(
         SurfaceVerdict.INSTRUMENT,
-        f"heights come in steps of {1e9 * estimate.quantum:.3g} nm, which hide the "
+        f"heights come in steps of {1e9 * estimate.quantum:.3g} nm, which mask the "
         "surface at all but a few lags; measure with a finer height range",
     )
 
@@ -240,7 +241,7 @@ def _unfitted_slope(estimate: StructureFunction) -> LocalSlope:
 
 
 def _course(slope: LocalSlope, problem: FractalProblem) -> str:
-    """Say how the local slope wanders over the lags of the fit."""
+    """Describe how the local slope varies over the lags of the fit."""
     inside = slope.lag <= problem.estimate.lag[-1] * (1 + 1e-9)
     lag, value = slope.lag[inside], slope.slope[inside]
     marks = sorted({0, int(np.argmin(value)), int(np.argmax(value)), value.size - 1})

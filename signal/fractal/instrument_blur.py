@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What blur, tip and band limit of an instrument leave of a structure function."""
+"""Effect of blur, tip and band limit of an instrument on a structure function."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,12 @@ _ASYMPTOTIC_FROM = 40.0
 _ASYMPTOTIC_TERMS = 6
 _QUADRATURE_NODES = 96
 _QUADRATURE_LAGS = 60.0
-"""Lag beyond which a cosine over the band averages out [samples]; the nodes follow
-it up to there."""
+"""Lag beyond which a cosine over the band averages out [samples]; the nodes resolve it
+up to there."""
 _TIP_FALL = 1.3
 """Times 1 / s: half the power by which a tip's path falls off [-], see `tip_fall`."""
 _TIP_BLURS = 16
-"""Gaussian blurs that make up the path of a tip: S within 2e-3 at all lags [-]."""
+"""Gaussian blurs that represent the path of a tip: S within 2e-3 at all lags [-]."""
 _TIP_TAILS = (1e-4, 1.0 - 1e-7)
 """Shares of them below the narrowest and the widest [-]."""
 _FRACTION_TERMS = 60
@@ -27,7 +27,7 @@ _FRACTION_TERMS = 60
 
 
 def blurred_power(
-    lag: FloatArray, exponent: float, width: float, axes: int
+    lag: FloatArray, exponent: float, width: float | FloatArray, axes: int
 ) -> FloatArray:
     """Return the structure function lag^s after a Gaussian blur of the heights.
 
@@ -37,28 +37,27 @@ def blurred_power(
     Args:
         lag: [samples], not negative.
         exponent: s [-].
-        width: standard deviation of the blur [samples], above 0.
-        axes: 1 or 2 directions of blur; with 2 the surface is taken as isotropic.
+        width: standard deviation of the blur [samples], above 0; an array broadcasts
+            with `lag`.
+        axes: 1 or 2 directions of blur; 2 assumes an isotropic surface.
 
     Source:
         Abramowitz and Stegun, 13.1.2 and 13.5.1 (far from the origin).
     """
     half = axes / 2
-    at_zero = (2 * width) ** exponent * float(
-        gamma_function(half + exponent / 2) / gamma_function(half)
-    )
-    argument = (lag / (2 * width)) ** 2
+    at_zero = float(gamma_function(half + exponent / 2) / gamma_function(half))
+    reach = lag / (2 * width)
+    argument = reach**2
     near = argument < _ASYMPTOTIC_FROM
-    mean = np.empty_like(lag)
+    mean = np.empty_like(argument)
     mean[near] = at_zero * hyp1f1(-exponent / 2, half, -argument[near])
-    term = np.ones(int(np.count_nonzero(~near)))
-    total = term.copy()
-    for k in range(_ASYMPTOTIC_TERMS):
+    inverse = 1 / argument[~near]
+    total = np.ones_like(inverse)
+    for k in range(_ASYMPTOTIC_TERMS - 1, -1, -1):
         factor = (k - exponent / 2) * (k + 1 - half - exponent / 2) / (k + 1)
-        term = term * factor / argument[~near]
-        total += term
-    mean[~near] = lag[~near] ** exponent * total
-    blurred: FloatArray = mean - at_zero
+        total = 1 + factor * inverse * total
+    mean[~near] = reach[~near] ** exponent * total
+    blurred: FloatArray = (2 * width) ** exponent * (mean - at_zero)
     return blurred
 
 
@@ -66,12 +65,13 @@ def tip_fall(exponent: float) -> float:
     """Return n of the transfer |K|^2 = (1 + (omega a)^2)^-n of a round tip's path.
 
     A parabola and a self-affine profile of one D have one length in common, the width
-    of contact, so |K|^2 is one function of it for each D. The path has creases: far out
-    its spectrum falls as omega^-4, n = (3 - s) / 2, but few data see so far. Fitted to
-    the mean S of paths of tips of 1 to 5 um on profiles of D = 1.3, 1.5 and 1.7, with
-    points eight times as dense as well, n = 1.3 / s leaves an error of D of 0.005 at
-    most at 1.3 and 1.5 and 0.016 at 1.7; a Gaussian leaves up to 0.035, and five to a
-    hundred times the squares. Tips many points wide (15 um here) see more of the fall.
+    of contact, so |K|^2 is one function of it for each D. The path has creases: at high
+    frequency its spectrum falls as omega^-4, n = (3 - s) / 2, but few data reach it.
+    Fitted to the mean S of paths of tips of 1 to 5 um on profiles of D = 1.3, 1.5 and
+    1.7, with points eight times as dense as well, n = 1.3 / s leaves an error of D of
+    0.005 at most at 1.3 and 1.5 and 0.016 at 1.7; a Gaussian leaves up to 0.035, and
+    five to a hundred times the sum of squares. Tips many points wide (15 um here) show
+    more of the fall.
 
     Args:
         exponent: s = 4 - 2D [-].
@@ -85,7 +85,7 @@ def traced_power(lag: FloatArray, exponent: float, width: float) -> FloatArray:
     Args:
         lag: [samples], not negative.
         exponent: s [-].
-        width: standard deviation of the Gaussian blur that takes as much from long
+        width: standard deviation of the Gaussian blur with the same effect on long
             waves [samples], above 0.
 
     Source:
@@ -96,9 +96,9 @@ def traced_power(lag: FloatArray, exponent: float, width: float) -> FloatArray:
     ends = np.log(gammaincinv(fall, _TIP_TAILS))
     time = np.exp(np.linspace(ends[0], ends[1], _TIP_BLURS))
     weight = np.exp(fall * np.log(time / fall) - (time - fall))
-    shape = np.zeros_like(lag)
-    for share, t in zip(weight / weight.sum(), time / fall, strict=True):
-        shape += share * blurred_power(lag, exponent, width * float(np.sqrt(t)), 1)
+    widths = width * np.sqrt(time / fall)
+    blurred = blurred_power(lag, exponent, widths[(...,) + (None,) * lag.ndim], 1)
+    shape: FloatArray = np.tensordot(weight / weight.sum(), blurred, axes=1)
     return shape
 
 
@@ -108,8 +108,8 @@ def band_limited_power(lag: FloatArray, exponent: float, axes: int) -> FloatArra
     Args:
         lag: [samples], not negative.
         exponent: s [-].
-        axes: 1 where waves along the profile only are cut off; 2 where waves of an
-            isotropic map are, along both directions of its grid.
+        axes: 1 if only waves along the profile are cut off; 2 for an isotropic map,
+            along both directions of its grid.
 
     Source:
         S = integral of 2 P(f) (1 - cos 2 pi f lag) up to the Nyquist frequency with
@@ -129,11 +129,11 @@ def band_limited_power(lag: FloatArray, exponent: float, axes: int) -> FloatArra
 
 
 def _missing_across(lag: FloatArray, exponent: float) -> FloatArray:
-    """Return what a limit across a map takes from waves that run slantwise.
+    """Return the loss of oblique waves by a band limit across a map.
 
-    A profile of an isotropic map sees the waves of all directions; of those that are
-    slow along it, the ones too fast across it are missing. What is left of the power
-    at the angular frequency q is a regularised incomplete beta function.
+    A profile of an isotropic map contains the waves of all directions; of those that
+    are slow along it, the ones too fast across it are missing. The remaining share of
+    the power at the angular frequency q is a regularised incomplete beta function.
     """
     nodes, weights = np.polynomial.legendre.leggauss(_QUADRATURE_NODES)
     q = np.pi * (nodes + 1) / 2

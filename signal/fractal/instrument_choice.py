@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Chooses what the instrument did: the smallest model that the data support."""
+"""Choose the smallest instrument model that the data support."""
 
 from dataclasses import dataclass
 
@@ -18,36 +18,36 @@ from jointbench.signal.fractal.least_squares import (
 from jointbench.signal.fractal.self_affine import InstrumentModel, tip_radius
 
 ACCEPT_PROBABILITY = 0.01
-"""A model is accepted if a true one would fit worse at least this often [-]."""
-_HOPELESS_PROBABILITY = 1e-6
-"""Where the richest model fits with a smaller chance, simpler ones need no trial."""
+"""Least probability of a larger chi2 at which a model is accepted [-]."""
+_PRUNING_PROBABILITY = 1e-6
+"""Probability of the largest model below which simpler ones are not tried."""
 _ONE_MORE = 7.88
-"""Gain of chi2 by one more parameter that chance brings in half a percent [-], so that
-all tests together take a larger model by chance in 1 % at the most."""
+"""Gain of chi2 by one more parameter with a probability of 0.5 % by chance [-], so that
+all tests together choose a larger model by chance in at most 1 %."""
 _TWO_MORE = 11.4
-"""The same for two more parameters, in a third of a percent [-]."""
+"""The same for two more parameters, with a probability of 0.33 % [-]."""
 _CAST_DOUBT = {1: 1.5, 2: 5.0}
-"""Gain of chi2 by so many more parameters from which they cast doubt on D [-]: lower
-limits cover more of the noise that cannot be proven, and widen more clean profiles."""
+"""Gain of chi2 by one or two more parameters from which they add uncertainty to D [-]:
+lower limits cover more insignificant noise, and widen more clean profiles."""
 _EVEN = {1: 8.0, 2: 14.0}
-"""Gain by so many more parameters at which both models weigh alike in D [-]. With
-Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
+"""Gain of chi2 by one or two more parameters for equal weights of both models in D [-].
+With Akaike's 2 and 4, D of clean profiles would scatter by 10 to 25 percent more."""
 _BLUNTEST_TIP = 100e-6
-"""Radius beyond which no stylus is [m]: twice that of the bluntest in use, as it is
-known within a factor of two only."""
+"""Largest radius of a stylus [m]: twice that of the bluntest in use, as it is known
+within a factor of two only."""
 _NOISE_START = 0.02
-"""Noise from which a tip is looked for, over the smallest value of S [-]."""
+"""Least noise at which a tip is tried, over the smallest value of S [-]."""
 _SETTLED_WEIGHT = 0.999
-"""Weight of the larger model in D from which the smaller has no say [-]."""
+"""Weight of the larger model in D above which the smaller is ignored [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Doubt:
-    """What a larger model that is not proven does to the power law of the chosen one.
+    """Effect of a larger, insignificant model on the power law of the chosen one.
 
     Attributes:
         shift: of the power law, shape (2,).
-        covariance: that it adds, shape (2, 2).
+        covariance: added by it, shape (2, 2).
     """
 
     shift: FloatArray
@@ -57,15 +57,15 @@ class Doubt:
 def choose_instrument(
     problem: FractalProblem, *, rolls_off: bool
 ) -> tuple[GlsFit, Doubt]:
-    """Take the smallest instrument model that no larger one clearly beats.
+    """Choose the smallest instrument model that no larger one improves significantly.
 
     Returns:
-        The fit, and what a larger model that gains without proof does to its law.
+        The fit, and the effect of an insignificantly better, larger model on its law.
     """
     kinds = InstrumentModel
     plain = settle(problem, Model(kinds.NONE, rolls_off), problem.straight())
     own = weigh(problem, plain.seen)
-    # Where the model is far off its weights never settle; all three share the last.
+    # With a poor model the weights do not converge; all three use the last ones.
     plain = fit_model(problem, plain.model, own, start=plain.parameters)
     noisy = fit_model(problem, Model(kinds.NOISE, rolls_off), own)
     both = fit_model(problem, Model(kinds.PSF_AND_NOISE, rolls_off), own)
@@ -83,10 +83,10 @@ def choose_instrument(
 def _without_tip(
     problem: FractalProblem, plain: GlsFit, noisy: GlsFit, both: GlsFit
 ) -> tuple[GlsFit, Doubt]:
-    """Take the smallest of the models with a Gaussian blur, a limit or noise."""
+    """Choose the smallest of the models with a Gaussian blur, a limit or noise."""
     kinds, rolls_off = InstrumentModel, plain.model.rolls_off
     richest = settle(problem, both.model, both.seen)
-    if richest.probability < _HOPELESS_PROBABILITY:
+    if richest.probability < _PRUNING_PROBABILITY:
         return richest, no_doubt()
     single = [
         settle(problem, Model(kind, rolls_off), start.seen)
@@ -114,12 +114,12 @@ def _without_tip(
 def _or_tip(
     problem: FractalProblem, blurred: GlsFit, doubt: Doubt
 ) -> tuple[GlsFit, Doubt]:
-    """Take the path of a round tip for the blur where that is likelier.
+    """Replace the blur by the path of a round tip where that is more likely.
 
-    The path of a tip has creases, so that its spectrum falls by a power where that
-    behind a Gaussian point spread ends; both have as many parameters. A bend of the
-    spectrum looks alike, so a tip must hold with no more misfit than the form of its
-    path has, and be one that a stylus can have.
+    The path of a tip has creases, so its spectrum falls by a power law, faster with a
+    Gaussian point spread; both have as many parameters. A bend of the spectrum looks
+    similar, so a tip must fit within the error of its path's form, and have the radius
+    of a real stylus.
     """
     kinds = InstrumentModel
     begin = [*blurred.parameters[:2], _NOISE_START, blurred.seen.psf_width]
@@ -131,10 +131,10 @@ def _or_tip(
     likelier = glance.chi2 + 2 * sizes[0] < blurred.chi2 + 2 * sizes[1]
     if not likelier:
         return blurred, doubt
-    # Where the Gaussian is far off its weights say nothing of how well a tip fits.
+    # If the Gaussian fits poorly, its weights cannot judge the fit of a tip.
     own = weigh(problem, glance.seen)
     glance = fit_model(problem, glance.model, own, start=glance.parameters)
-    if glance.probability < _HOPELESS_PROBABILITY:
+    if glance.probability < _PRUNING_PROBABILITY:
         return blurred, doubt
     large = settle(problem, glance.model, glance.seen)
     fit = settle(problem, Model(kinds.STYLUS), glance.seen)
@@ -148,7 +148,7 @@ def _or_tip(
 
 
 def _sharp_enough(problem: FractalProblem, fit: GlsFit) -> bool:
-    """Return whether a stylus could have made the blur that was found."""
+    """Return whether a stylus can cause the fitted blur."""
     spacing = problem.estimate.spacing
     return tip_radius(fit.seen) * spacing**2 < _BLUNTEST_TIP
 
@@ -165,16 +165,16 @@ def _with_rival(
 
 
 def no_doubt() -> Doubt:
-    """Return what no larger model does."""
+    """Return the effect of no larger model."""
     return Doubt(np.zeros(2), np.zeros((2, 2)))
 
 
 def _doubt(small: GlsFit, large: GlsFit) -> Doubt:
-    """Return what a larger model does to the power law where it gains at all.
+    """Return the effect of a larger model on the power law where it gains at all.
 
-    A noise too small to be proven still moves D. The larger model holds in any case,
-    so its whole distance from the average counts as uncertainty, not only the share
-    that its weight would leave of it.
+    A noise too small to be significant still shifts D. The larger model includes the
+    true one, so its full distance from the average counts as uncertainty, not only its
+    weighted share.
 
     Source:
         Weights by likelihood and the variance within the models: Burnham and Anderson,
@@ -192,19 +192,19 @@ def _doubt(small: GlsFit, large: GlsFit) -> Doubt:
 
 
 def _held_back(plain: GlsFit, large: GlsFit, best: GlsFit, doubt: Doubt) -> Doubt:
-    """Return the doubt of a model that is only just proven.
+    """Return the doubt of a model that is only just significant.
 
-    Without it D would leap where the gain passes its limit, and the few clean profiles
-    that chance takes there would rule the scatter of all.
+    Without it D would jump where the gain passes its limit, and the few clean profiles
+    there by chance would dominate the scatter.
 
     Args:
         plain: without instrument.
         large: the model of `best` by the weights of `plain`.
-        best: the model that was taken.
-        doubt: what a still larger model does.
+        best: the chosen model.
+        doubt: effect of a still larger model.
     """
     weight = _weight(plain, large)
-    # Where `plain` is far off its weights tell nothing of the larger model either.
+    # If `plain` fits poorly, its weights cannot judge the larger model.
     if weight > _SETTLED_WEIGHT or large.chi2 >= plain.chi2:
         return doubt
     back = (1 - weight) * (plain.parameters[:2] - best.parameters[:2])

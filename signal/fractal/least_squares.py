@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Fits a self-affine surface and its instrument by generalised least squares.
+"""Fit a self-affine surface and its instrument by generalised least squares.
 
 Neighbouring lags share most of their pairs, so their errors are strongly correlated;
-weights from the full covariance reach the precision that the data allow. The
-covariance depends on the surface, so it is renewed with the fitted one.
+weights from the full covariance reach the precision that the data allow. The covariance
+depends on the surface, so it is recalculated with the fitted one.
 """
 
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import solve_triangular
 from scipy.stats import chi2 as chi2_distribution
 
 from jointbench.acquisition.basics.arrays import FloatArray
@@ -19,34 +18,34 @@ from jointbench.signal.fractal.lag_weights import Weights, weigh
 from jointbench.signal.fractal.self_affine import InstrumentModel, SeenSurface
 
 _EXPONENT_RANGE = (0.02, 1.98)
-"""Range of s = 4 - 2D the search may enter [-]."""
+"""Range of s = 4 - 2D in the search [-]."""
 _NOISE_STARTS = (0.02, 0.6)
-"""Noise from which the search starts, over the smallest value of S [-]."""
+"""Start values of the noise, over the smallest value of S [-]."""
 _PSF_STARTS = (0.3, 1.5, 6.0)
-"""Point spreads from which the search starts [samples]."""
+"""Start values of the point spread [samples]."""
 _NARROWEST_PSF = 1e-2
-"""Point spread below which nothing is blurred [samples]."""
+"""Point spread below which blur is negligible [samples]."""
 _WIDEST_PSF = 30.0
-"""Point spread beyond which no instrument would be sampled so finely [samples]."""
+"""Largest plausible point spread [samples]; no instrument is sampled more finely."""
 _WIDEST_PSF_SHARE = 0.25
-"""The same as a share of the longest lag: beyond, nothing is left [-]."""
+"""The same as a share of the longest lag; beyond it S vanishes [-]."""
 _CORNER_STARTS = (0.03, 0.5)
-"""Corners from which the search starts, over the longest lag [-]."""
+"""Start values of the corner, over the longest lag [-]."""
 _CORNER_RANGE = (0.5, 10.0)
-"""Corners searched, from so many samples to so many longest lags [-]."""
+"""Range of the corner: lowest [samples] and highest [longest lags]."""
 _SMALLEST_INFORMATION = 1e-6
-"""Singular value of the scaled Jacobian taken for smaller ones [-]."""
+"""Lower bound of the singular values of the scaled Jacobian [-]."""
 _RENEWALS = 2
-"""How often the covariance is renewed; it settles at once [-]."""
+"""Recalculations of the covariance; it converges quickly [-]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """What is fitted: the instrument, and whether the surface has a corner.
+    """Model of a fit: the instrument, and whether the surface has a corner.
 
     Attributes:
-        instrument: what the instrument does.
-        rolls_off: whether the surface stops to grow rougher at some lag.
+        instrument: the instrument model.
+        rolls_off: whether S of the surface has a corner.
     """
 
     instrument: InstrumentModel = InstrumentModel.NONE
@@ -58,7 +57,7 @@ class GlsFit:
     """One model fitted to the structure function at chosen lags.
 
     Attributes:
-        model: what was fitted.
+        model: the fitted model.
         seen: the fitted surface and instrument; lengths in samples.
         lag: lags of the fit [samples], shape (n_lags,).
         predicted: fitted S [m^2], loss by levelling included, same shape.
@@ -70,7 +69,7 @@ class GlsFit:
             (n_parameters, n_lags).
         pivot: [samples].
         chi2: sum of squares of the whitened residuals [-].
-        log_determinant: of the covariance of S that weighed them.
+        log_determinant: of the covariance of S in the weights.
         dof: lags less parameters [-].
     """
 
@@ -88,7 +87,7 @@ class GlsFit:
 
     @property
     def probability(self) -> float:
-        """Chance of a larger chi2 if the model holds [-]."""
+        """Probability of a larger chi2 if the model holds [-]."""
         return float(chi2_distribution.sf(self.chi2, self.dof))
 
     @property
@@ -116,13 +115,13 @@ def fit_model(
 ) -> GlsFit:
     """Fit one model with given weights.
 
-    Residuals are linear in S and the weights do not move with the parameters, so
-    they average to zero at the truth however skewed the spread of S.
+    Residuals are linear in S and the weights are fixed, so they average to zero at the
+    true values for any skewness of S.
 
     Args:
         problem: the structure function to fit.
         model: the model.
-        weights: models are comparable by chi2 when they are fitted with the same.
+        weights: models fitted with the same weights are comparable by chi2.
         start: parameters of an earlier fit of the model to start from; by default
             the search starts from several places.
 
@@ -135,8 +134,7 @@ def fit_model(
         """Return the whitened relative residuals."""
         expected = problem.predicted(_unpack(problem, model, parameters))
         gap = (problem.estimate.value - expected) / weights.reference
-        white: FloatArray = solve_triangular(weights.root, gap, lower=True)
-        return white
+        return weights.whitened(gap)
 
     starts = _starts(problem, model) if start is None else [start]
     found = [search(residual, begin, lower, upper) for begin in starts]
@@ -145,11 +143,11 @@ def fit_model(
 
 
 def settle(problem: FractalProblem, model: Model, at: SeenSurface) -> GlsFit:
-    """Fit one model and renew the weights with the result until they settle.
+    """Fit one model and recalculate the weights until they converge.
 
     Returns:
-        The fit, judged by its own weights: those of the last round may belong to
-        another surface where the model is far off and nothing settles.
+        The fit, judged by its own weights: where the model is poor and does not
+            converge, those of the last round may belong to another surface.
     """
     result = fit_model(problem, model, weigh(problem, at))
     for _ in range(_RENEWALS):
@@ -159,22 +157,22 @@ def settle(problem: FractalProblem, model: Model, at: SeenSurface) -> GlsFit:
 
 
 def by_own_weights(problem: FractalProblem, fit: GlsFit) -> GlsFit:
-    """Return a fit with chi2 and determinant of the covariance that belongs to it."""
+    """Return a fit with chi2 and determinant of its own covariance."""
     own = weigh(problem, fit.seen)
     gap = (problem.estimate.value - fit.predicted) / own.reference
-    white = solve_triangular(own.root, gap, lower=True)
+    white = own.whitened(gap)
     return replace(fit, chi2=float(white @ white), log_determinant=own.log_determinant)
 
 
 def _result(
     problem: FractalProblem, model: Model, weights: Weights, best: Found
 ) -> GlsFit:
-    """Put the outcome of a search into a record."""
+    """Build the record of a search."""
     seen = _unpack(problem, model, best.parameters)
     predicted = problem.predicted(seen)
     covariance = _inverse(best.jacobian)
     share = np.diag(predicted / weights.reference)
-    whitening = solve_triangular(weights.root, share, lower=True)
+    whitening = weights.whitened(share)
     return GlsFit(
         model=model,
         seen=seen,
@@ -193,7 +191,7 @@ def _result(
 def _inverse(jacobian: FloatArray) -> FloatArray:
     """Return the covariance of the parameters.
 
-    What the data do not tell gets a huge variance instead of a division by zero.
+    Undetermined parameters get a huge variance instead of a division by zero.
     """
     size = np.linalg.norm(jacobian, axis=0)
     scale = np.where(size > 0, size, 1.0)
@@ -206,7 +204,7 @@ def _inverse(jacobian: FloatArray) -> FloatArray:
 def _unpack(
     problem: FractalProblem, model: Model, parameters: FloatArray
 ) -> SeenSurface:
-    """Return the surface and instrument that a vector of parameters stands for."""
+    """Return the surface and instrument of a parameter vector."""
     exponent, level, *rest = (float(value) for value in parameters)
     instrument = model.instrument
     noise = rest.pop(0) if instrument.has_noise else 0.0
@@ -244,7 +242,7 @@ def _bounds(problem: FractalProblem, model: Model) -> tuple[FloatArray, FloatArr
 
 
 def _starts(problem: FractalProblem, model: Model) -> list[FloatArray]:
-    """Return the points from which a search starts."""
+    """Return the start values of a search."""
     line = problem.straight()
     base = [line.exponent, np.log(line.surface(np.array(problem.pivot)))]
     noises = [[n] for n in _NOISE_STARTS] if model.instrument.has_noise else [[]]

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""What removing the mean line takes from a power law."""
+"""Loss of a power law by removal of the mean line."""
 
-import numpy as np
 from scipy.special import gamma as gamma_function
 
 from jointbench.acquisition.basics.arrays import FloatArray
 
 
 def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
-    """Return what removing the mean line takes from S = t^s of a unit length.
+    """Return the loss of S = t^s on a unit length by removal of the mean line.
 
     Args:
         share: lag over the length of the profile, between 0 and 1 [-].
@@ -22,22 +21,14 @@ def levelling_loss(share: FloatArray, exponent: float) -> FloatArray:
         S_levelled = S - 2 lag mean(cov(dz, b)) + lag^2 var(b), and both moments
         follow from cov = -S/2 for weights that sum to zero.
     """
-    s = exponent
+    s, rest = exponent, 1 - share
     slope_variance = 36 * _beta(s + 3, 2) - 12 * _beta(s + 1, 4)
-
-    def moment(t: FloatArray) -> FloatArray:
-        """Integrate cov(z(t), b) from 0 to t."""
-        rest = 1 - t
-        ahead = t ** (s + 3) / (s + 3) - t ** (s + 2) / (2 * (s + 2))
-        behind = rest ** (s + 3) / (s + 3) - rest ** (s + 2) / (2 * (s + 2))
-        start = 1 / (s + 3) - 1 / (2 * (s + 2))
-        first = (ahead + behind - start) / (s + 1)
-        second = (t ** (s + 3) + rest ** (s + 3) - 1) / ((s + 2) * (s + 3))
-        integral: FloatArray = -6 * (first - second)
-        return integral
-
-    ends = moment(np.ones_like(share)) - moment(1 - share) - moment(share)
-    loss: FloatArray = 2 * share * ends / (1 - share) - share**2 * slope_variance
+    lower, upper = share ** (s + 2), rest ** (s + 2)
+    # The integral of cov(z(t), b) from 0 to t is the same at t and at 1 - t.
+    squares = (lower + upper - 1) / (2 * (s + 2))
+    cubes = (lower * share + upper * rest - 1) / (s + 3)
+    moment = 6 * (squares - cubes / (s + 2)) / (s + 1)
+    loss: FloatArray = -4 * share * moment / rest - share**2 * slope_variance
     return loss
 
 

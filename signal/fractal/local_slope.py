@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The slope of the structure function lag by lag: what a straight line would hide."""
+"""Local slope of the structure function, lag by lag."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from jointbench.signal.fractal.verdict_records import LocalSlope
 from jointbench.signal.surface.structure_function import StructureFunction
 
 NEIGHBOURS = 2
-"""Lags on each side that one slope is fitted through [-]."""
+"""Lags on each side in the fit of one slope [-]."""
 
 
 def local_slope(estimate: StructureFunction, covariance: FloatArray) -> LocalSlope:

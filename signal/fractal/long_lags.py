@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Tests whether S at long lags falls short of a fit, which chi2 hardly sees.
+"""Test whether S at long lags is below a fit, to which chi2 is insensitive.
 
-S at a long lag is a mean of few squares: it may exceed a model many times, but fall
-short of it once only, so that in linear residuals a plateau weighs little.
+S at a long lag is a mean of few squares: it may exceed a model by many times its value,
+    but be below it by that value at most, so that a plateau has little weight in linear
+    residuals.
 """
 
 import numpy as np
@@ -17,12 +18,12 @@ from jointbench.signal.fractal.least_squares import GlsFit
 LAGS = 4
 """Lags of the test [-]."""
 RATIO = 2.5
-"""Least ratio of neighbours among them [-]: cube roots of values that hang together
-more closely no longer have the covariance of the values."""
+"""Least ratio of neighbours among them [-]: cube roots of more strongly correlated
+values no longer have the covariance of the values."""
 
 
 def long_lag_probability(problem: FractalProblem, fit: GlsFit) -> float:
-    """Return the chance of values at long lags as far off a fit as these [-].
+    """Return the probability of long-lag values as far from a fit as these [-].
 
     Args:
         problem: the structure function that was fitted.
@@ -38,10 +39,10 @@ def long_lag_probability(problem: FractalProblem, fit: GlsFit) -> float:
     if np.any(predicted <= 0):
         return 0.0
     scatter = problem.scatter(fit.seen)[np.ix_(keep, keep)]
-    misfit = problem.misfit(fit.seen)[np.ix_(keep, keep)]
+    error = problem.model_error(fit.seen)[np.ix_(keep, keep)]
     share = problem.estimate.value[keep] / predicted
     gap = 3 * (np.cbrt(share) - 1) + np.diag(scatter) / 3
-    white = solve_triangular(lower_root(scatter + misfit), gap, lower=True)
+    white = solve_triangular(lower_root(scatter + error), gap, lower=True)
     return float(chi2.sf(float(white @ white), keep.size))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Chooses the instrument model: the smallest that the data support."""
+"""Choose the smallest instrument model that the data support."""
 
 from dataclasses import dataclass, replace
 
@@ -19,18 +19,19 @@ from jointbench.signal.fractal.long_lags import long_lag_probability
 from jointbench.signal.fractal.self_affine import rolled_off
 
 _ACCEPT_LONG_PROBABILITY = 0.002
-"""The same of values at long lags by themselves [-]."""
+"""The same for the values at long lags alone [-]."""
 _DECADE = 10.0
-"""A power law over less than this ratio of lags is no power law [-]."""
+"""Least ratio of lags of a power law [-]."""
 _CLEAR_CORNER = 9.0
-"""Gain of the likelihood criterion that makes a corner of the surface clear [-]; one
+"""Gain of the likelihood criterion by a significant corner of the surface [-]; one
 clean profile in 60 has it by chance."""
 _RULE_FACTOR = 2.0
-"""The surface rules S where the instrument changes it by less than this factor [-]."""
+"""The surface dominates S where the instrument changes it by less than this factor [-].
+"""
 _CORNER_SEEN = 0.5
-"""A corner is seen where it leaves less of S than this at the longest lag [-]."""
+"""A corner is present if the share of S at the longest lag is below this [-]."""
 _CORNER_FACTOR = 0.8
-"""Its power law ends where a corner leaves less of S than this share [-]."""
+"""The power law ends where a corner reduces S below this share [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,12 +40,12 @@ class Choice:
 
     Attributes:
         fit: of the smallest model that the data support, by its own covariance.
-        law: s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`, averaged
-            with those of a larger model that gains without proof, shape (2,).
-        covariance: of `law`, with what the unproven instrument would move it; on a map
+        law: s = 4 - 2D [-] and ln S of the surface at the pivot of `fit`, averaged with
+            those of an insignificantly better, larger model, shape (2,).
+        covariance: of `law`, with the effect of the insignificant instrument; on a map
             no less than the scatter of its strips, shape (2, 2).
-        problem: what was fitted.
-        long_probability: chance of values at long lags as far off as they are [-].
+        problem: data of the fit.
+        long_probability: probability of long-lag values as far from the fit [-].
     """
 
     fit: GlsFit
@@ -73,9 +74,9 @@ class Choice:
 
     @property
     def ends_early(self) -> bool:
-        """Whether a corner takes most of S at the longest lag of the fit.
+        """Whether a corner removes most of S at the longest lag of the fit.
 
-        Less of a bend is not told from what levelling does to a smooth map.
+        A weaker bend cannot be distinguished from the levelling of a smooth map.
         """
         seen, longest = self.fit.seen, self.fit.lag[-1:]
         ceiling = seen.amplitude * seen.corner**seen.exponent
@@ -84,7 +85,7 @@ class Choice:
 
     @property
     def band(self) -> tuple[float, float] | None:
-        """Longest run of lags at which the surface's power law rules S [samples]."""
+        """Longest run of lags with S dominated by the surface's power law [samples]."""
         seen, lag = self.fit.seen, self.fit.lag
         power = seen.surface(lag)
         ratio = replace(seen, corner=np.inf).seen(lag) / power
@@ -95,7 +96,7 @@ class Choice:
         return _longest_run(lag, [bool(rule) for rule in rules])
 
     def instrument_words(self) -> str:
-        """Return the instrument's numbers in words, for a reason."""
+        """Return the instrument's numbers as text, for a reason."""
         seen, words = self.fit.seen, []
         if seen.noise > 0:
             words.append(f"noise of {np.sqrt(seen.noise) * 1e9:.3g} nm")
@@ -114,7 +115,7 @@ def spans_decade(band: tuple[float, float] | None) -> bool:
 
 
 def _longest_run(lag: FloatArray, rules: list[bool]) -> tuple[float, float] | None:
-    """Return the ends of the run of true entries that spans most octaves."""
+    """Return the ends of the run of true entries that spans the most octaves."""
     best: tuple[float, float] | None = None
     start: float | None = None
     for value, rule in zip(lag, rules, strict=True):
@@ -128,29 +129,29 @@ def _longest_run(lag: FloatArray, rules: list[bool]) -> tuple[float, float] | No
 
 
 def choose(problem: FractalProblem) -> Choice:
-    """Fit models of growing size and take the smallest that the data support.
+    """Fit models of increasing size and choose the smallest that the data support.
 
-    A model stands unless a larger one gains significantly in likelihood, both weighed
-    by the covariance of the smaller: under it, and only then, is the distribution of
-    the gain known.
+    A model is kept unless a larger one gains significantly in likelihood, both weighted
+    by the covariance of the smaller, since only then is the distribution of the gain
+    known.
 
     Args:
         problem: the structure function at the lags of the fit.
 
     Returns:
-        The choice; it may still be unacceptable. A surface with a corner is taken
-        only where that is clearly likelier.
+        The choice; it may still be unacceptable. A surface with a corner is chosen only
+        where that is clearly more likely.
 
     Source:
-        Likelihood-ratio tests, 1 % together; as noise and point spread cannot fall
-        below zero, chance brings a gain in about half of what chi-squared says: Self
-        and Liang, J. Am. Stat. Assoc. 82 (1987) 605.
+        Likelihood-ratio tests, 1 % together; as noise and point spread cannot be
+        negative, a gain by chance is half as frequent as for chi-squared: Self and
+        Liang, J. Am. Stat. Assoc. 82 (1987) 605.
     """
     endless = _chosen(problem, *choose_instrument(problem, rolls_off=False))
     criterion = endless.fit.likelihood_criterion
     nearest = Model(endless.fit.model.instrument, rolls_off=True)
-    # A plateau at long lags lies in the short tail of a skewed spread: only weights of
-    # its own tell it, so likelihoods are compared, determinants included.
+    # A plateau at long lags is in the short tail of a skewed distribution: only its own
+    # weights detect it, so likelihoods are compared, determinants included.
     glance = settle(problem, nearest, endless.fit.seen)
     if endless.accepted and criterion - glance.likelihood_criterion < _CLEAR_CORNER:
         return endless
@@ -166,7 +167,7 @@ def choose_straight(problem: FractalProblem, weights: Weights) -> Choice:
 
 
 def _chosen(problem: FractalProblem, fit: GlsFit, doubt: Doubt) -> Choice:
-    """Return a fit as a choice; on a map with no less scatter than its strips show."""
+    """Return a fit as a choice; on a map with at least the scatter of its strips."""
     covariance = fit.covariance[:2, :2] + doubt.covariance
     strips = _strip_scatter(problem, fit) / fit.dimension_sd
     return Choice(
@@ -179,11 +180,11 @@ def _chosen(problem: FractalProblem, fit: GlsFit, doubt: Doubt) -> Choice:
 
 
 def _strip_scatter(problem: FractalProblem, fit: GlsFit) -> float:
-    """Return the standard deviation of D judged by strips of neighbouring rows.
+    """Return the standard deviation of D estimated from strips of neighbouring rows.
 
-    It needs no model of how rows hang together; 0 where there are no strips.
+    It needs no model of the correlation of rows; 0 without strips.
     """
-    blocks = [face.blocks for face in problem.estimate.faces]
+    blocks = [sampling.blocks for sampling in problem.estimate.samplings]
     if len(blocks) != 1 or blocks[0].shape[0] < 2:
         return 0.0
     dimension = -0.5 * (blocks[0] / fit.predicted) @ fit.gain[0]

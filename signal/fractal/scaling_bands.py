@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Looks for a band of lags that scales where no model fits the whole range."""
+"""Search for a band of lags with a power law where no model fits the whole range."""
 
 import numpy as np
 from scipy.stats import chi2
@@ -12,22 +12,22 @@ from jointbench.signal.fractal.model_choice import Choice, choose_straight, span
 from jointbench.signal.fractal.self_affine import SeenSurface
 
 ROUGHLY_STRAIGHT = 0.1
-"""Largest departure of ln S from a line in a band [-]: a band found by search among
-many has to look straight as well."""
-HOPELESS_PROBABILITY = 1e-3
-"""A band that a line through ln S misses with a smaller chance is not fitted [-]."""
+"""Largest departure of ln S from a line in a band [-]: a band selected among many must
+also be straight."""
+PRUNING_PROBABILITY = 1e-3
+"""Least probability of a line through ln S in a band that is fitted [-]."""
 EXPONENT_STEP = 0.1
-"""Exponents among which the covariance of a band is shared [-]: it moves slowly."""
+"""Exponents at which the covariance of a band is calculated [-]: it varies slowly."""
 FEWEST_LAGS = 6
-"""Lags of a band that leave degrees of freedom for every model [-]."""
+"""Least lags of a band, for degrees of freedom with every model [-]."""
 
 
 def find_band(problem: FractalProblem) -> Choice | None:
     """Return the widest straight band of a decade or more that shows a surface.
 
     Args:
-        problem: the structure function at all lags of the fit, with the tolerance
-            that is to hold in the band.
+        problem: the structure function at all lags of the fit, with the tolerance for
+            the band.
 
     Returns:
         The accepted fit, or None where no decade is straight.
@@ -40,7 +40,7 @@ def find_band(problem: FractalProblem) -> Choice | None:
         if exponent not in whole:
             whole[exponent] = problem.scatter(SeenSurface(exponent, 1.0))
         scatter = whole[exponent][np.ix_(keep, keep)]
-        if _bent(part) or _hopeless(part, scatter):
+        if _bent(part) or _pruned(part, scatter):
             continue
         quick = choose_straight(part, weigh(part, line, scatter=scatter))
         if not (quick.accepted and judge(quick).scales):
@@ -52,22 +52,22 @@ def find_band(problem: FractalProblem) -> Choice | None:
 
 
 def _bent(problem: FractalProblem) -> bool:
-    """Return whether ln S leaves the line through it by more than the eye allows."""
+    """Return whether ln S departs from the line through it by more than the limit."""
     log_lag, value = np.log(problem.lag), np.log(problem.estimate.value)
     line = np.polyval(np.polyfit(log_lag, value, 1), log_lag)
     return bool(np.max(np.abs(value - line)) > ROUGHLY_STRAIGHT)
 
 
-def _hopeless(problem: FractalProblem, scatter: FloatArray) -> bool:
-    """Return whether a line through ln S misses it by far more than its scatter."""
-    covariance = scatter + problem.misfit(problem.straight())
+def _pruned(problem: FractalProblem, scatter: FloatArray) -> bool:
+    """Return whether ln S departs from a line by far more than its scatter."""
+    covariance = scatter + problem.model_error(problem.straight())
     design = np.stack([np.ones(problem.lag.size), np.log(problem.lag)], axis=1)
     value = np.log(problem.estimate.value)
     weighted = np.linalg.solve(covariance, design)
     line = np.linalg.solve(design.T @ weighted, weighted.T @ value)
     gap = value - design @ line
     distance = float(gap @ np.linalg.solve(covariance, gap))
-    return bool(chi2.sf(distance, problem.lag.size - 2) < HOPELESS_PROBABILITY)
+    return bool(chi2.sf(distance, problem.lag.size - 2) < PRUNING_PROBABILITY)
 
 
 def _windows(problem: FractalProblem) -> list[BoolArray]:

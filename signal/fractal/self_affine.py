@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Structure function of a self-affine profile as an instrument shows it."""
+"""Structure function of a self-affine profile as an instrument measures it."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -15,14 +15,14 @@ from jointbench.signal.fractal.instrument_blur import (
 )
 
 TIP_TOLERANCE = 0.01
-"""How far S of the mean path of simulated tips lies from `traced_power` [-]."""
+"""Relative error of `traced_power` for S of the mean path of simulated tips [-]."""
 _ROUNDING_TERMS = 6
 _WITHIN_ONE_STEP = 0.05
 """S over the square of the step below which no difference exceeds one step [-]."""
 
 
 class InstrumentModel(StrEnum):
-    """What the instrument adds or takes away, from the simplest on."""
+    """Effects of the instrument, from the simplest model upward."""
 
     NONE = "none"
     BAND_LIMIT = "band limit"
@@ -57,7 +57,7 @@ class InstrumentModel(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SeenSurface:
-    """A self-affine surface and the instrument it is seen through.
+    """A self-affine surface and the instrument that measures it.
 
     Lengths are in samples, heights in any one unit.
 
@@ -65,13 +65,13 @@ class SeenSurface:
         exponent: s = 4 - 2D of the surface [-].
         amplitude: structure function of the surface itself at a lag of one sample.
         noise: variance of white noise of each height.
-        psf_width: standard deviation of the Gaussian point spread [samples]; of a tip
-            that of the Gaussian which takes as much from long waves.
-        axes: 1 where blur and limit act along the profile only, 2 where they act all
-            around on an isotropic map.
+        psf_width: standard deviation of the Gaussian point spread [samples]; for a tip
+            that of the Gaussian with the same effect on long waves.
+        axes: 1 if blur and limit act along the profile only, 2 if in all directions on
+            an isotropic map.
         band_limited: whether wavelengths under two samples are cut off sharply.
-        corner: lag at which the surface stops to grow rougher [samples].
-        quantum: step in which the heights are read; 0 for none.
+        corner: lag at which S of the surface levels off [samples].
+        quantum: quantisation step of the heights; 0 for none.
         traced: whether the blur is that of a round tip's path.
     """
 
@@ -91,7 +91,7 @@ class SeenSurface:
         return power
 
     def seen(self, lag: FloatArray) -> FloatArray:
-        """Return the structure function of what the instrument shows.
+        """Return the structure function that the instrument measures.
 
         Args:
             lag: [samples], any shape; 0 gives 0.
@@ -112,11 +112,11 @@ class SeenSurface:
 
 
 def _rounded(value: FloatArray, quantum: float) -> FloatArray:
-    """Return the structure function of heights that are read in steps.
+    """Return the structure function of quantised heights.
 
-    A Gaussian difference d of heights whose place between two steps is random turns
-    into a whole number of steps with the mean square d^2 + q^2 f (1 - f), f being the
-    fraction of |d| / q; the mean of f (1 - f) is a Fourier series.
+    A Gaussian difference d of heights at a random position between two steps becomes a
+    whole number of steps with the mean square d^2 + q^2 f (1 - f), where f is the
+    fractional part of |d| / q; the mean of f (1 - f) is a Fourier series.
 
     Args:
         value: S of the heights before [m^2], any shape.
@@ -136,7 +136,7 @@ def _rounded(value: FloatArray, quantum: float) -> FloatArray:
 
 
 def rolled_off(shape: FloatArray, ceiling: float) -> FloatArray:
-    """Return a structure function that follows `shape` and settles at `ceiling`.
+    """Return a structure function that follows `shape` and levels off at `ceiling`.
 
     Source:
         ceiling (1 - exp(-S / ceiling)) is a structure function for every structure
@@ -148,17 +148,17 @@ def rolled_off(shape: FloatArray, ceiling: float) -> FloatArray:
 
 
 def tip_radius(seen: SeenSurface) -> float:
-    """Return about which radius a tip must have for the blur of its path.
+    """Estimate the radius of the tip from the blur of its path.
 
-    Where two points are the width of contact apart, their heights differ by about as
-    much as a parabola of the tip rises: on simulated paths the radius was 1.5, 2.1 and
-    4.8 times contact^2 / height at D = 1.3, 1.5 and 1.7, for all tips alike.
+    Where two points are the width of contact apart, their height difference is about
+    the rise of a parabolic tip: on simulated paths the radius was 1.5, 2.1 and 4.8
+    times contact^2 / height at D = 1.3, 1.5 and 1.7, for all tips.
 
     Args:
         seen: with a blur.
 
     Returns:
-        Radius [samples^2 over the unit of heights], within a factor of two or so.
+        Radius [samples^2 over the unit of heights], within a factor of about two.
     """
     contact = seen.psf_width / np.sqrt(tip_fall(seen.exponent))
     height = np.sqrt(seen.amplitude * contact**seen.exponent)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Looks in the spectrum for a place where one power law takes over from another."""
+"""Search the spectrum for a bend between two power laws."""
 
 from dataclasses import dataclass
 
@@ -12,21 +12,21 @@ from jointbench.signal.fractal.self_affine import SeenSurface
 from jointbench.signal.surface.structure_constant import spectral_integral
 
 _CLEAR_GAIN = 14.0
-"""Gain of chi2 by a bend that is clear, the best of all places taken [-]; one clean
-profile in 100 to 200 has it by chance."""
+"""Gain of chi2 by a significant bend, the largest of all tried [-]; one clean profile
+in 100 to 200 has it by chance."""
 _SMALLEST_BEND = 0.25
-"""Change of slope that makes another law of it [-]: a change of D by an eighth."""
+"""Least change of slope of a bend [-]: a change of D by an eighth."""
 _LONGEST_SHARE = 0.25
-"""Longest lag of a bend over the longest of the fit [-]: beyond, a handful of ordinates
-would make the other law."""
+"""Longest lag of a bend over the longest of the fit [-]: beyond it the other law would
+rest on a few ordinates."""
 _KNOTS = 24
-"""Places tried [-]."""
+"""Frequencies tried [-]."""
 _SHARPEST_BLUR = 1.0
-"""Frequency times point spread beyond which the surface is not seen [rad]."""
+"""Frequency times point spread above which the surface is not resolved [rad]."""
 _HIGHEST = 0.5 * np.pi
-"""Highest frequency of the test [rad/sample]: instruments rule beyond."""
+"""Highest frequency of the test [rad/sample]: instruments dominate above it."""
 _ALIASES = 20
-"""Images of the spectrum on each side that sampling folds in [-]."""
+"""Aliases of the spectrum on each side that are included [-]."""
 _FEWEST_BINS = 12
 
 
@@ -35,9 +35,9 @@ class Kink:
     """A bend of the spectrum.
 
     Attributes:
-        lag: at which it shows in S, about [samples].
-        slope_below: slope of ln S at shorter lags, about [-].
-        slope_above: at longer lags, about [-].
+        lag: at which S shows it, approximate [samples].
+        slope_below: slope of ln S at shorter lags, approximate [-].
+        slope_above: at longer lags, approximate [-].
     """
 
     lag: float
@@ -46,11 +46,11 @@ class Kink:
 
 
 def find_kink(problem: FractalProblem, seen: SeenSurface) -> Kink | None:
-    """Return the clearest bend of a spectrum beside a fit, if any is clear.
+    """Return the most significant bend of a spectrum relative to a fit, if any.
 
     Args:
-        problem: with a spectrum in its structure function; without one no bend is
-            found.
+        problem: with a spectrum in its structure function; None is returned without
+            one.
         seen: the fitted surface with one power law, and its instrument.
 
     Source:
@@ -84,7 +84,7 @@ def find_kink(problem: FractalProblem, seen: SeenSurface) -> Kink | None:
 
 
 def _expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
-    """Return the spectrum of height differences of a surface as it is seen.
+    """Return the spectrum of height differences of a measured surface.
 
     Args:
         omega: [rad/sample], between 0 and pi.
@@ -99,7 +99,7 @@ def _expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
     elif seen.psf_width > 0:
         power *= np.exp(-((waves * seen.psf_width) ** 2))
     total = power.sum(axis=1)
-    if images and seen.psf_width == 0:  # images beyond, as an integral
+    if images and seen.psf_width == 0:  # further aliases, as an integral
         rest = (2 * np.pi) ** (-1 - seen.exponent) * (images + 0.5) ** -seen.exponent
         total += 2 * rest / seen.exponent
     level = seen.amplitude / (4 * spectral_integral(seen.exponent))
@@ -110,13 +110,13 @@ def _expected_spectrum(omega: FloatArray, seen: SeenSurface) -> FloatArray:
 
 
 def _knots(problem: FractalProblem, omega: FloatArray) -> FloatArray:
-    """Return the frequencies at which a bend is looked for, inside the fit's lags."""
+    """Return the frequencies at which a bend is tried, inside the fit's lags."""
     low = max(1 / (_LONGEST_SHARE * float(problem.lag[-1])), float(omega[3]))
     return np.geomspace(low, float(omega[-4]), _KNOTS)
 
 
 def _left(design: FloatArray, gap: FloatArray) -> tuple[float, FloatArray]:
-    """Return the squares that a linear fit leaves, and its coefficients."""
+    """Return the residual sum of squares of a linear fit, and its coefficients."""
     found: FloatArray = np.asarray(np.linalg.lstsq(design, gap, rcond=None)[0], float)
     rest = gap - design @ found
     return float(rest @ rest), found

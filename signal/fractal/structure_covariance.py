@@ -6,10 +6,10 @@ Differences dz_a(i) = z(i+a) - z(i) of heights with structure function S have
     cov(dz_a(i), dz_b(i+d)) = [S(d-a) + S(d+b) - S(d) - S(d+b-a)] / 2 = c(d),
 
 and for Gaussian heights cov(S_a, S_b) is twice the mean of c^2 over all pairs of
-positions. That holds for any S, so noise and point spread are in it without further
+positions. That holds for any S, so it includes noise and point spread without further
 terms. The sum over d is smooth away from the four places where an argument of S is
-zero, so it is taken on steps that widen away from them: exact near, and of a cost
-that grows only with the logarithm of the length.
+zero, so its steps widen away from them: exact near them, at a cost that grows only with
+    the logarithm of the length.
 """
 
 from collections.abc import Callable
@@ -18,10 +18,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.compiled import compiled
 from jointbench.signal.surface.structure_function import Sampling, StructureFunction
 
 EXACT_STEPS = 20
-"""Single steps on each side of a place where c(d) has a kink [samples]."""
+"""Single steps on each side of a kink of c(d) [samples]."""
 GROWTH = 1.08
 """Ratio of neighbouring steps beyond them [-]; with both the covariance of a profile is
 within 1.5e-4 of the full sum, and within 4e-5 where it is not very jagged."""
@@ -31,12 +32,12 @@ ROW_GROWTH = 1.08
 """Ratio of neighbouring steps between rows beyond them [-]."""
 
 Seen = Callable[[FloatArray], FloatArray]
-"""Structure function of the heights as sampled, at lags in metres."""
+"""Structure function of the sampled heights, at lags in metres."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Plan:
-    """Where to take S for one face, and how to add up: see `_plan`.
+    """Points of S and weights of the sums for one contact surface: see `_plan`.
 
     Attributes:
         first: index of the smaller lag of each pair of lags, shape (n_sums,).
@@ -60,41 +61,42 @@ class _Plan:
 
 
 def structure_covariance(estimate: StructureFunction) -> Callable[[Seen], FloatArray]:
-    """Lay out the covariance of a structure function for any model of S.
+    """Prepare the covariance of a structure function for any model of S.
 
-    The points at which a model is evaluated depend on lags and sampling only, so
-    they are chosen once.
+    The points of evaluation depend on lags and sampling only, so they are chosen once.
 
     Args:
-        estimate: the structure function; its values do not enter.
+        estimate: the structure function; its values are not used.
 
     Returns:
         A function that takes a model of S (called with distances [m] of any shape)
         and returns cov(S_a, S_b) / (S(a) S(b)), shape (n_lags, n_lags) [-].
     """
-    plans = [_plan(estimate.lag, face) for face in estimate.faces]
+    plans = [_plan(estimate.lag, sampling) for sampling in estimate.samplings]
 
     def covariance(seen: Seen) -> FloatArray:
-        """Add up the covariances of the faces, each with its share of S."""
+        """Add up the covariances of the contact surfaces, each with its share of S."""
         value = seen(estimate.lag)
         total = np.zeros((value.size, value.size))
-        for face, plan in zip(estimate.faces, plans, strict=True):
-            own = _evaluate(plan, face.spacing, seen) / np.outer(value, value)
-            total += face.share**2 * _for_gaps(own, face, estimate.lag)
+        for sampling, plan in zip(estimate.samplings, plans, strict=True):
+            own = _evaluate(plan, sampling.spacing, seen) / np.outer(value, value)
+            total += sampling.share**2 * _for_gaps(own, sampling, estimate.lag)
         return total
 
     return covariance
 
 
-def _for_gaps(covariance: FloatArray, face: Sampling, lag: FloatArray) -> FloatArray:
+def _for_gaps(
+    covariance: FloatArray, sampling: Sampling, lag: FloatArray
+) -> FloatArray:
     """Widen a relative covariance where points are missing.
 
-    Gaps in a block shorten the profile, so the covariance scales with the pairs left;
-    scattered gaps also sample the pairs of each lag independently, which adds the
-    variance 2 S^2 / pairs of a mean over fewer differences.
+    Gaps in a block shorten the profile, so the covariance scales with the remaining
+    pairs; scattered gaps also sample the pairs of each lag independently, which adds
+    the variance 2 S^2 / pairs of a mean over fewer differences.
     """
-    full = face.profiles * (face.points - lag / face.spacing)
-    lost = np.maximum(full / np.maximum(face.pairs, 1.0), 1.0)
+    full = sampling.profiles * (sampling.points - lag / sampling.spacing)
+    lost = np.maximum(full / np.maximum(sampling.pairs, 1.0), 1.0)
     widened: FloatArray = covariance * np.sqrt(np.outer(lost, lost))
     return widened + np.diag(2 * (lost - 1) / full)
 
@@ -104,13 +106,7 @@ def _evaluate(plan: _Plan, spacing: float, seen: Seen) -> FloatArray:
     sums = np.zeros(plan.starts.size)
     for across, weight in zip(plan.row_distance, plan.row_weight, strict=True):
         values = seen(np.hypot(plan.distance, across) * spacing)
-        terms = 0.5 * (
-            values[plan.places[0]]
-            + values[plan.places[1]]
-            - values[plan.places[2]]
-            - values[plan.places[3]]
-        )
-        sums += weight * np.add.reduceat(plan.weight * terms * terms, plan.starts)
+        sums += weight * _squares(values, plan.places, plan.weight, plan.starts)
     size = int(plan.second.max()) + 1
     covariance = np.empty((size, size))
     covariance[plan.first, plan.second] = sums
@@ -118,27 +114,42 @@ def _evaluate(plan: _Plan, spacing: float, seen: Seen) -> FloatArray:
     return covariance
 
 
-def _plan(lag: FloatArray, face: Sampling) -> _Plan:
-    """Lay out the sums of one face for all pairs of lags."""
-    steps = lag / face.spacing
+@compiled()
+def _squares(
+    values: FloatArray, places: IntArray, weight: FloatArray, starts: IntArray
+) -> FloatArray:
+    """Return the weighted squares of c added up for each pair of lags, (n_sums,)."""
+    sums = np.zeros(starts.size)
+    for k in range(starts.size):
+        end = starts[k + 1] if k + 1 < starts.size else weight.size
+        for i in range(starts[k], end):
+            near = values[places[2, i]] + values[places[3, i]]
+            twice = values[places[0, i]] + values[places[1, i]] - near
+            sums[k] += 0.25 * weight[i] * twice * twice
+    return sums
+
+
+def _plan(lag: FloatArray, sampling: Sampling) -> _Plan:
+    """Prepare the sums of one surface for all pairs of lags."""
+    steps = lag / sampling.spacing
     whole = np.rint(steps)
-    # Lags on the face's own grid stay exact integers, so distances fall together.
+    # Lags on the surface's own grid stay exact integers, so distances coincide.
     steps = np.where(np.abs(steps - whole) < 1e-6 * steps, whole, steps)
     first, second = np.triu_indices(lag.size)
-    offsets = _graded(face.points, EXACT_STEPS, GROWTH)
+    offsets = _graded(sampling.points, EXACT_STEPS, GROWTH)
     offsets = np.concatenate([-offsets[:0:-1], offsets])
     points, weights = [], []
     for a, b in zip(steps[first], steps[second], strict=True):
-        distance, weight = _points(float(a), float(b), face.points, offsets)
+        distance, weight = _points(float(a), float(b), sampling.points, offsets)
         points.append(distance)
         weights.append(weight)
     counts = np.array([p.size for p in points])
     d = np.concatenate(points)
     a, b = np.repeat(steps[first], counts), np.repeat(steps[second], counts)
     distance, places = _distinct(np.abs(np.stack([d - a, d + b, d, d + b - a])))
-    rows, row_weight = _rows(face.profiles)
-    row_distance = face.row_distance
-    if np.isinf(row_distance):  # unrelated profiles: each agrees with itself only
+    rows, row_weight = _rows(sampling.profiles)
+    row_distance = sampling.row_distance
+    if np.isinf(row_distance):  # unrelated profiles: no cross terms
         rows, row_weight, row_distance = rows[:1], row_weight[:1], 0.0
     return _Plan(
         first=first,
@@ -147,15 +158,15 @@ def _plan(lag: FloatArray, face: Sampling) -> _Plan:
         places=places,
         weight=np.concatenate(weights),
         starts=np.concatenate([[0], np.cumsum(counts)[:-1]]),
-        row_distance=rows * row_distance / face.spacing,
+        row_distance=rows * row_distance / sampling.spacing,
         row_weight=row_weight,
     )
 
 
 def _distinct(values: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Return the distinct values, and where each value stands among them.
+    """Return the distinct values, and the index of each value among them.
 
-    Whole and half steps, the rule on one face, are marked instead of sorted.
+    Whole and half steps, the usual case, are marked instead of sorted.
     """
     halves = np.rint(2 * values)
     if not np.array_equal(halves, 2 * values):
@@ -172,8 +183,8 @@ def _points(
 ) -> tuple[FloatArray, FloatArray]:
     """Return distances d and their weights in 2 mean c(d)^2 for one pair of lags.
 
-    Each step is taken at its middle: at its end the sum would be off by the slope of
-    c^2 times the growth of the steps, a first order that does not cancel.
+    Each step is evaluated at its middle: at its end the sum would have a first-order
+        error, the slope of c^2 times the growth of the steps.
     """
     count_a, count_b = length - a, length - b
     near = [np.rint(offsets + kink) for kink in (0.0, a, -b, a - b)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is said about a surface: the records a fractal fit ends in."""
+"""Records of the result of a fractal fit."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -13,11 +13,11 @@ from jointbench.acquisition.records.provenance import Provenance
 NORMAL_97_5 = 1.959963984540054
 """97.5 % point of the normal distribution [-]."""
 WIDEST_ROUGHNESS = 10.0
-"""A 95 % interval of G wider than this factor tells no G, only S at its pivot [-]."""
+"""Widest 95 % interval of G, as a factor, at which G is reported [-]."""
 
 
 class SurfaceVerdict(StrEnum):
-    """Whether roughness scales with the lag as a power law."""
+    """Verdict on the scaling of roughness with the lag."""
 
     FRACTAL = "fractal"
     BAND = "fractal within a band"
@@ -32,7 +32,7 @@ class InstrumentParameter:
     Attributes:
         name: ``"noise"`` (standard deviation of each height) or
             ``"point_spread"`` (standard deviation of the Gaussian blur, or of the one
-            that takes as much from long waves as a stylus).
+            with the same effect on long waves as a stylus).
         value: [m].
         sd: its standard deviation [m].
     """
@@ -70,7 +70,7 @@ class FittedCurve:
 
     Attributes:
         lag: [m], shape (n,), ascending.
-        value: as the instrument and the levelling show it [m^2], same shape.
+        value: with instrument and levelling [m^2], same shape.
         surface: of the surface itself, a straight line in the logarithms [m^2].
     """
 
@@ -115,7 +115,7 @@ class Scaling:
 
     @property
     def roughness_known(self) -> bool:
-        """Whether the interval of G is within a decade, so that a G may be told."""
+        """Whether the interval of G is within a decade, so that G can be reported."""
         low, high = self.roughness_interval
         return bool(high <= WIDEST_ROUGHNESS * low)
 
@@ -128,17 +128,17 @@ class Scaling:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FractalFit:
-    """What a structure function says about its surface.
+    """Result of the fractal fit of a structure function.
 
     Attributes:
-        verdict: the word.
-        reason: one line with the numbers behind it.
+        verdict: on the scaling.
+        reason: one line with the numbers.
         scaling: the power law, or None where there is no scaling range.
-        fit_band: shortest and longest lag at which the surface itself rules S [m].
+        fit_band: shortest and longest lag at which the surface itself dominates S [m].
         chi2_per_dof: of the fit, or None where none was accepted [-].
         instrument: instrument model by name, ``"none"`` if none was needed.
         instrument_parameters: its numbers, of the accepted fit.
-        local_slope: slope lag by lag, whatever the verdict.
+        local_slope: slope lag by lag, for every verdict.
         curve: the accepted fit, or None.
         provenance: of the structure function and the fit.
     """
@@ -166,7 +166,7 @@ class FractalFit:
 
     @property
     def roughness(self) -> float | None:
-        """G [m], None without a scaling range; sure only with its interval."""
+        """G [m], None without a scaling range; valid only with its interval."""
         return None if self.scaling is None else self.scaling.roughness
 
     @property

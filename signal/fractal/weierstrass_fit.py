@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Fits a Weierstrass-Mandelbrot profile, which has waves in a known band only.
+"""Fit a Weierstrass-Mandelbrot profile, which has waves in a known band only.
 
 Its structure function is a power law neither at short lags, where waves under two
 samples are missing, nor at long ones, where those longer than the profile are.
@@ -18,7 +18,7 @@ from jointbench.signal.surface.structure_function import StructureFunction
 LONGEST_SHARE = 0.1
 """Longest lag of the fit over the length of the profile [-]."""
 NODES = 1500
-"""Frequencies at which the band is added up [-]."""
+"""Integration points of the band [-]."""
 DIMENSION_RANGE = (1.02, 1.98)
 _TABLE = 240
 _STEPS = 40
@@ -31,12 +31,12 @@ class WeierstrassFit:
 
     Attributes:
         dimension: D [-].
-        dimension_sd: standard deviation of D [-], as if heights were Gaussian; the
-            waves have fixed amplitudes, so D scatters less.
+        dimension_sd: standard deviation of D [-], for Gaussian heights; the waves have
+            fixed amplitudes, so D scatters less.
         roughness: G [m].
         roughness_interval: 2.5 % and 97.5 % points of G [m].
         band: lowest and highest frequency of the band [1/m].
-        misfit: root mean square of ln S about the fit [-].
+        residual_rms: root mean square of ln S about the fit [-].
     """
 
     dimension: float
@@ -44,7 +44,7 @@ class WeierstrassFit:
     roughness: float
     roughness_interval: tuple[float, float]
     band: tuple[float, float]
-    misfit: float
+    residual_rms: float
 
 
 def fit_weierstrass(
@@ -56,8 +56,8 @@ def fit_weierstrass(
     """Fit ln S by its band-limited integral with known edges.
 
     Args:
-        estimate: of a profile that was not levelled (`remove="mean"`): nothing longer
-            than it is in it.
+        estimate: of a profile that was not levelled (`remove="mean"`): it contains no
+            waves longer than itself.
         gamma: frequency ratio [-].
         band: lowest and highest frequency [1/m]; by default half a step of gamma
             beyond the waves that fit the profile and its sampling.
@@ -66,7 +66,7 @@ def fit_weierstrass(
         D and G with intervals.
 
     Raises:
-        UsageError: gamma not above 1, a band that is none, or too few lags.
+        UsageError: gamma not above 1, an empty band, or too few lags.
 
     Source:
         S = G^(2(D-1)) / ln gamma times the integral of f^(2D-5) (1 - cos 2 pi f lag)
@@ -110,8 +110,8 @@ def band_integral(
         band: lowest and highest frequency [1/m].
 
     Returns:
-        The integral [m^(4-2D)]; cosines that run through a node's share many times
-        are averaged out.
+        The integral [m^(4-2D)]; cosines with many periods within a node's share are
+        averaged out.
     """
     edge = np.linspace(np.log(band[0]), np.log(band[1]), NODES + 1)
     middle = 0.5 * (edge[1:] + edge[:-1])
@@ -193,5 +193,5 @@ def _result(
         roughness=float(np.exp(log_g)),
         roughness_interval=(float(np.exp(log_g - reach)), float(np.exp(log_g + reach))),
         band=band,
-        misfit=float(np.std(residual)),
+        residual_rms=float(np.std(residual)),
     )

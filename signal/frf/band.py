@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The band in which an FRF is worth fitting."""
+"""Choose the band in which an FRF is fitted."""
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -11,7 +11,7 @@ from jointbench.signal.frf.frf import Frf
 # Lines at and next to DC hold offsets and drift, not the structure.
 _DC_LINES = 2
 _FLANK_LINES = 5
-# The level rises once it stands this far above its lowest so far: 6 dB.
+# The level rises once it is this far above its lowest value so far: 6 dB.
 _RISEN = 2.0
 _LEAST_COHERENCE = 0.5
 _LEAST_LINES = 16
@@ -22,16 +22,16 @@ def choose_band(
 ) -> tuple[BoolArray, str]:
     """Choose the lines to fit.
 
-    Without a given band it is the excited one (see `Frf.usable_band`), without the
-    lines around DC, without a flank that falls from DC higher than any resonance, and
-    up to where coherence is lost for good.
+    The default is the excited band (see `Frf.usable_band`), without the lines around DC
+    and without a flank from DC that is higher than any resonance. It ends where
+    coherence is permanently lost.
 
     Args:
         frf: any kind.
         band: lowest and highest frequency [Hz], or None for the automatic choice.
 
     Returns:
-        True for the lines to fit, shape (n_lines,), and the reason in words.
+        True for the lines to fit, shape (n_lines,), and the reason as text.
 
     Raises:
         BadData: fewer than 16 lines are left.
@@ -64,7 +64,7 @@ def _more_lines(
     high: float,
     band: tuple[float, float] | None,
 ) -> str:
-    """Say what would put enough lines into a band: a longer record, a wider band."""
+    """Return the advice for too few lines: a longer record or a wider band."""
     now = 1.0 / float(np.median(np.diff(frequency)))
     width = min(high, float(frequency[-1])) - max(low, float(frequency[0]))
     needed = (_LEAST_LINES + _DC_LINES + 1) / width if width > 0.0 else 0.0
@@ -75,11 +75,11 @@ def _more_lines(
 
 
 def _above_drift(frf: Frf, high: float) -> float:
-    """Return the first frequency above a flank that towers over all resonances [Hz].
+    """Return the first frequency above a drift flank higher than all resonances [Hz].
 
     Double integration turns offsets into a flank that falls from DC. It ends where the
-    level first turns to rise; of it, only lines higher than anything beyond are left
-    out. A static compliance does not fall, so a low first mode is safe.
+    level first rises again; only its lines higher than all later lines are left out. A
+    static compliance does not fall, so a low first mode is kept.
     """
     first = _DC_LINES + 1
     level = _mean_level(frf)[first : np.count_nonzero(frf.frequency <= high)]
@@ -101,7 +101,7 @@ def _mean_level(frf: Frf) -> FloatArray:
 
 
 def _coherent_up_to(frf: Frf) -> float:
-    """Return the last frequency at which the median coherence around is fair [Hz]."""
+    """Return the last frequency with an acceptable local median coherence [Hz]."""
     if frf.coherence is None or frf.averages < 3:
         return float(frf.frequency[-1])
     mean = np.mean(frf.coherence, axis=(0, 1))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What an FRF shows above the band that was fitted, and how hard it was excited there.
+"""Report peaks of an FRF above the fitted band, and the force spectrum there.
 
 The default band ends where the force has fallen by 20 dB. A structure may have its
-highest peaks beyond; with good coherence they can be fitted as well.
+highest peaks above it; with good coherence they can be fitted too.
 """
 
 from collections.abc import Sequence
@@ -19,14 +19,14 @@ from jointbench.signal.hits.hit_spectra import HitSpectra
 _ALIAS_FREE = 2.0 / 2.56
 """Share of the lines that anti-alias filters of usual converters leave [-]."""
 _STANDS_OUT = 3.0
-"""Height over the valleys beside it from which a peak stands out [-]."""
+"""Least height of a reported peak over the adjacent minima [-]."""
 _SMOOTH = 9
-"""Lines over which the level is a median."""
-_WORTH_TELLING = 0.01
-"""Height over the highest peak of the band below which nobody misses a peak [-]."""
+"""Lines of the running median of the level."""
+_LEAST_HEIGHT = 0.01
+"""Least height of a reported peak over the highest peak of the band [-]."""
 _LEAST_COHERENCE = 0.8
 _AROUND, _APART = 50, 200
-"""Shares of the lines: the surroundings of a peak, and the distance of two of them."""
+"""Shares of the lines: neighbourhood of a peak, and least distance of two peaks."""
 _MOST = 5
 
 
@@ -49,13 +49,13 @@ class Peak:
 
 @dataclass(frozen=True, slots=True)
 class Beyond:
-    """What lies above a band.
+    """Peaks and force above a band.
 
     Attributes:
         begin: of the band [Hz].
         end: of the band [Hz].
         force_drop: of the force as recorded, at the end of the band [dB].
-        reach: up to here nothing is folded down [Hz].
+        reach: upper limit without aliasing [Hz].
         peaks: the highest ones, by ascending frequency.
     """
 
@@ -66,7 +66,7 @@ class Beyond:
     peaks: tuple[Peak, ...]
 
     def words(self) -> str:
-        """One sentence on what is there and how to reach it; empty for a whole band."""
+        """Return one sentence on the peaks above the band; empty if it is complete."""
         if self.end >= self.reach:
             return ""
         end = (
@@ -80,12 +80,12 @@ class Beyond:
         return (
             f"{end} peaks stand out, the highest at {_hertz(highest.frequency)}, "
             f"{highest.height:.2g} times as high as the highest within; to fit them as "
-            f"well: --band {self.begin:.3g}:{top:g}"
+            f"too: --band {self.begin:.3g}:{top:g}"
         )
 
 
 def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Beyond:
-    """Look for peaks above a band.
+    """Find peaks above a band.
 
     Args:
         frf: of all lines.
@@ -93,7 +93,7 @@ def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Bey
         spectra: of the accepted hits, as recorded.
 
     Returns:
-        Up to five peaks, those three times as high as the valleys beside them, with a
+        Up to five peaks, those three times as high as the adjacent minima, with a
         coherence above 0.8 where there is one.
     """
     frequency = frf.frequency
@@ -112,7 +112,7 @@ def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Bey
         )
         for i in _standing_out(level)
         if band[1] < frequency[i] <= reach
-        and level[i] >= _WORTH_TELLING * highest
+        and level[i] >= _LEAST_HEIGHT * highest
         and (coherence is None or coherence[i] >= _LEAST_COHERENCE)
     ]
     tallest = sorted(peaks, key=lambda p: -p.height)[:_MOST]
@@ -136,7 +136,7 @@ def _force_drop(spectra: HitSpectra) -> FloatArray:
 
 
 def _standing_out(level: FloatArray) -> Sequence[int]:
-    """Return the lines of peaks that stand out of what is around them.
+    """Return the lines of peaks that exceed their neighbourhood.
 
     Noise of a single hit is rough from line to line; the median of a few is not.
     """

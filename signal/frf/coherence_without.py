@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Which hit takes the coherence away: each is left out in turn, none transformed anew.
+"""Coherence with each hit left out in turn, to find the hit that lowers it.
 
-Coherence is |S_xf|^2 / (S_ff S_xx); the sums without a hit are those of all less its
-own, so that leaving out each of n hits costs as much as one average.
+Coherence is |S_xf|^2 / (S_ff S_xx); the sums without a hit are the total less its own
+terms. No hit is transformed again: leaving out each of n hits costs as much as one
+average.
 
 Source:
     Bendat and Piersol, Random Data (2010), sec. 5.2 (ordinary coherence).
@@ -14,16 +15,16 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import excited_band_of
 from jointbench.signal.hits.hit_spectra import HitSpectra
 
-_LEAST = 1e-24  # of the largest power, below which a line holds none
+_LEAST = 1e-24  # share of the largest power; lines below it count as empty
 
 
 def typical_coherence(
     coherence: FloatArray, frequency: FloatArray, band: tuple[float, float]
 ) -> float | None:
-    """Return the coherence over a band, each output weighed alike [-].
+    """Return the coherence over a band, each output with equal weight [-].
 
-    The dips at antiresonances, where there is nothing but noise, are left aside: the
-    median over lines is taken of each output.
+    The median over the lines of each output is insensitive to the dips at
+    antiresonances, where the response is only noise.
 
     Args:
         coherence: shape (n_outputs, n_lines).
@@ -39,7 +40,7 @@ def typical_coherence(
 
 
 def coherence_without(spectra: HitSpectra) -> FloatArray:
-    """Return the coherence of the other hits for each hit left out in turn.
+    """Return the coherence of the remaining hits, with each hit left out in turn.
 
     Args:
         spectra: of at least three hits at one point, their responses in one order.

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""FRF estimators H1, H2 and Hv, and the bias that each carries.
+"""FRF estimators H1, H2 and Hv, and the bias of each.
 
 With force f + n_f and response x + n_x as measured, noises independent of everything:
 
 - H1 = S_xf / S_ff is low by 1 / (1 + noise of the force over force);
 - H2 = S_xx / S_fx is high by 1 + noise of the response over response;
-- Hv, the geometric mean of their sizes, is right where the two shares are equal.
+- Hv, the geometric mean of their sizes, is unbiased where the two shares are equal.
 
-All three share one phase, and coherence is |H1| / |H2|: the truth lies between the two.
-None sees what is correlated between force and response: leakage, a second impact.
+All three share one phase, and coherence is |H1| / |H2|: the true value is between the
+two. None detects errors correlated between force and response: leakage, a second
+impact.
 
 Source:
     Bendat and Piersol, Random Data (2010), sec. 6.1.4 and 9.2; Rocklin, Crowley and
@@ -29,7 +30,7 @@ _LEAST_POWER = 1e-24
 
 
 class Estimator(StrEnum):
-    """How force and response are weighed."""
+    """How force and response are weighted."""
 
     H1 = "H1"
     H2 = "H2"
@@ -37,11 +38,12 @@ class Estimator(StrEnum):
 
     @property
     def bias(self) -> str:
-        """What the estimator gets wrong, in words."""
+        """The bias of the estimator, as text."""
         return {
             "H1": "low where the force is noisy: |H| by its noise over its power",
             "H2": "high where the response is noisy: |H| by its noise over its power",
-            "Hv": "between H1 and H2; right where force and response are equally noisy",
+            "Hv": "between H1 and H2; unbiased where force and response are equally "
+            "noisy",
         }[self.value]
 
 
@@ -93,12 +95,12 @@ def bias_bound(coherence: FloatArray, averages: int) -> FloatArray:
 
     Args:
         coherence: ordinary [-], any shape.
-        averages: behind it; of few, chance alone makes coherence look good, which is
-            taken off.
+        averages: number of hits; few hits raise coherence by chance, which is
+            corrected.
 
     Returns:
-        Largest bias that noise can have given either [-], same shape: the truth is
-        between them.
+        Largest bias due to noise of either [-], same shape; the true value is between
+        them.
     """
     freedom = max(1, averages - 1)
     return np.asarray(np.minimum(1.0, (1.0 - coherence) * averages / freedom))

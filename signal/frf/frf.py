@@ -30,14 +30,14 @@ from jointbench.signal.hits.hit_spectra import (
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 
-# The hammer excites up to where its force spectrum has fallen by this much.
+# Fall of the force spectrum at the upper end of the excited band.
 _FORCE_DROP_DB = 20.0
 # Anti-alias filters of the usual converters leave this share of the sample rate.
 _ALIAS_FREE = 1.0 / 2.56
 
 
 class FrfKind(StrEnum):
-    """Which response a force is answered by."""
+    """Response quantity per unit force."""
 
     RECEPTANCE = "receptance"
     MOBILITY = "mobility"
@@ -70,13 +70,13 @@ class Frf:
             None if unknown.
         added_decay_rate: of the exponential window [1/s]: the FRF was measured at
             s = j omega + added_decay_rate.
-        outputs: labels ``"channel@point"``, one a row.
-        inputs: hit points, one a column.
-        averages: smallest number of hits behind a column; 0 if unknown.
-        provenance: how it came about.
-        usable_band: (lowest, highest) frequency that was really excited [Hz], or None.
-        innovation_noise: variance that the noise seen by the Kalman stage explains
-            [unit of response squared], same shape, or None: good for weights only.
+        outputs: labels ``"channel@point"``, one per row.
+        inputs: hit points, one per column.
+        averages: smallest number of hits of a column; 0 if unknown.
+        provenance: origin and processing steps.
+        usable_band: (lowest, highest) excited frequency [Hz], or None.
+        innovation_noise: variance due to the noise estimated by the Kalman stage [unit
+            of response squared], same shape, or None; for weights only.
     """
 
     frequency: FloatArray
@@ -130,8 +130,8 @@ def estimate_frf(
 ) -> Frf:
     """Estimate the FRF from hammer hits.
 
-    Hits may come one a file or many a stream; those at different points become
-    different inputs. Recordings without hits are searched with default criteria.
+    Recordings may hold one or many hits; hits at different points become different
+    inputs. Recordings without hits are searched with default criteria.
 
     Args:
         recordings: force and responses, all at one sample rate.
@@ -141,8 +141,8 @@ def estimate_frf(
 
     Returns:
         The average over the accepted hits, with coherence and variance from the scatter
-        between hits where there are at least two for every column. The estimator, its
-        bias in words and how far H1 and H2 are apart are in the provenance.
+        between hits where there are at least two for every column. The provenance holds
+        the estimator, its bias as text and the difference of H1 and H2.
 
     Raises:
         NoHitFound: no accepted hit.
@@ -180,11 +180,11 @@ def average_spectra(
     estimator: Estimator = Estimator.H1,
     inherited: Provenance = (),
 ) -> Frf:
-    """Estimate the FRF from hits that are transformed already; see `estimate_frf`.
+    """Estimate the FRF from spectra of hits; see `estimate_frf`.
 
     Args:
         spectra: of the accepted hits.
-        window: that was applied to each of them.
+        window: applied to each of them.
         estimator: H1, H2 or Hv.
         inherited: steps that the recordings went through.
 
@@ -221,14 +221,14 @@ def average_spectra(
 
 
 def excited_band(spectra: HitSpectra) -> tuple[float, float]:
-    """Return where the hammer put force in: within 20 dB of its low end, unaliased.
+    """Return the band of the force spectrum within 20 dB of its low end, unaliased.
 
     Args:
         spectra: of the accepted hits.
 
     Returns:
-        First line above DC and the last line before the force has fallen for good
-        over a fiftieth of the band [Hz].
+        First line above DC and the last line before the force stays low over a fiftieth
+        of the band [Hz].
     """
     power = np.mean(np.abs(spectra.force) ** 2, axis=0)
     return excited_band_of(power, spectra.frequency)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Noise of an FRF from what the Kalman stage saw of its channels.
+"""Noise of an FRF from the channel noise that the Kalman stage estimated.
 
 White noise of variance s^2 at every sample has E|N|^2 = s^2 dt integral(w^2) in a
-windowed block; over |F|^2 of all hits that is the variance of H1. The zero-phase stage
-itself cancels between force and response, and so it does in this ratio.
+windowed block; over |F|^2 of all hits that is the variance of H1. The gain of the
+zero-phase stage cancels between force and response, and in this ratio too.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ def innovation_noise(
     provenance: Provenance,
     decay_rate: float,
 ) -> FloatArray | None:
-    """Return the variance of each pair that white noise of its channel explains.
+    """Return the variance of each pair due to white noise of its channel.
 
     Args:
         spectra: of the accepted hits.
@@ -33,8 +33,7 @@ def innovation_noise(
         decay_rate: of the exponential window [1/s], 0 for none.
 
     Returns:
-        E|error|^2, shape (n_pairs, n_lines), or None if a channel went through no
-        stage.
+        E|error|^2, shape (n_pairs, n_lines), or None if a channel was not filtered.
 
     Source:
         Bendat and Piersol, Random Data (2010), sec. 9.2 (variance of H1).

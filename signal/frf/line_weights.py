@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""How much each line of an FRF counts when poles are looked for.
+"""Weights of the lines of an FRF in the pole fit.
 
-Best is the scatter between hits; next coherence; with a single hit there is neither,
-but the Kalman stage has seen how noisy each channel is, and the force spectrum tells
-where little force leaves much of that noise.
+The scatter between hits is the best source, coherence the next. A single hit has
+neither; its weights come from the channel noise that the Kalman stage estimated, and
+from the force spectrum.
 """
 
 import numpy as np
@@ -12,23 +12,23 @@ from scipy.ndimage import median_filter
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.signal.frf.frf import Frf
 
-# No line counts more than the median one by more than this.
+# Largest weight relative to the median weight.
 _MOST_WEIGHT = 30.0
-# Noise is taken as it is over this share of the band.
+# The noise is smoothed over this share of the band.
 _PIECES = 20
 _LEAST_COHERENCE = 1e-6
 
 
 def weights_of(frf: Frf, keep: BoolArray) -> tuple[FloatArray | None, str]:
-    """Return the weights of the kept lines, and what they come from.
+    """Return the weights of the kept lines, and their source.
 
     Args:
         frf: any.
         keep: True for the lines to fit, shape (n_lines,).
 
     Returns:
-        Weights [-], shape (n_kept,), or None where nothing tells lines apart; a word
-        for the record.
+        Weights [-], shape (n_kept,), or None where all lines are equal; their source as
+        text.
     """
     response = frf.response[:, :, keep]
     if frf.variance is not None:
@@ -44,12 +44,12 @@ def weights_of(frf: Frf, keep: BoolArray) -> tuple[FloatArray | None, str]:
 
 
 def line_weights(response: ComplexArray, variance: FloatArray) -> FloatArray:
-    """Return how much each line counts in `fit_poles`, from the noise of the FRFs.
+    """Return the weight of each line in `fit_poles`, from the noise of the FRFs.
 
-    All outputs must share one weight a line, or orders no longer nest: it is the
-    reciprocal of their mean noise, each over its own power. Bounded, and smoothed by a
-    median over a twentieth of the band: on a few lines hits agree by chance, and where
-    a mode resonates they differ by their leakage, which is no reason to look away.
+    All outputs must share one weight per line, or orders no longer nest: it is the
+    reciprocal of their mean noise, each over its own power. Weights are bounded and
+    smoothed by a median over a twentieth of the band: on a few lines hits agree by
+    chance, and at a resonance they differ by leakage, which must not lower the weight.
 
     Args:
         response: FRF, shape (n_outputs, n_inputs, n_lines).

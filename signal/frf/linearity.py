@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Linearity: does the FRF depend on how hard the structure is hit?
+"""Test of linearity: whether the FRF depends on the force level.
 
-The FRF of every hit is set against the level of that hit, line by line:
-H(f) = mean(f) + slope(f) log2(level). A linear structure has no slope but that of
-noise, so the slopes of all lines together are an F test.
+The FRF of every hit is regressed on the level of that hit, line by line: H(f) = mean(f)
++ slope(f) log2(level). The slope of a linear structure is noise alone, so an F test is
+made on the slopes of all lines together.
 """
 
 from collections.abc import Sequence
@@ -39,11 +39,12 @@ class Linearity:
         change: of the FRF for a doubling of the force, rms over pairs, as a share of
             the rms of the FRF on that line [-], shape (n_lines,).
         frequency: [Hz], of the excited band, shape (n_lines,).
-        change_per_doubling: the same over the whole band, that of noise taken off [-].
-        f_value: power of the slopes over what the scatter of the hits explains [-].
-        significance: chance that a linear structure shows this much [-].
+        change_per_doubling: the same over the whole band, less the part of noise [-].
+        f_value: power of the slopes over that expected from the scatter of the hits
+            [-].
+        significance: probability of a value this large for a linear structure [-].
         levels: lowest and highest rms force spectrum in the band [N s].
-        hits: behind it.
+        hits: number of hits.
     """
 
     change: FloatArray
@@ -60,23 +61,23 @@ class Linearity:
 
     @property
     def nonlinear(self) -> bool:
-        """True where chance is below 1 % that a linear structure looks like this."""
+        """True if the probability for a linear structure is below 1 %."""
         return self.significance < _CHANCE
 
     @property
     def words(self) -> str:
-        """One plain sentence."""
+        """Return the result as one sentence."""
         low, high = self.levels
         span = f"from {low:.3g} to {high:.3g} N s ({self.hits} hits)"
         share = 100.0 * self.change_per_doubling
         if self.nonlinear:
             return (
                 f"not linear {span}: the FRF changes by {share:.2g} % for a doubling "
-                f"of the force (F {self.f_value:.3g}, chance {self.significance:.1g})"
+                f"of the force (F {self.f_value:.3g}, p {self.significance:.1g})"
             )
         return (
             f"no dependence on level {span}: a doubling of the force changes the FRF "
-            f"by {share:.2g} %, noise by chance does as much or more in "
+            f"by {share:.2g} %, and noise does as much or more in "
             f"{100.0 * self.significance:.2g} % of cases"
         )
 
@@ -85,18 +86,18 @@ def check_linearity(spectra: HitSpectra) -> Linearity:
     """Test whether the FRF depends on the level of the hits.
 
     Args:
-        spectra: of accepted hits, at least three at one point, on different levels.
+        spectra: of accepted hits, at least three at one point, at different levels.
 
     Returns:
-        The change with level and its significance. What drifts with time along with
-        the level looks the same: hit softly and hard in turn.
+        The change with level and its significance. A drift in time that follows the
+        level looks the same: alternate soft and hard hits.
 
     Raises:
         BadData: fewer than three hits at every point, or all at one level.
 
     Source:
         Seber and Lee, Linear Regression Analysis (2003), sec. 4.3 (F test); ISO
-        7626-5:2019 asks for the check.
+        7626-5:2019 requires the check.
     """
     low, high = excited_band(spectra)
     inside = (spectra.frequency >= low) & (spectra.frequency <= high)
@@ -108,8 +109,8 @@ def check_linearity(spectra: HitSpectra) -> Linearity:
     if not groups:
         raise BadData(
             f"linearity needs {_LEAST_HITS} accepted hits at one point whose levels "
-            f"differ by a factor of {_LEAST_SPAN} or more; of {len(outputs)} x "
-            f"{len(inputs)} pairs none has them: hit softly and hard in turn"
+            f"differ by a factor of {_LEAST_SPAN} or more; none of {len(outputs)} x "
+            f"{len(inputs)} pairs has them: alternate soft and hard hits"
         )
     fits = [_regress(spectra, pair, impulse[pair.hits], inside) for pair in groups]
     slope_power = np.sum([f.slope_power for f in fits], axis=0)
@@ -134,8 +135,8 @@ class _Fit:
     """The regression of one pair, line by line.
 
     Attributes:
-        slope_power: |slope|^2, shape (n_lines,).
-        noise_power: what noise alone would give, shape (n_lines,).
+        slope_power: power of the slope |slope|^2, shape (n_lines,).
+        noise_power: that expected from noise alone, shape (n_lines,).
         level: |mean FRF|^2, shape (n_lines,).
         residual: shape (n_hits, n_lines).
     """
@@ -152,7 +153,7 @@ def _regress(
     force = spectra.force[pair.hits][:, inside]
     response = spectra.response[pair.hits, pair.rows][:, inside]
     frf, weight = response / force, np.abs(force) ** 2
-    # Weighted by |F|^2: the noise of a hit's FRF is the response's over its force.
+    # Weighted by |F|^2: the noise of a hit's FRF is response noise over force.
     total = weight.sum(axis=0)
     level = np.log2(impulse)[:, None]
     centred = level - (weight * level).sum(axis=0) / total
@@ -165,7 +166,7 @@ def _regress(
 
 
 def _test(fits: Sequence[_Fit]) -> tuple[float, float]:
-    """Return F and its chance, pooled; neighbouring lines may share one error."""
+    """Return F and its p-value, pooled; neighbouring lines may share one error."""
     numerator = sum(float(np.sum(f.slope_power / _pooled(f))) for f in fits)
     lines = sum(f.level.size for f in fits)
     length = max(_correlation_length(f.residual) for f in fits)
@@ -177,7 +178,7 @@ def _test(fits: Sequence[_Fit]) -> tuple[float, float]:
 
 
 def _pooled(fit: _Fit) -> FloatArray:
-    """Return the variance of the slopes, smoothed: that of one line is itself noisy."""
+    """Return the variance of the slopes, smoothed over lines."""
     smooth = uniform_filter1d(fit.noise_power, _SMOOTH_LINES, mode="nearest")
     return np.asarray(np.where(smooth > 0.0, smooth, np.inf))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where modes are, before any fit: CMIF and mode indicator functions."""
+"""Mode indicator functions before any fit: CMIF, MIF and MvMIF."""
 
 import numpy as np
 
@@ -29,7 +29,7 @@ def mode_indicator(frf: Frf) -> FloatArray:
     """Return the normal mode indicator function of each input.
 
     At the undamped frequency of a real mode the receptance is in quadrature with the
-    force, so that its real part, or the imaginary one of a mobility, vanishes.
+    force, so that its real part, or the imaginary part of a mobility, vanishes.
 
     Args:
         frf: any kind; measured at s = j omega (no exponential window).
@@ -46,7 +46,7 @@ def mode_indicator(frf: Frf) -> FloatArray:
 
 
 def multivariate_mode_indicator(frf: Frf) -> FloatArray:
-    """Return the multivariate mode indicator: the best combination of the inputs.
+    """Return the multivariate mode indicator function, over combinations of the inputs.
 
     Args:
         frf: any kind.
@@ -71,7 +71,7 @@ def multivariate_mode_indicator(frf: Frf) -> FloatArray:
 
 
 def _receptance_like(frf: Frf) -> ComplexArray:
-    """Return the FRF turned to the phase of a receptance."""
+    """Return the FRF rotated to the phase of a receptance."""
     return np.asarray(frf.response * (-1j) ** frf.kind.derivatives)
 
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The block that all hits of a measurement share: its length, quick to transform."""
+"""Length of the common block of all hits, with a fast FFT."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-# Segments shorter than this share of the median are padded, not allowed to cut others.
+# Segments shorter than this share of the median are padded and cut no others.
 _SHORT = 0.5
 _FFT_FACTORS = (2, 3, 5, 7)
 
@@ -15,14 +15,14 @@ def choose_block(lengths: Sequence[int]) -> tuple[int, str]:
 
     Cutting beats padding where a response still rings at the end: on the lines of its
     own block a cut decay is a rational function with the same poles, on the lines of a
-    padded block it is not. So the block is the shortest segment, rounded down to a
-    length the FFT likes; only segments far shorter than the usual are padded.
+    padded block it is not. So the block is the shortest segment, rounded down to a fast
+    FFT length; only segments far shorter than the median are padded.
 
     Args:
         lengths: samples of each segment.
 
     Returns:
-        Samples of the block, and the reason in words.
+        Samples of the block, and the reason as text.
     """
     usual = float(np.median(lengths))
     shortest = min(n for n in lengths if n >= _SHORT * usual)

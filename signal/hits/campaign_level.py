@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Glancing hits told by the level of the whole campaign, or by the plan's.
+"""Detect glancing hits by the level of the whole campaign or of its plan.
 
 `hit_verdicts` compares a hit with the others of its own recording. A file of one hit
-has no others, so here the hits of all recordings stand together. A campaign may climb
-through several levels on purpose: a hit is compared with the softest level that was
-struck repeatedly, never with the median of them all.
+has no others, so here the hits of all recordings are compared. A campaign may use
+several levels on purpose: a hit is compared with the lowest level that was struck
+repeatedly, not with the median of all hits.
 """
 
 from collections.abc import Sequence
@@ -18,25 +18,26 @@ from jointbench.acquisition.records.recordings import Hit, Recording, Verdict
 from jointbench.signal.hits.hit_verdicts import HitLimits
 
 _SAME_LEVEL = 2.0
-"""Largest ratio between two peaks of one level [-]; a hand scatters by 10 to 30 %."""
+"""Largest ratio between two peaks of one level [-]; an operator scatters by 10 to 30 %.
+"""
 _LEAST_REPEATS = 2
 _LEAST_SHARE = 0.1
-"""Share of the hits that makes a level [-]: glancing hits are rarer."""
+"""Least share of the hits for a level [-]; glancing hits are rarer."""
 _MANY_REPEATS, _MANY_SHARE = 3, 0.2
-"""The same for a level further below the next one than the step of a ladder."""
+"""The same for a level more than one ladder step below the next one."""
 _OWN_HITS = 3
-"""Hits of one level in a recording that make the recording its own reference."""
+"""Hits at one level from which a recording is its own reference."""
 _COMPARED = (Verdict.OK, Verdict.WEAK)
 
 
 @dataclass(frozen=True, slots=True)
 class Softest:
-    """The softest level of a campaign.
+    """The lowest level of a campaign.
 
     Attributes:
         level: median peak of its hits [N].
-        several: whether the campaign has harder levels too, so that a step down
-            from one level to the next may be meant.
+        several: whether the campaign has higher levels too, so that a lower peak may be
+            intended.
     """
 
     level: float
@@ -48,17 +49,17 @@ def compare_levels(
     limits: HitLimits,
     fresh: Sequence[bool] | None = None,
 ) -> tuple[Recording, ...]:
-    """Call the hits weak that are far softer than the campaign, or than the plan asks.
+    """Mark hits as weak that are far below the campaign's level or the plan's.
 
     Args:
         recordings: all of the campaign, with judged hits.
-        limits: `weak_ratio` holds where the campaign has one level and against the
-            level of a plan, `ladder_ratio` where it has several.
+        limits: `weak_ratio` applies to a campaign of one level and to the level of a
+            plan, `ladder_ratio` to a campaign of several.
         fresh: True for recordings whose verdicts may change; None for all.
 
     Returns:
-        The recordings, the verdict of accepted hits changed to `Verdict.WEAK` where
-        their peak force is too low. Hits that make up a level within their own
+        The recordings, with the verdict of accepted hits changed to `Verdict.WEAK`
+        where their peak force is too low. Hits that form a level within their own
         recording have been compared there.
     """
     may = [True] * len(recordings) if fresh is None else list(fresh)
@@ -72,11 +73,11 @@ def compare_levels(
 
 
 def softest_level(peaks: FloatArray, ladder_ratio: float) -> Softest | None:
-    """Return the softest level that was struck repeatedly.
+    """Return the lowest level that was struck repeatedly.
 
     Args:
         peaks: of all hits of a campaign [N], shape (n,).
-        ladder_ratio: two hits further below the next level than this are a level only
+        ladder_ratio: hits further below the next level than this count as a level only
             if they are many [-].
 
     Returns:
@@ -110,7 +111,7 @@ def _first_level(ordered: FloatArray, begin: int, total: int) -> tuple[int, int]
 
 
 def planned_level(recording: Recording) -> float | None:
-    """Return the peak force that the plan asked for [N], None where none is stored."""
+    """Return the planned peak force [N], or None if none is stored."""
     levels = [dict(s.detail).get("level") for s in recording.provenance]
     stored = [x for x in levels if isinstance(x, int | float) and x > 0]
     return float(stored[-1]) if stored else None
@@ -152,15 +153,15 @@ def _judged(
 def _reference(
     peak: float, planned: float | None, peaks: FloatArray, limits: HitLimits
 ) -> tuple[float, float, str]:
-    """Return what a peak is compared with [N], the limit [-], and what it is."""
+    """Return the reference of a peak [N], the limit [-], and its name."""
     single = max(limits.weak_ratio, limits.ladder_ratio)
     if planned is not None:
-        return planned, single, "the level that the plan asks for"
+        return planned, single, "the planned level"
     softest = softest_level(peaks, limits.ladder_ratio)
     if softest is None:
         harder = peaks[peaks > peak]
         following = float(harder.min()) if harder.size else peak
         return following, limits.ladder_ratio, "the next harder hit"
     if softest.several:
-        return softest.level, limits.ladder_ratio, "the campaign's softest level"
+        return softest.level, limits.ladder_ratio, "the campaign's lowest level"
     return softest.level, single, "the campaign's level"

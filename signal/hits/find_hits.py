@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Hammer hits in a recording: where each begins and ends, and whether it is any good.
+"""Find the hammer hits of a recording and their segments.
 
 The trigger is the one of a bench analyser, run on recorded samples: the force rises
 through a level, and it must fall well below that level before it can fire again.
-`hit_verdicts` then says of each hit why it may or may not enter an average.
+`hit_verdicts` then judges whether each hit may enter an average.
 """
 
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ class HitCriteria:
         peak_fraction: automatic level as a share of the largest force [-].
         minimum_length: shortest useful time from trigger to end of segment [s], or None
             for half the median of the recording.
-        limits: the limits behind the verdicts.
+        limits: limits of the verdicts.
     """
 
     trigger_level: float | None = None
@@ -163,7 +163,7 @@ def _segments(
 def _shortest(
     bounds: Sequence[tuple[int, int, int]], criteria: HitCriteria, sample_rate: float
 ) -> int:
-    """Return the least number of samples after a trigger that makes a block."""
+    """Return the least number of samples after a trigger for a block."""
     if criteria.minimum_length is not None:
         return round(criteria.minimum_length * sample_rate)
     return int(0.5 * np.median([stop - trigger for _, trigger, stop in bounds]))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Spectra of hammer hits on one common block, and which hits serve which FRF."""
+"""Spectra of hammer hits on one common block, and their assignment to FRFs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,7 +25,7 @@ from jointbench.signal.hits.block_length import choose_block
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.windows import HammerWindow, apply_window
 
-# A constant that a filter went over still varies by this share of itself.
+# A filtered constant still varies by this share of itself.
 _ROUNDING = 1e-12
 
 
@@ -39,9 +39,9 @@ class HitSpectra:
         response: [response unit s], shape (n_hits, n_responses, n_lines).
         labels: for each hit, the label of each of its responses.
         points: for each hit, where the hammer struck.
-        quantity: what all responses measure.
+        quantity: of all responses.
         block: samples of the common block.
-        block_reason: how it was chosen.
+        block_reason: why this length.
     """
 
     frequency: FloatArray
@@ -72,10 +72,10 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
 
     Args:
         recordings: with hits found.
-        window: applied to every hit alike.
+        window: applied to every hit.
 
     Returns:
-        One row of spectra a hit.
+        One row of spectra per hit.
 
     Raises:
         NoHitFound: no hit was accepted.
@@ -103,7 +103,7 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
 
 
 def join_spectra(parts: Sequence[HitSpectra]) -> HitSpectra:
-    """Return the spectra of several measurements of the same channels as one.
+    """Join the spectra of several measurements of the same channels.
 
     Args:
         parts: at least one; all on the same block at the same sample rate.
@@ -119,7 +119,7 @@ def join_spectra(parts: Sequence[HitSpectra]) -> HitSpectra:
 
 
 def require_alive(recording: Recording, hit: Hit) -> None:
-    """Refuse a hit that a response channel did not see at all.
+    """Refuse a hit with a response channel without signal.
 
     Args:
         recording: holds the hit.
@@ -190,7 +190,7 @@ def windowed_hit(
         recording: holds the hit.
         hit: which.
         window: to apply.
-        block: samples wanted; a shorter hit is padded with zeros.
+        block: number of samples; a shorter hit is padded with zeros.
 
     Returns:
         Force, shape (block,), and responses, shape (n_responses, block).

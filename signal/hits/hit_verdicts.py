@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Whether a hammer hit may enter an average: one verdict, one number, one reason.
+"""Verdict on a hammer hit: whether it may enter an average, a number and a reason.
 
-The order of the questions is the order in which an answer spoils the others: an
-overloaded signal says nothing true, a double hit has holes in its force spectrum, a
-late one is cut short, a weak one is only noisy.
+The worst defect is checked first: an overloaded signal is wrong, a double hit has zeros
+    in its force spectrum, a late one is cut short, a weak one is only noisy.
 """
 
 from collections.abc import Sequence
@@ -16,23 +15,23 @@ from jointbench.acquisition.records.recordings import Recording, Verdict
 
 # The median absolute deviation of normal noise is this fraction of its sd.
 _MAD_OF_NORMAL = 0.6745
-# A crest of noise this many sd high stands out of no other.
+# Crests below this many sd are not distinguished from noise.
 _NOISE_CREST = 6.0
 
 
 @dataclass(frozen=True, slots=True)
 class HitLimits:
-    """The limits behind the verdicts.
+    """Limits of the verdicts.
 
     Attributes:
         overload_fraction: share of a channel's range that counts as overload [-].
         flat_samples: equal consecutive extreme samples that count as clipping.
-        double_ratio: second force peak over the main one [-]; more where the noise of
+        double_ratio: second force peak over the main one [-]; raised where the noise of
             the force would reach it.
         weak_ratio: peak force over the median peak of the recording [-].
         weak_force: smallest useful peak force [N], or None.
         ladder_ratio: peak force over the softest repeated level of a campaign of
-            several levels [-]: a step of its ladder, struck once, may lie below.
+            several levels [-]: a ladder step struck once may be lower.
     """
 
     overload_fraction: float = 0.98
@@ -45,7 +44,7 @@ class HitLimits:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """What `judge` found of one hit; the fields are those of `Hit`."""
+    """Result of `judge` for one hit, with the fields of `Hit`."""
 
     peak_force: float
     verdict: Verdict
@@ -71,7 +70,7 @@ def judge(
         shortest: least number of samples from trigger to stop.
 
     Returns:
-        One verdict a hit, in the same order.
+        One verdict per hit, in the same order.
     """
     peaks = [float(force[trigger:stop].max()) for _, trigger, stop in bounds]
     usual = float(np.median(peaks))
@@ -89,8 +88,8 @@ def second_peak(force: FloatArray, trigger: int) -> tuple[float, int]:
     """Measure the second pulse of a hit.
 
     A second contact is a rise of the force after it has fallen. A ringing transducer
-    or filter rises as well, but it swings as far below zero beside each crest, and a
-    hammer cannot pull: that swing is taken off. The main peak may be either pulse.
+    or filter rises as well, but it swings as far below zero next to each crest, and a
+    hammer cannot pull: that swing is subtracted. The main peak may be either pulse.
 
     Args:
         force: segment of one hit without offset [N], shape (n,).
@@ -98,7 +97,7 @@ def second_peak(force: FloatArray, trigger: int) -> tuple[float, int]:
 
     Returns:
         The second peak as a fraction of the main one [-], and how many samples after
-        (or, negative, before) the main peak it stands.
+        (or, negative, before) the main peak it is.
     """
     main = trigger + int(np.argmax(force[trigger:]))
     width = max(4, _pulse_samples(force, main))
@@ -112,9 +111,9 @@ def second_peak(force: FloatArray, trigger: int) -> tuple[float, int]:
 def longest_flat_top(samples: FloatArray) -> int:
     """Count the samples of the longest clipped crest or trough.
 
-    Only runs that stand at the very extreme count, and only if the signal leaves them
-    by more than two of its smallest steps: a smooth crest read by a coarse converter
-    is flat too, but leaves by one step.
+    Only runs at the extreme value count, and only if the signal leaves them by more
+    than two quantisation steps: a smooth crest of a coarse converter is flat too, but
+    leaves by one step.
 
     Args:
         samples: one channel, shape (n,).
@@ -136,13 +135,13 @@ def longest_flat_top(samples: FloatArray) -> int:
 
 
 def noise_level(samples: FloatArray) -> float:
-    """Estimate the sd of the noise under sparse pulses, same unit as `samples`."""
+    """Estimate the sd of the noise between sparse pulses, same unit as `samples`."""
     centred = samples - np.median(samples)
     return float(np.median(np.abs(centred))) / _MAD_OF_NORMAL
 
 
 def _run_at(samples: FloatArray, resolution: float) -> int:
-    """Return the longest steeply left run of samples at the maximum."""
+    """Return the length of the longest clipped run at the maximum."""
     top = float(samples.max())
     at_top = np.concatenate(([False], samples >= top - 1e-9 * abs(top), [False]))
     edges = np.flatnonzero(np.diff(at_top.astype(np.int8)))
@@ -169,7 +168,7 @@ def _largest_rise(force: FloatArray, width: int) -> tuple[float, int]:
     valley = np.clip(np.minimum.accumulate(force), 0.0, None)
     rise = force - valley
     crests = np.flatnonzero((rise[1:-1] > 0.0) & _is_crest(force)) + 1
-    # Small crests of noise need no closer look.
+    # Small crests of noise are skipped.
     crests = crests[rise[crests] > 0.005 * force[0]]
     best, where = 0.0, 0
     for crest in crests:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Leakage of hammer hits: how much of each line still rang when the block ended.
+"""Leakage of hammer hits: share of each line cut off by the end of the block.
 
-A response that has decayed leaks nothing. What is cut off is not measured, but the end
-of the block foretells it: where the energy around a line falls by r from the third
-quarter to the fourth, everything after the block is r / (1 - r) of the fourth quarter.
+A response that has decayed has no leakage. The part cut off is extrapolated from the
+end of the block: where the energy around a line falls by r from the third quarter to
+the fourth, the energy after the block is r / (1 - r) of the fourth quarter.
 """
 
 from collections.abc import Sequence
@@ -21,19 +21,20 @@ from jointbench.signal.hits.hit_spectra import windowed_hit
 from jointbench.signal.hits.windows import HammerWindow
 
 _QUARTERS = 4
-# Lines over which energy is summed: a quarter spreads a peak over a dozen lines.
+# Lines over which energy is summed: a quarter of the block spreads a peak over a dozen
+# lines.
 _AROUND_LINES = 33
-# A fourth quarter within this many times the noise before the hit says nothing.
+# Fourth quarters within this factor of the noise before the hit are not used.
 _ABOVE_NOISE = 4.0
-# Lines within 20 dB of the loudest.
+# Lines within 20 dB of the strongest.
 _LOUD = 0.01
-# An energy that hardly falls cannot be foretold further than this.
+# Limit of the extrapolation where the energy hardly falls.
 _SLOWEST = 0.98
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Leakage:
-    """The share of each line that lies beyond the block.
+    """Share of each line cut off by the end of the block.
 
     Attributes:
         frequency: [Hz], shape (n_lines,).
@@ -41,7 +42,7 @@ class Leakage:
             shape (n_lines,); 0 where the end of the block is noise, too high on lines
             far below their neighbours.
         typical: of all lines, each weighted by its power [-].
-        worst_frequency: where most is cut off, share times amplitude [Hz].
+        worst_frequency: where share times amplitude is largest [Hz].
         worst: the share there [-].
     """
 
@@ -63,8 +64,8 @@ def estimate_leakage(
 
     Args:
         recordings: with hits found.
-        window: as used for the FRF; an exponential window lessens leakage, and pays
-            with damping that is taken off again. None for no window.
+        window: as used for the FRF; an exponential window reduces leakage and adds
+            damping that is subtracted again. None for no window.
 
     Returns:
         Worst over hits and responses, on the lines of the shortest hit.
@@ -80,7 +81,7 @@ def estimate_leakage(
     parts = [_hit_share(r, hit, window or HammerWindow(), block) for r, hit in chosen]
     share = np.max([p[0] for p in parts], axis=0)
     power = np.mean([p[1] for p in parts], axis=0)
-    # Skirts of the cut quarters drown quiet lines: only what is loud is judged.
+    # Side lobes of the cut quarters mask weak lines: only strong ones are judged.
     loud = power > _LOUD * power.max()
     worst = int(np.argmax(np.where(loud, share**2 * power, 0.0)))
     frequency = scipy.fft.rfftfreq(block, 1.0 / rate)
@@ -96,7 +97,7 @@ def _hit_share(
     """Return share and power of each line of a hit, worst and mean over responses.
 
     With energies around a line: beyond / measured = x^2 / (1 - x^2) of one mode, where
-    x is what is left of its amplitude; its line then lacks x / (1 - x).
+        x is the remaining share of its amplitude; its line then lacks x / (1 - x).
     """
     _, response = windowed_hit(recording, hit, window, block)
     trigger = hit.trigger - hit.start

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Hammer hits in a stream still being recorded: the bench's software trigger."""
+"""Hammer hits in a running stream: the software trigger of the bench."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from jointbench.acquisition.records.recordings import Channel, Hit, Recording
 from jointbench.signal.hits.find_hits import trigger_indices
 from jointbench.signal.hits.hit_verdicts import HitLimits, judge
 
-_REARM = 0.5  # of the level, as in `hits.HitCriteria`
+_REARM = 0.5  # of the level, as in `HitCriteria`
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -21,7 +21,7 @@ class CutHit:
         samples: all channels, shape (n_channels, n).
         start: index of the first of them in the stream.
         trigger: index of the triggering sample in `samples`.
-        whole: False where the stream broke off before the end.
+        whole: False if the stream stopped before the end.
     """
 
     samples: FloatArray
@@ -36,7 +36,7 @@ class CutHit:
 
 @dataclass(slots=True)
 class HitCutter:
-    """Cut hits out of a stream, block by block, however the blocks fall.
+    """Cut hits out of a stream, block by block, independent of the block limits.
 
     A hit fires at the sample where ``previous < level <= sample``; after a hit the
     trigger is armed again once its block is complete and the force is low.
@@ -46,7 +46,7 @@ class HitCutter:
         level: of the trigger [N].
         before: samples kept before the trigger.
         after: samples kept from the trigger on.
-        offset: of the force channel [N], taken off before it is compared.
+        offset: of the force channel [N], subtracted before the comparison.
         origin: index in the stream of the first sample that will be fed.
     """
 
@@ -61,9 +61,9 @@ class HitCutter:
     _trigger: int | None = None
 
     def feed(self, samples: FloatArray) -> CutHit | None:
-        """Take a block; return a hit that it completes.
+        """Process a block; return the hit that it completes, if any.
 
-        At most one hit a block comes back: blocks are shorter than hits.
+        A block completes at most one hit: blocks are shorter than hits.
         """
         data = samples if self._data is None else np.hstack((self._data, samples))
         self._data = data
@@ -79,7 +79,7 @@ class HitCutter:
         return hit
 
     def break_off(self) -> CutHit | None:
-        """Start anew after a gap; return the hit that it cut short, if any."""
+        """Restart after a gap; return the hit that it cut short, if any."""
         hit = None
         if self._trigger is not None and self._data is not None:
             hit = self._cut(self.origin + self._data.shape[1], whole=False)
@@ -88,7 +88,7 @@ class HitCutter:
         return hit
 
     def _search(self, data: FloatArray) -> int | None:
-        """Return the first trigger in the stream that was not looked at yet."""
+        """Return the first trigger in the part of the stream not searched yet."""
         first = max(0, self._from - self.origin - 1)
         force = data[self.row, first:] - self.offset
         level = self.level
@@ -108,7 +108,7 @@ class HitCutter:
         return hit
 
     def _forget(self, first: int) -> None:
-        """Drop samples before `first` that no later hit can need."""
+        """Drop samples before `first` that no later hit needs."""
         if self._data is not None and first > self.origin:
             self._data = self._data[:, first - self.origin :]
             self.origin = first
@@ -124,7 +124,7 @@ def judge_cut(
     needed: int,
     limits: HitLimits,
 ) -> Hit:
-    """Judge one hit by itself; its place counts from the start of the stream.
+    """Judge a single hit; its position counts from the start of the stream.
 
     Args:
         cut: the hit.
@@ -132,8 +132,8 @@ def judge_cut(
         row: of the force channel.
         sample_rate: [Hz].
         point: that was struck.
-        needed: samples from the trigger on that make a block.
-        limits: `weak_force` stands in for a comparison with other hits.
+        needed: samples from the trigger on for a block.
+        limits: `weak_force` replaces the comparison with other hits.
     """
     recording = Recording("hit", cut.samples, sample_rate, channels)
     force = cut.samples[row] - float(np.median(cut.samples[row, : cut.trigger + 1]))

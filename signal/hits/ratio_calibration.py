@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Hammer against accelerometer on a mass that is known: the ratio that an FRF needs.
+"""Ratio calibration of hammer and accelerometers on a known mass.
 
-A rigid mass m answers a force F with a = F / m, at every frequency between its slings
-and its first bending. What two sensors indicate differs from that by the ratio of
-their sensitivities, which is all that an accelerance depends on.
+A force F accelerates a rigid mass m by a = F / m, at every frequency between its
+suspension modes and its first bending mode. The indicated value differs by the ratio of
+the two sensitivities, on which alone an accelerance depends.
 
 Source:
     ISO 7626-5:2019, 7.4 (operational calibration on a freely suspended mass); Ewins,
@@ -29,27 +29,26 @@ from jointbench.acquisition.records.recordings import (
 )
 
 FLATNESS_LIMIT = 0.02
-"""Change of the ratio over the band above which the mass is not rigid, or was not
-struck through its centre [-]."""
-_PULSES = 10.0  # lengths of the pulse that are looked at: the slings have no time
-_SPECTRUM_DROP = 10.0  # [dB] of the force, where the band ends
+"""Largest change of the ratio over the band for a rigid, centrally struck mass [-]."""
+_PULSES = 10.0  # record used, in pulse lengths: too short for suspension modes
+_SPECTRUM_DROP = 10.0  # fall of the force at the end of the band [dB]
 _COVERAGE = 0.95
 
 
 @dataclass(frozen=True, slots=True)
 class RatioCalibration:
-    """What one accelerometer indicates on a known mass, over what it should.
+    """Indicated over true accelerance of one accelerometer on a known mass.
 
     Attributes:
         channel: of the accelerometer.
         ratio: indicated over true accelerance [-].
-        standard_uncertainty: of the ratio, all parts together [-].
+        standard_uncertainty: combined, of the ratio [-].
         expanded: half-width of its 95 % interval [-].
         repeatability: part of the scatter from hit to hit [-].
         mass_part: part of the mass [-].
         flatness: change of the ratio from the lower to the upper half of the band [-].
         band: lowest and highest line used [Hz].
-        hits: that were used.
+        hits: number used.
     """
 
     channel: Channel
@@ -64,7 +63,7 @@ class RatioCalibration:
 
     @property
     def passed(self) -> bool:
-        """Whether the mass behaved as one."""
+        """Whether the mass behaved as a rigid body."""
         return abs(self.flatness) <= FLATNESS_LIMIT
 
 
@@ -75,22 +74,22 @@ def calibrate_ratio(
 
     Args:
         recordings: with judged hits; those with the verdict `OK` are used. All share
-            their channels and their rate.
+            their channels and sample rate.
         mass: of everything that moves, sensors and mounts included [kg].
         mass_sd: its standard uncertainty [kg].
 
     Returns:
-        One result a response channel.
+        One result per response channel.
 
     Raises:
         NoHitFound: there are fewer than three good hits.
         ChannelMissing: there is no force, or no response.
 
     Note:
-        The ratio of a hit is the least-squares accelerance over the band, weighed by
+        The ratio of a hit is the least-squares accelerance over the band, weighted by
         the force spectrum. Its scatter gives the repeatability (n - 1 degrees of
-        freedom); half its change over the band, taken as the half-width of a
-        rectangle, stands for what the mass does beside being rigid.
+        freedom); half its change over the band is taken as the half-width of a
+        rectangular distribution for the departure from a rigid body.
     """
     found = [
         (recording, hit)
@@ -100,7 +99,7 @@ def calibrate_ratio(
     ]
     if len(found) < 3:
         raise NoHitFound(
-            f"{len(found)} good hits on the mass; a scatter needs three, strike again"
+            f"{len(found)} good hits on the mass; the scatter needs three, strike again"
         )
     first = recordings[0]
     hits = [_ratios(recording, hit, mass) for recording, hit in found]
@@ -122,7 +121,7 @@ class _HitRatios:
 
 
 def _ratios(recording: Recording, hit: Hit, mass: float) -> _HitRatios:
-    """Return what one hit says, ratios of shape (n_responses, 3)."""
+    """Return the ratios of one hit, shape (n_responses, 3)."""
     rows = (recording.row(Quantity.FORCE), *response_rows(recording))
     samples = recording.samples[list(rows), hit.start : hit.stop]
     samples = samples - np.median(
@@ -145,7 +144,7 @@ def _ratios(recording: Recording, hit: Hit, mass: float) -> _HitRatios:
 
 
 def _around_the_pulse(samples: FloatArray, trigger: int) -> tuple[FloatArray, int]:
-    """Return the pulse and some of its lengths after it, tapered, and a long FFT."""
+    """Return the pulse and some pulse lengths after it, tapered, and the FFT length."""
     force = samples[0]
     width = int(np.count_nonzero(force > 0.1 * force.max()))
     count = max(16, round(_PULSES * width))
@@ -160,7 +159,7 @@ def _around_the_pulse(samples: FloatArray, trigger: int) -> tuple[FloatArray, in
 def _result(
     channel: Channel, ratios: FloatArray, band: tuple[float, float], mass_part: float
 ) -> RatioCalibration:
-    """Put the parts of the uncertainty together; `ratios` of shape (n_hits, 3)."""
+    """Combine the parts of the uncertainty; `ratios` of shape (n_hits, 3)."""
     count = ratios.shape[0]
     ratio, low, high = ratios.mean(axis=0)
     repeat = float(ratios[:, 0].std(ddof=1) / np.sqrt(count) / ratio)

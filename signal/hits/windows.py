@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Windows for hammer hits: one for the force, and one for a response that rings on.
+"""Force and exponential windows for hammer hits.
 
-The force window keeps the pulse and drops the noise after it. What comes before the
-pulse is not its effect: it is noise, or the structure still ringing from the last hit,
-and is dropped from all channels but for the few samples into which anti-alias filters
-smear the pulse. The exponential window
-is used only where the response has not decayed at the end of its block; force and
-response are both multiplied by it, so that what is measured is exactly H(s + decay
-rate): a pole moves by the decay rate, and moving it back removes the damping added.
+The force window keeps the pulse and drops the noise after it. The signal before the
+pulse is noise, or the structure still ringing from the last hit. It is dropped from all
+channels, except for the few samples into which anti-alias filters smear the pulse. The
+exponential window is used only where the response has not decayed at the end of its
+block; force and response are both multiplied by it, so that the estimate is exactly H(s
++ decay rate): a pole moves by the decay rate, and moving it back removes the damping
+added.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ _LEAD_SAMPLES = 16
 _LEAD_PULSES = 0.25
 # A response that ends above this share of its start has not decayed.
 _DECAYED = 0.03
-# What an exponential window leaves of the response at the end of the block.
+# Share of the response that an exponential window leaves at the end of the block.
 _LEFT_AT_END = 0.005
 
 
@@ -48,7 +48,7 @@ class HammerWindow:
         decay_rate: rate of the exponential window on all channels [1/s], or None.
         lead: all channels are set to zero up to this long before the trigger [s]; None
             keeps everything.
-        reason: why these were chosen.
+        reason: why these windows were chosen.
     """
 
     force_width: float | None = None
@@ -59,7 +59,7 @@ class HammerWindow:
 
 @dataclass(frozen=True, slots=True)
 class WindowRequest:
-    """What was asked of the windows; None chooses by the hits, 0 leaves one out.
+    """Requested windows; None chooses from the hits, 0 uses no window.
 
     Attributes:
         force_width: time after the trigger in which the force is kept whole [s].
@@ -75,11 +75,11 @@ class WindowRequest:
 def requested_window(
     recordings: Sequence[Recording], request: WindowRequest
 ) -> HammerWindow:
-    """Return the one window of several recordings, with what was asked for put in.
+    """Return the common window of several recordings, with requested values applied.
 
     Args:
-        recordings: with hits found; those without an accepted hit have no say.
-        request: what is not left to the hits.
+        recordings: with hits found; those without an accepted hit are ignored.
+        request: values not chosen from the hits.
     """
     chosen = join_windows([choose_window(r) for r in recordings if accepted_hits(r)])
     given = {
@@ -124,7 +124,7 @@ def choose_window(recording: Recording) -> HammerWindow:
 
 
 def join_windows(windows: Sequence[HammerWindow]) -> HammerWindow:
-    """Return the one window that serves several recordings: the widest, the fastest."""
+    """Return the common window: the widest force window, the fastest decay."""
     widths = [w.force_width for w in windows if w.force_width is not None]
     rates = [w.decay_rate for w in windows if w.decay_rate is not None]
     reasons = dict.fromkeys(w.reason for w in windows if w.reason)
@@ -156,7 +156,7 @@ def apply_window(
 
     Returns:
         Force without its pre-trigger mean and response without its mean over the
-        segment (which concerns line 0 only), both windowed; new arrays.
+        segment (which changes line 0 only), both windowed; new arrays.
     """
     force = force - quiet_mean(force, trigger)
     response = response - response.mean(axis=1, keepdims=True)
@@ -173,7 +173,7 @@ def apply_window(
 
 
 def quiet_mean(force: FloatArray, trigger: int) -> float:
-    """Return the mean force before the pulse [N]; the last quarter may ring already."""
+    """Return the mean force before the pulse [N]; its last quarter is left out."""
     quiet = force[: max(1, (3 * trigger) // 4)]
     return float(quiet.mean())
 
@@ -198,8 +198,8 @@ def _pulse_length(recording: Recording, hit: Hit) -> int:
 def left_at_end(recording: Recording, hit: Hit, length: int | None = None) -> float:
     """Return the rms of the last tenth over that of the first, largest response.
 
-    A last tenth as loud as the middle is a noise floor, not a ringing structure:
-    it counts as decayed unless it is half as loud as the start.
+    A last tenth at the level of the middle is a noise floor, not a ringing structure:
+    it counts as decayed unless it exceeds half the level of the start.
 
     Args:
         recording: of the hit.

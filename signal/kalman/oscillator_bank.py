@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A bank of oscillators: tracks a response through samples that are missing.
+"""A bank of oscillators that predicts a response at missing samples.
 
 Each oscillator has the frequency and damping of a mode and is driven by white noise. As
-a filter it would bias damping (a third of it at low signal to noise), so it is used for
-what nothing else can do: to say what a channel would have read while it was out. All
-samples that were good stay as they were recorded.
+a filter it would bias damping (a third of it at low signal to noise), so it is used
+only to predict the samples lost in a drop-out. All good samples stay as recorded.
 
 Source:
     Harvey, Forecasting, Structural Time Series Models and the Kalman Filter (1989),
@@ -24,23 +23,23 @@ from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.recordings import Recording, response_rows
 from jointbench.signal.kalman.process_models import StateModel
 
-# Samples that stand still in a row: never fewer are a drop-out, and so many count as
-# one before it is known how often a quiet channel repeats itself by its coarse steps.
+# Constant samples in a row: the least number of a drop-out, and the number used before
+# it is estimated how often quantisation repeats samples of a quiet channel.
 _LEAST_STILL, _MANY_STILL = 3, 8
-# Chance that a channel repeats itself so often anywhere in a record and is in order.
+# Probability of so long a run anywhere in a record of a working channel.
 _BY_CHANCE = 1e-6
-# Pieces of a record, of which the one that repeats itself most sets the standard.
+# Pieces of a record; the one with most repeats is the reference.
 _SHARES = 16
 # A channel moves where at least this share of its samples differ from the one before.
 _MOVING = 0.5
-# A share of samples beyond which there is nothing left to track.
+# Largest share of lost samples that can be filled in.
 _MOST_LOST = 0.3
 _LEAST_NOISE = 1e-9
-# Pieces of the spectrum that are looked at for noise, and how many hold it alone.
+# Pieces of the spectrum searched for noise, and how many hold only noise.
 _PIECES, _QUIET = 400, 0.1
-# Half-power half-widths either side of a resonance that tell how strong it is.
+# Half-power half-widths either side of a resonance used for its strength.
 _HALF_WIDTHS = 3.0
-# A gap is seen with this many decays of the slowest oscillator on either side.
+# A gap is filled from this many decays of the slowest oscillator on either side.
 _DECAYS = 2.0
 _MOST_AROUND = 4000
 
@@ -81,10 +80,10 @@ def bank_model(
 
 
 def find_dropouts(recording: Recording) -> BoolArray:
-    """Find where a channel stood still although it moves elsewhere.
+    """Find where a channel is constant although it varies elsewhere.
 
     Args:
-        recording: any channels; a force that rests at zero is none that moves.
+        recording: any channels; a force at rest at zero does not count as varying.
 
     Returns:
         True for lost samples, shape (n_channels, n_samples).
@@ -111,10 +110,10 @@ def _runs(still: BoolArray) -> IntArray:
 
 
 def _least_still(still: BoolArray) -> int:
-    """Return how many repeats in a row the steps of the converter do not explain.
+    """Return the number of repeats in a row that quantisation does not explain.
 
-    A quiet channel that moves by a few steps repeats itself by chance, with the share p
-    of its samples; n samples then hold a run of m with a chance of at most n p^m.
+    A quiet channel that varies by a few steps repeats a share p of its samples by
+    chance; n samples then hold a run of m with a probability of at most n p^m.
     """
     single = still.copy()
     for first, last in _runs(still):
@@ -134,21 +133,21 @@ def repair_dropouts(
     *,
     lost: BoolArray | None = None,
 ) -> Recording:
-    """Fill lost samples with what a bank of oscillators makes of the good ones.
+    """Fill lost samples with the prediction of a bank of oscillators.
 
     Args:
-        recording: any; forces are left alone.
-        frequency: of the modes that the responses ring with [Hz], shape (n,).
+        recording: any; forces are not changed.
+        frequency: of the modes in the responses [Hz], shape (n,).
         damping_ratio: of the modes [-], shape (n,).
         lost: True for lost samples, shape (n_channels, n_samples); None to find them.
 
     Returns:
-        The recording with the same good samples, and a step that says how many were
+        The recording with the same good samples, and a step that records how many were
         filled in each channel.
 
     Raises:
         BadData: a channel has lost more than 30 % of its samples.
-        UsageError: frequencies that do not lie between 0 and half the sample rate.
+        UsageError: frequencies not between 0 and half the sample rate.
     """
     own, ratio = (
         np.asarray(frequency, np.float64),
@@ -183,10 +182,10 @@ def track(
     damping_ratio: FloatArray,
     sample_rate: float,
 ) -> FloatArray:
-    """Return what the bank makes of a response, lost samples included.
+    """Return a response with the bank's estimate at lost samples.
 
     Args:
-        samples: shape (n_samples,); what stands at lost samples is not looked at.
+        samples: shape (n_samples,); values at lost samples are ignored.
         lost: shape (n_samples,).
         frequency: of the oscillators [Hz], shape (n,).
         damping_ratio: of the oscillators [-], shape (n,).
@@ -198,7 +197,7 @@ def track(
     """
     known = np.where(lost, 0.0, samples)
     model, _ = bank_model(known, frequency, damping_ratio, sample_rate)
-    # What lies further off than a few decays has no say in a gap.
+    # Samples further off than a few decays do not affect a gap.
     slowest = float(np.min(damping_ratio * frequency)) * 2.0 * np.pi / sample_rate
     around = int(min(_MOST_AROUND, np.ceil(_DECAYS / max(slowest, 1e-12))))
     result = samples.copy()
@@ -273,11 +272,11 @@ def _require_inside(
 def _strengths(
     samples: FloatArray, turn: FloatArray, decay: FloatArray
 ) -> tuple[FloatArray, float]:
-    """Fit the power of each oscillator's push, and white noise, to the periodogram.
+    """Fit the excitation of each oscillator, and white noise, to the periodogram.
 
-    Only what stands around each resonance tells its push: a ring that was struck does
-    not fall off like one that is pushed at random, and its skirts would be taken for
-    noise, or for a neighbour. The quietest tenth of the band tells the noise.
+    Only lines near a resonance are used for its excitation: the skirts of an impact
+        response differ from those under random excitation, and would be taken for noise
+        or for a neighbour. The noise is that of the quietest tenth of the band.
     """
     spectrum = np.abs(scipy.fft.rfft(samples)) ** 2 / samples.size
     angle = 2.0 * np.pi * np.arange(spectrum.size) / samples.size

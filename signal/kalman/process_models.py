@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The models of the Kalman stage, and what a filter built on them does to a signal."""
+"""Process models of the Kalman stage, and the gain of filters built on them."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -10,12 +10,12 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.signal.kalman.steady_gains import gains
 
-# The smoother halves what lies at this share of the sample rate, unless told.
+# Default cutoff of the smoother (gain one half), as a share of the sample rate.
 _CUTOFF_SHARE = 0.25
 
 
 class KalmanModel(StrEnum):
-    """What the filter believes a signal to be."""
+    """Process model of a signal."""
 
     LEVEL_SLOPE = "level_slope"
     OSCILLATOR = "oscillator"
@@ -28,7 +28,8 @@ class KalmanSettings:
     Attributes:
         model: local linear trend, or one damped oscillator driven by noise.
         cutoff: where the smoother halves a signal [Hz]; None for a quarter of the
-            sample rate. For the oscillator: where its skirt halves, above `frequency`.
+            sample rate. For the oscillator: where its skirt has a gain of one half,
+                above `frequency`.
         smooth: fixed-interval smoother (zero phase) or, if False, the causal filter.
         frequency: of the oscillator [Hz].
         damping_ratio: of the oscillator [-].
@@ -64,15 +65,15 @@ class StateModel:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StageGain:
-    """What the stage does to a stationary signal.
+    """Gain of the stage for a stationary signal.
 
     Attributes:
         frequency: [Hz], shape (n,).
         gain: amplitude [-], shape (n,).
         phase: [rad], shape (n,); 0 for the smoother.
         settings: the stage.
-        all_channels: True if force and response went through it alike, so that it
-            cancels in the FRF; False if the FRF must be divided by it.
+        all_channels: True if force and response were filtered alike, so that it cancels
+            in the FRF; False if the FRF must be divided by it.
     """
 
     frequency: FloatArray
@@ -87,7 +88,7 @@ class StageGain:
 
 
 def state_model(settings: KalmanSettings, sample_rate: float) -> StateModel:
-    """Return the model behind the settings.
+    """Return the state model of the settings.
 
     Args:
         settings: the stage.
@@ -119,7 +120,7 @@ def state_model(settings: KalmanSettings, sample_rate: float) -> StateModel:
 def stage_gain(
     settings: KalmanSettings, frequency: FloatArray, sample_rate: float
 ) -> StageGain:
-    """Return what the stage does away from the ends of a record.
+    """Return the gain of the stage away from the ends of a record.
 
     Args:
         settings: the stage.
@@ -143,7 +144,7 @@ def stage_gain(
 
 
 def stage_cutoff(settings: KalmanSettings, sample_rate: float) -> float:
-    """Return the cutoff that is meant [Hz].
+    """Return the cutoff of the settings, default included [Hz].
 
     Raises:
         UsageError: a cutoff or frequency outside 0 to half the sample rate.
@@ -154,7 +155,7 @@ def stage_cutoff(settings: KalmanSettings, sample_rate: float) -> float:
     for name, value in (("cutoff", cutoff), ("frequency", settings.frequency)):
         if not 0.0 <= value < 0.5 * sample_rate or (name == "cutoff" and value == 0.0):
             raise UsageError(
-                f"Kalman {name} {value:g} Hz lies outside 0 to {0.5 * sample_rate:g} "
+                f"Kalman {name} {value:g} Hz is outside 0 to {0.5 * sample_rate:g} "
                 "Hz, half the sample rate; choose one inside"
             )
     return cutoff
@@ -164,7 +165,7 @@ def _signal_power(model: StateModel, turns: FloatArray) -> FloatArray:
     """Return the power of the modelled signal over white noise of variance 1.
 
     Args:
-        model: whose process noise drives the signal.
+        model: its process noise drives the signal.
         turns: frequency over sample rate, shape (n,).
     """
     z = np.exp(2j * np.pi * np.where(turns == 0.0, 1e-9, turns))[:, None, None]

@@ -4,10 +4,10 @@
 The papers filter the response before LSCF. A filter W on the response alone multiplies
 the FRF by W(f): its amplitudes, its phase and, through the slope of W across each peak,
 its damping are wrong afterwards (a level-and-slope smoother at 113 Hz leaves 1.7 % of a
-mode at 310 Hz and takes 1.2 % off its damping; a bank of oscillators at low signal to
-noise takes a third off). The same zero-phase filter on force and response cancels in
+mode at 310 Hz and lowers its damping by 1.2 %; a bank of oscillators at low signal to
+noise lowers it by a third). The same zero-phase filter on force and response cancels in
 their ratio. So by default the stage is a fixed-interval (Rauch-Tung-Striebel) smoother
-applied to all channels alike, and what it does at each mode is recorded.
+applied to all channels alike, and its gain at each mode is recorded.
 
 filterpy's filter gives the gains, which do not depend on the data, once for each
 configuration (`steady_gains`); compiled loops apply them to all channels.
@@ -64,11 +64,11 @@ def filter_states(model: StateModel, samples: FloatArray) -> FloatArray:
 
     Args:
         model: from `state_model`.
-        samples: one row a channel, shape (n_channels, n_samples).
+        samples: one row per channel, shape (n_channels, n_samples).
 
     Returns:
-        Filtered states, shape (n_channels, n_samples, n). The first state is believed
-        to hold the first sample.
+        Filtered states, shape (n_channels, n_samples, n). The first state holds the
+        first sample.
     """
     gain, _ = gains(*_parts(model), samples.shape[1])
     return _forward(model, samples, gain)[0]
@@ -85,7 +85,7 @@ def measurement_noise(model: StateModel, samples: FloatArray) -> FloatArray:
     """Estimate the noise variance of each channel from the filter's innovations.
 
     If the model is right, innovations over their predicted variance are white with the
-    measurement noise as their variance; their median passes over the hits.
+    measurement noise as their variance; their median ignores the hits.
 
     Args:
         model: from `state_model`.
@@ -109,7 +109,7 @@ def smooth_recording(
     *,
     channels: Sequence[str] | None = None,
 ) -> Recording:
-    """Put a recording through the Kalman stage.
+    """Filter a recording with the Kalman stage.
 
     Args:
         recording: any channels.
@@ -118,11 +118,11 @@ def smooth_recording(
             leaves the FRF unbiased.
 
     Returns:
-        The filtered recording without hits (they are found anew); the stage and the
-        noise it saw in each channel are in its provenance.
+        The filtered recording without hits (they are found again); the stage and its
+        noise estimate of each channel are in its provenance.
 
     Raises:
-        ChannelMissing: a name that no channel has.
+        ChannelMissing: no channel has the name.
     """
     settings = settings or KalmanSettings()
     names = [c.name for c in recording.channels]
@@ -152,7 +152,7 @@ def smooth_recording(
 
 
 def stage_gain_of(provenance: Provenance, frequency: FloatArray) -> StageGain | None:
-    """Return what the Kalman stage in a provenance did at some frequencies.
+    """Return the gain of the Kalman stage in a provenance.
 
     Args:
         provenance: of an FRF or a recording.
@@ -177,7 +177,7 @@ def stage_gain_of(provenance: Provenance, frequency: FloatArray) -> StageGain | 
 
 
 def stage_noise_of(provenance: Provenance) -> dict[str, float]:
-    """Return the noise that the Kalman stage saw in each channel.
+    """Return the noise that the Kalman stage estimated in each channel.
 
     Args:
         provenance: of an FRF or of recordings.

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Gains of the Kalman stage, from filterpy's filter run until they stand still.
+"""Gains of the Kalman stage, from filterpy's filter run until they converge.
 
 The gains of a linear filter depend on its model, not on the samples. filterpy's filter
 is stepped without samples once for each configuration; its gains and covariances are
 kept, and the compiled loops of `recursion` apply them to every sample and channel.
 
-filterpy keeps its state in public attributes of changing shape; here that ends: arrays
-of fixed shape in, arrays of fixed shape out. This is the only file that imports it, and
-it does so when gains are first needed, because the import takes about a second.
+filterpy keeps its state in public attributes of changing shape; here all inputs and
+outputs are arrays of fixed shape. This is the only file that imports filterpy, and only
+when gains are first needed, because the import takes about a second.
 """
 
 from functools import lru_cache
@@ -17,9 +17,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 
-# Gains that change by less than this share of themselves stand still.
+# Relative change below which gains have converged.
 _STILL = 1e-15
-# Rounding may keep the last digit alive for long; by then nothing else moves.
+# Rounding may change the last digit for long; all else has converged by then.
 _MOST = 50_000
 # Configurations whose gains are kept; a session uses one or two.
 _KEPT = 16
@@ -32,7 +32,7 @@ def gains(
     start: FloatArray,
     most: int = _MOST,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return filter and smoother gains until they stand still.
+    """Return filter and smoother gains until they converge.
 
     Args:
         transition: shape (n, n).
@@ -59,7 +59,7 @@ def _run(size: int, reach: int, *parts: bytes) -> tuple[FloatArray, FloatArray]:
     kalman = _filter(size, *(np.frombuffer(part).reshape(-1, size) for part in parts))
     filters: list[FloatArray] = []
     smoothers: list[FloatArray] = []
-    # A covariance that returns bit for bit: rounding goes round in a circle for ever.
+    # A covariance that recurs bit for bit: rounding has entered a cycle.
     seen: set[bytes] = set()
     kalman.predict()
     for _ in range(reach):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Computational modes: what stands beyond the band, fitted along but not reported.
+"""Computational modes: poles beyond the band, fitted but not reported.
 
-The residual terms are polynomials; they follow modes at a distance but not the flank of
-one that stands just beyond the edge, and what they miss goes into the modes within. So
-where the residual at an edge exceeds the noise, a pole beyond it is fitted too.
+The residual terms are polynomials; they represent distant modes but not the flank of a
+mode just beyond the edge, and that error biases the modes within. So where the residual
+at an edge exceeds the noise, a pole beyond it is fitted too.
 """
 
 import numpy as np
@@ -12,11 +12,11 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.frf_lines import FrfLines
 from jointbench.signal.modal.refined_pole_covariance import refine_poles
 
-# Lines at an edge whose residual tells of something beyond: this share of the band.
+# Lines at an edge whose residual is tested for a pole beyond: share of the band.
 _EDGE = 0.1
-# Residual power over noise from which on it does.
-_MISFIT = 1.2
-# Where the search starts: distance and decay rate as shares of the band.
+# Least residual power over noise that indicates one.
+_EDGE_RESIDUAL = 1.2
+# Start of the search: distance and decay rate as shares of the band.
 _STARTS = ((0.03, 0.01), (0.1, 0.03), (0.3, 0.05))
 # A computational mode is kept where it leaves less than this share of the excess.
 _LEFT = 0.5
@@ -33,39 +33,39 @@ def find_beyond(
     """Look for a pole beyond each edge at which the fit falls short.
 
     Args:
-        lines: what is fitted.
+        lines: lines of the fit.
         pole: modes so far [rad/s], shape (n_modes,).
         known: poles beyond the band so far, shape (n,).
-        residual: what a fit with both left over, shape (n_frf, n_lines).
-        noise: variance of the lines by noise alone, same shape.
-        variance: with the model's error, same shape.
+        residual: residual of a fit with both, shape (n_frf, n_lines).
+        noise: noise variance of the lines, same shape.
+        variance: noise and model error, same shape.
 
     Returns:
-        `known` and at most one pole more at each edge.
+        `known` and at most one more pole at each edge.
     """
     for above in (False, True):
         if _has(lines, known, above=above):
             continue
-        before = _edge_misfit(lines, residual, noise, above=above)
-        if before < _MISFIT:
+        before = _edge_residual(lines, residual, noise, above=above)
+        if before < _EDGE_RESIDUAL:
             continue
         more = np.append(known, _best_start(lines, pole, known, variance, above=above))
         after = refine_poles(
             lines, pole, variance, beyond=np.asarray(more, np.complex128), steps=12
         )
-        gained = _edge_misfit(lines, after.residual, noise, above=above)
+        gained = _edge_residual(lines, after.residual, noise, above=above)
         if gained - 1.0 < _LEFT * (before - 1.0):
             known, residual = after.beyond, after.residual
     return known
 
 
 def _has(lines: FrfLines, known: ComplexArray, *, above: bool) -> bool:
-    """Tell whether a pole stands at that edge already."""
+    """Return whether there is a pole at that edge already."""
     middle = 0.5 * float(lines.laplace.imag[[0, -1]].sum())
     return bool(np.any((known.imag > middle) == above))
 
 
-def _edge_misfit(
+def _edge_residual(
     lines: FrfLines, residual: ComplexArray, noise: FloatArray, *, above: bool
 ) -> float:
     """Return the residual over the noise at an edge of the band [-]."""
@@ -85,7 +85,7 @@ def _best_start(
     *,
     above: bool,
 ) -> complex:
-    """Return the start beyond an edge that leaves the least."""
+    """Return the start beyond an edge with the smallest residual."""
     low, high = lines.laplace.imag[[0, -1]]
     best, least = 0.0j, np.inf
     for distance, decay in _STARTS:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What cannot be in the data, however they are fitted: length, rate, decay, time scale.
+"""Limits of the data for any fit: record length, sample rate, decay, time scale.
 
-Every function returns plain sentences for the person at the bench, none where all is
-well. A block of T seconds tells frequencies 1/T apart; what has not decayed within it
-hides its damping; nothing lies above half the sample rate.
+Every function returns sentences for the operator, none where there is no problem. A
+block of T seconds resolves frequencies 1/T apart; a response that has not decayed
+within it has no measurable damping; there is no data above half the sample rate.
 """
 
 from collections.abc import Sequence
@@ -24,11 +24,11 @@ _QUIET = 0.02
 _FEW_LINES = 200
 """Lines in the band below which resolution limits what can be found."""
 _RESOLVED = 2.0
-"""Lines by which two modes must be apart to be told apart."""
+"""Least distance in lines of two modes that can be resolved."""
 _PERIODS = 3.0
 """Periods of a mode that a block must hold."""
 _RINGS_ON = 0.3
-"""Share of its start at which a response rings on when its block ends [-]."""
+"""Share of its start at the end of the block from which a response is cut off [-]."""
 _DECAYED = 0.03
 _TIME_CONSTANTS = 0.5
 """Time constants of a mode that a block must hold for its damping."""
@@ -36,13 +36,13 @@ _ALIAS_FREE = 1.0 / 2.56
 
 
 def time_scale_words(recordings: Sequence[Recording]) -> tuple[str, ...]:
-    """Say where the force pulses are no hammer's: the unit of time is probably wrong.
+    """Report force pulses that are not a hammer's: the unit of time may be wrong.
 
     Args:
         recordings: with or without judged hits.
 
     Returns:
-        One sentence on the first such recording; none where all pulses may be a
+        One sentence on the first such recording; none where all pulses can be a
         hammer's, or the force is no pulse.
     """
     strange = [
@@ -78,11 +78,11 @@ def pulse_duration(recording: Recording) -> float | None:
 def block_words(
     recordings: Sequence[Recording], lines: int | None = None
 ) -> tuple[str, ...]:
-    """Say what the length of the blocks and the decay in them keep from being found.
+    """Report what block length and decay prevent from being found.
 
     Args:
         recordings: with judged hits.
-        lines: in the band that was fitted, None where there was no fit.
+        lines: in the fitted band, or None without a fit.
     """
     length = block_length(recordings)
     if length is None:
@@ -107,14 +107,14 @@ def block_words(
     return tuple(words)
 
 
-def asked_words(
+def requested_band_words(
     recordings: Sequence[Recording], band: tuple[float, float] | None
 ) -> tuple[str, ...]:
-    """Say which part of a band that was asked for cannot be in the data.
+    """Report the part of a requested band that the data cannot contain.
 
     Args:
         recordings: with judged hits.
-        band: lowest and highest frequency asked for [Hz], or None.
+        band: requested lowest and highest frequency [Hz], or None.
     """
     length = block_length(recordings)
     if band is None or length is None:
@@ -134,14 +134,14 @@ def asked_words(
     elif band[1] > _ALIAS_FREE * rate:
         words.append(
             f"the band ends at {band[1]:g} Hz; above {_ALIAS_FREE * rate:g} Hz (sample "
-            f"rate / 2.56) the anti-alias filters of usual converters act, and what "
-            "stands there may be folded down from above"
+            "rate / 2.56) the anti-alias filters of usual converters act, and "
+            "lines there may be aliases"
         )
     return tuple(words)
 
 
 def mode_words(recordings: Sequence[Recording], model: ModalModel) -> tuple[str, ...]:
-    """Say which modes found the blocks are too short for.
+    """Report the modes for which the blocks are too short.
 
     Args:
         recordings: with judged hits.

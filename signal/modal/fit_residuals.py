@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""What a fit leaves over around each mode, and what that does to its interval.
+"""Local residual of a fit around each mode, and its effect on the interval.
 
-The covariance of a least-squares fit holds if residuals are as large as the variances
-say and independent from line to line. Their local ratio corrects for the first, their
-correlation for the second. Two habits make intervals too wide and are avoided: counting
-only ratios above 1, where the variances themselves are estimates that err both ways,
-and taking every chance correlation of a few lines for a real one.
+The covariance of a least-squares fit holds if residuals match the variances and are
+independent from line to line. Their local ratio corrects for the first, their
+correlation for the second. Two practices make intervals too wide and are avoided:
+counting only ratios above 1, where the variances themselves are estimates that err both
+ways, and treating every chance correlation of a few lines as real.
 """
 
 import numpy as np
@@ -16,20 +16,20 @@ from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 # Around a mode: this many half-power half-widths, and this many lines, each side.
 _REACH_WIDTHS = 4.0
 _REACH_LINES = 10.0
-# A correlation counts from this many of its own standard deviations on.
+# A correlation counts above this many of its own standard deviations.
 _SIGNIFICANT = 2.0
 _HIGHEST_SHARE = 0.99
 
 
-def misfit_around(
+def residual_around(
     lines: FrfLines, pole: ComplexArray, residual: ComplexArray, variance: FloatArray
 ) -> FloatArray:
-    """Compare the residual around each pole with the variances it was given.
+    """Compare the residual around each pole with the given variances.
 
     Args:
-        lines: what was fitted.
+        lines: lines of the fit.
         pole: [rad/s], shape (n_modes,).
-        residual: what the fit left over, shape (n_frf, n_lines).
+        residual: of the fit, shape (n_frf, n_lines).
         variance: E|error|^2 of each line, same shape.
 
     Returns:
@@ -48,9 +48,9 @@ def misfit_around(
 
 
 def _power(standard: ComplexArray, modes: int) -> float:
-    """Return mean |x|^2, with the values that fitted residues and poles took up.
+    """Return mean |x|^2, corrected for the fitted parameters.
 
-    A residue of its own for every FRF, one pole for all.
+    One residue per FRF, one pole for all.
     """
     n_frf, n_lines = standard.shape
     left = n_frf * (n_lines - modes) - modes

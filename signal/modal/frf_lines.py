@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The lines of an FRF that are being fitted, and the width of its peaks."""
+"""The lines of an FRF of a fit, and the width of its peaks."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from jointbench.signal.frf.frf import Frf
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrfLines:
-    """The lines of an FRF that are being fitted.
+    """The lines of an FRF of a fit.
 
     Attributes:
         laplace: s of each line [rad/s], shape (n_lines,).
@@ -34,14 +34,14 @@ def measured_width(lines: FrfLines, pole: ComplexArray) -> FloatArray:
 
 
 def lines_of(frf: Frf, keep: BoolArray) -> FrfLines:
-    """Take the kept lines of an FRF.
+    """Return the kept lines of an FRF.
 
     Args:
         frf: any kind.
         keep: True for the lines to fit, shape (n_lines,).
 
     Returns:
-        The lines with one row a pair of output and input, inputs varying fastest.
+        The lines with one row per pair of output and input, inputs varying fastest.
     """
     laplace = np.asarray(2j * np.pi * frf.frequency[keep] + frf.added_decay_rate)
     response = frf.response[:, :, keep].reshape(-1, laplace.size)

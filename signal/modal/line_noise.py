@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""How far each line of an FRF can be trusted: noise, and what no model explains.
+"""Variance of each line of an FRF: noise and model error.
 
-Where hits were averaged, their scatter tells the noise. Where only the FRF is given,
+Where hits were averaged, their scatter gives the noise. Where only the FRF is given,
 its roughness does: from line to line a structure is smooth and noise is not. Neither
-sees that the structure is not quite what the model says; that is judged by what a fit
-leaves over.
+includes the model error; that is estimated from the residual of a fit.
 """
 
 import numpy as np
@@ -14,12 +13,12 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 
 # |x|^2 of complex normal noise has this median, as a share of its mean.
 _MEDIAN_OF_POWER = float(np.log(2.0))
-# Lines over which noise is taken to be alike: few where resonances stand in the way.
+# Lines over which the noise is assumed constant; fewer for a response with resonances.
 _ROUGHNESS_LINES = 41
 _RESIDUAL_LINES = 164
 _LEVEL_LINES = 11
-_MISFIT_LINES = 41
-# No FRF is known better than this share of its own level: converters, cables.
+_RESIDUAL_LINES = 41
+# Least sd of an FRF as a share of its own level: converters, cables.
 _BEST = 1e-7
 
 
@@ -33,8 +32,8 @@ def line_noise(
     Args:
         response: FRF, shape (n_frf, n_lines).
         scatter: variance from the scatter between hits, same shape, or None.
-        residual: what a fit left over, same shape, if there was one: the response is
-            rough where it resonates, the residual only where it is noisy.
+        residual: of a fit, same shape, or None: the response is rough at resonances,
+            the residual only where it is noisy.
 
     Returns:
         E|error|^2, same shape, positive everywhere.
@@ -53,11 +52,11 @@ def line_noise(
 def roughness(response: ComplexArray, *, alike: int = _ROUGHNESS_LINES) -> FloatArray:
     """Estimate the noise variance from second differences along the lines.
 
-    A median over a block of lines passes over resonances, which are narrow.
+    A median over a block of lines ignores resonances, which are narrow.
 
     Args:
         response: FRF, shape (n_frf, n_lines).
-        alike: lines over which the noise is taken to be the same.
+        alike: lines over which the noise is assumed constant.
 
     Returns:
         E|error|^2, same shape.
@@ -79,10 +78,10 @@ def local_level(response: ComplexArray) -> FloatArray:
     )
 
 
-def local_misfit(residual: ComplexArray) -> FloatArray:
-    """Return |residual|^2 averaged over the lines around, same shape."""
+def local_residual(residual: ComplexArray) -> FloatArray:
+    """Return |residual|^2 averaged over neighbouring lines, same shape."""
     return np.asarray(
-        uniform_filter1d(np.abs(residual) ** 2, _MISFIT_LINES, axis=1, mode="nearest")
+        uniform_filter1d(np.abs(residual) ** 2, _RESIDUAL_LINES, axis=1, mode="nearest")
     )
 
 
@@ -92,7 +91,7 @@ def model_error(
     """Estimate the relative error of the model itself.
 
     Args:
-        residual: what a fit left over, shape (n_frf, n_lines).
+        residual: of a fit, shape (n_frf, n_lines).
         noise: variance of the lines, same shape.
         response: the FRF, same shape.
 

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Poles by least squares on a right matrix fraction, all orders in one go (LSCF).
+"""Poles by least squares on a right matrix fraction, all orders at once (LSCF).
 
-The FRF is written as H = B(z) A(z)^-1 with z on the unit circle: A has one column an
-input (poly-reference), B one row an output. Eliminating B leaves one small Hermitian
+The FRF is written as H = B(z) A(z)^-1 with z on the unit circle: A has one column per
+input (poly-reference), B one row per output. Eliminating B leaves one small Hermitian
 matrix, made of Toeplitz blocks that an FFT fills; its Cholesky factor nests, so that
 every order is a leading block of the largest.
 
 Two choices matter:
 
-- a band that begins next to zero can be laid on half the circle with real
+- a band that begins next to zero can be mapped to half the circle with real
   coefficients, as in the textbook, or around nearly the whole circle with complex ones.
-  The first knows the mirror image of a low mode, whose flank else costs that mode some
-  damping; the second has one pole a mode instead of two, and conditions a band far from
-  zero as well as one that starts there;
-- the constant coefficient of A is the identity, not the highest. The poles made of
-  noise then fall outside the circle, and what is left inside is nearly all structure
-  (Cauberghe, Applied frequency-domain system identification, 2004, ch. 4).
+  The first includes the mirror image of a low mode, whose flank would otherwise bias
+  its damping; the second has one pole per mode instead of two, and is as well
+  conditioned for a band far from zero;
+- the constant coefficient of A is the identity, not the highest. Noise poles then fall
+  outside the circle, and those inside are nearly all structural (Cauberghe, Applied
+  frequency-domain system identification, 2004, ch. 4).
 """
 
 import math
@@ -35,14 +35,14 @@ from jointbench.signal.modal.matrix_roots import inverse_roots
 _GAP = 0.05
 # A band that begins below this share of its end begins next to zero.
 _NEXT_TO_ZERO = 0.1
-# Lines this close to whole multiples of their pitch are taken to be such.
+# Tolerance of lines at whole multiples of their spacing.
 _WHOLE = 1e-9
 # Keeps the normal equations definite where clean data leave them singular.
 _RIDGE = 1e-14
-# Spectra transformed in one go: fast, and small beside the FRF itself.
+# Spectra per transform: fast, and small compared with the FRF itself.
 _SERIES_AT_ONCE = 128
 Progress = Callable[[str, float], None]
-"""Called with what is being done, and the share of it that is done [-]."""
+"""Called with the current step and its completed share [-]."""
 _TINY = float(np.finfo(float).tiny)
 Coefficients = NDArray[np.inexact[Any]]
 """Real on half the circle, complex on the whole."""
@@ -54,7 +54,7 @@ class OrderPoles:
 
     Attributes:
         order: degree of the polynomial; times the number of inputs = poles found,
-            mirror images among them where these are fitted along.
+            including mirror images where these are fitted.
         pole: [rad/s], shape (n_poles,), those with positive damping only.
         shape: response at each pole, unit length, shape (n_poles, n_outputs).
     """
@@ -94,7 +94,7 @@ class _Circle:
 
     @classmethod
     def around(cls, frequency: FloatArray, half: bool | None) -> "_Circle":
-        """Lay a band around the circle but for a small gap, at an FFT's pitch."""
+        """Map a band to the circle but for a small gap, at the spacing of an FFT."""
         low, high = 2.0 * np.pi * frequency[[0, -1]]
         pitch = (high - low) / (frequency.size - 1)
         if half is None:
@@ -154,16 +154,16 @@ def fit_poles(
         frequency: lines of the band [Hz], shape (n_lines,).
         response: FRF on them, any kind, shape (n_outputs, n_inputs, n_lines).
         orders: degrees, each at least 1; ascending.
-        weight: of each line [-], shape (n_lines,), or None for all alike (see
+        weight: of each line [-], shape (n_lines,), or None for equal weights (see
             `line_weights`).
-        scalar: one denominator for all FRFs, each an output of its own: for many
-            inputs, or inputs that were not measured together. Close modes then share
-            the order with all others, and shapes have n_outputs n_inputs components.
+        scalar: one denominator for all FRFs, each a separate output: for many inputs,
+            or inputs that were not measured together. Close modes then share the order
+            with all others, and shapes have n_outputs n_inputs components.
         mirrored: whether the mirror images of the poles, at negative frequencies, are
-            fitted along: real coefficients on half the circle. None does so where the
+            fitted too: real coefficients on half the circle. None does so where the
             band begins below a tenth of its end.
-        added_decay_rate: of the exponential window [1/s], taken off the poles.
-        progress: told what is done, and the share of it; None for nobody.
+        added_decay_rate: of the exponential window [1/s], subtracted from the poles.
+        progress: called with the current step and its share; None for no reports.
 
     Returns:
         For each order the poles inside the band with positive damping.
@@ -214,7 +214,7 @@ def _modes_among(pole: ComplexArray, band: tuple[float, float]) -> IntArray:
 
 
 def _unit(shape: ComplexArray) -> ComplexArray:
-    """Return shapes of unit length, one a row."""
+    """Return shapes of unit length, one per row."""
     length = np.linalg.norm(shape, axis=1, keepdims=True)
     return np.asarray(shape / np.where(length > 0, length, 1.0))
 
@@ -258,13 +258,13 @@ def _normal_equations(
 
 
 def _blocks(moments: Coefficients, size: int) -> Coefficients:
-    """Return Toeplitz blocks with entry (a, b) = moment of z^(b - a), one a row."""
+    """Return Toeplitz blocks with entry (a, b) = moment of z^(b - a), one per row."""
     place = np.arange(size)
     return np.asarray(moments[:, size - 1 + place - place[:, None]])
 
 
 def _regular(matrix: Coefficients) -> Coefficients:
-    """Return the matrix with a ridge far below anything that was measured."""
+    """Return the matrix with a ridge far below the measured values."""
     ridge = _RIDGE * np.trace(matrix).real
     return np.asarray(matrix + ridge * np.eye(matrix.shape[0]))
 
@@ -272,7 +272,7 @@ def _regular(matrix: Coefficients) -> Coefficients:
 def _nested(
     reduced: _Reduced, orders: Sequence[int]
 ) -> Iterator[tuple[int, Coefficients]]:
-    """Yield each order with its reduced matrix, growing by one row of B a step."""
+    """Yield each order with its reduced matrix, growing by one row of B per step."""
     wanted = set(orders)
     eliminated = np.zeros_like(reduced.square)
     for row in range(max(orders) + 1):

@@ -7,11 +7,11 @@ and accelerance, is
     H(s) = s^q [ sum_r R_r / (s - p_r) + conj(R_r) / (s - conj(p_r))
                  + lower / s^2 + lower' / s + upper + upper' s + ... s^6 ]
 
-so that residues are always those of receptance, whatever was measured, and the window's
-damping never enters them. The residual terms have real coefficients: mass below the
-band, stiffness above it, and how that stiffness softens and is damped towards the modes
-above. Two terms only, as the textbooks have it, let strong modes beyond the band bias
-the damping of those within.
+so that residues are those of receptance for any kind of FRF, free of the window's
+damping. The residual terms have real coefficients: mass below the band, stiffness above
+it, and how that stiffness softens and is damped towards the modes above. With only the
+two terms of the textbooks, strong modes beyond the band bias the damping of those
+within.
 """
 
 from dataclasses import dataclass, replace
@@ -27,19 +27,19 @@ from jointbench.signal.modal.normal_equations import (
     stacked,
 )
 
-# Powers of s of the residual terms, beside the derivative of the FRF's kind.
+# Powers of s of the residual terms, in addition to the derivative of the FRF's kind.
 _RESIDUAL_POWERS = (-2, -1, 0, 1, 2, 3, 4, 5, 6)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearFit:
-    """Residues and residual terms of every FRF, and how well they are known.
+    """Residues and residual terms of every FRF, and their covariance.
 
     Attributes:
         coefficients: Re and Im of each residue, pole by pole, then the residual terms,
             shape (n_frf, 2 n_modes + 9); residual terms on orthonormal columns.
         synthesis: the fitted FRF, shape (n_frf, n_lines).
-        significance: chi-squared lost if a mode were left out, summed over FRFs,
+        significance: increase of chi-squared if a mode were left out, summed over FRFs,
             shape (n_modes,).
     """
 
@@ -48,7 +48,7 @@ class LinearFit:
     significance: FloatArray
 
     def of_modes(self, n_modes: int) -> "LinearFit":
-        """Return the same fit with only its first poles counted as modes."""
+        """Return the fit with only its first poles as modes."""
         return replace(self, significance=self.significance[:n_modes])
 
     def residues(self) -> ComplexArray:
@@ -59,11 +59,11 @@ class LinearFit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ResidualTerms:
-    """What lies below and above the band, as seen in it.
+    """Residual terms of the modes below and above the band.
 
     Attributes:
-        lower: of the receptance, lower / s^2 [1/kg]: one over the mass that modes
-            below the band, or a free body, put in; shape (n_frf,).
+        lower: of the receptance, lower / s^2 [1/kg]: one over the mass of the modes
+            below the band, or of a free body; shape (n_frf,).
         upper: of the receptance [m/N]: the compliance of the modes above, shape
             (n_frf,).
     """
@@ -76,12 +76,11 @@ def residual_terms(lines: FrfLines, fit: LinearFit) -> ResidualTerms:
     """Return the lower and upper residual of every FRF.
 
     Args:
-        lines: what was fitted.
+        lines: lines of the fit.
         fit: of `fit_residues`.
 
     Returns:
-        The two classical terms; the further powers of s that the fit carries beside
-        them are left out.
+        The two classical terms, without the further powers of s of the fit.
     """
     n_modal = 2 * fit.significance.size
     s = lines.laplace
@@ -89,7 +88,7 @@ def residual_terms(lines: FrfLines, fit: LinearFit) -> ResidualTerms:
     parts = fit.coefficients[:, n_modal:] @ used.T
     scale = np.abs(s[s.size // 2])
     powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
-    # The fit has these columns made orthogonal to each other: taken apart again here.
+    # The fit uses orthonormal combinations of these columns: undone here.
     columns = stacked(powers * (s**lines.derivatives)[:, None])
     size = np.linalg.norm(columns, axis=0)
     terms = np.linalg.lstsq(columns / size, stacked(parts.T), rcond=None)[0].T / size
@@ -101,7 +100,7 @@ def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     """Return the model's columns: two for each pole, then the residual terms.
 
     Args:
-        lines: what is fitted.
+        lines: lines of the fit.
         pole: [rad/s], shape (n_modes,).
 
     Returns:
@@ -121,7 +120,7 @@ def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
 def _residual_terms(s: ComplexArray, power: ComplexArray) -> ComplexArray:
     """Return columns that span the residual terms, orthonormal over the lines.
 
-    Powers of s as they stand are nearly one another's multiples.
+    Plain powers of s are nearly collinear.
     """
     scale = np.abs(s[s.size // 2])
     terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
@@ -150,11 +149,11 @@ def fit_residues(
     """Fit residues and residual terms to every FRF.
 
     Args:
-        lines: what is fitted.
+        lines: lines of the fit.
         pole: [rad/s], shape (n_modes,).
         variance: E|error|^2 of each line, shape (n_frf, n_lines).
-        real_modes: residues purely imaginary, as those of a proportionally damped
-            structure are: half the unknowns, and a bias where damping is not so.
+        real_modes: residues purely imaginary, as for proportional damping: half the
+            unknowns, and a bias for other damping.
 
     Returns:
         The fit, its synthesis on the same lines, and the weight of each mode in it.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Poles that were chosen by hand against the automatic selection."""
+"""Poles chosen by the operator instead of the automatic selection."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,17 +9,17 @@ import numpy as np
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.signal.modal.stabilisation import PoleCandidate, Stabilisation
 
-# A frequency given by hand means a pole no further off than this share of it.
+# Largest distance of a pole from a given frequency, as a share of it.
 _REACH = 0.01
 
 
 @dataclass(frozen=True, slots=True)
 class Choices:
-    """What a person decided otherwise.
+    """Manual changes to the selection.
 
     Attributes:
-        keep: frequencies [Hz] of poles that are modes, whatever the FRF says.
-        drop: frequencies [Hz] of poles that are none.
+        keep: frequencies [Hz] of poles to keep as modes.
+        drop: frequencies [Hz] of poles to drop.
     """
 
     keep: tuple[float, ...] = ()
@@ -29,15 +29,15 @@ class Choices:
 def overrule(
     found: Sequence[PoleCandidate], table: Stabilisation, choices: Choices
 ) -> tuple[PoleCandidate, ...]:
-    """Apply choices made by hand to the candidates.
+    """Apply manual choices to the candidates.
 
     Args:
         found: automatic candidates.
         table: poles of all orders, to keep one that is not among the candidates.
-        choices: made by hand.
+        choices: manual.
 
     Returns:
-        Candidates by ascending frequency; those kept by hand say so.
+        Candidates by ascending frequency; those kept by hand are marked.
 
     Raises:
         UsageError: no pole within 1 % of a frequency given.
@@ -92,7 +92,7 @@ def _from_table(table: Stabilisation, frequency: float) -> PoleCandidate:
 
 
 def _nothing_at(frequency: float, there: Sequence[float], verb: str) -> UsageError:
-    """Return the error that says where the nearest poles are."""
+    """Return the error that names the nearest poles."""
     near = sorted(there, key=lambda f: abs(f - frequency))[:3]
     places = ", ".join(f"{f:.6g}" for f in near) or "none at all"
     return UsageError(

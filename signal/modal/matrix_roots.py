@@ -2,9 +2,9 @@
 """Roots of matrix polynomials of rising order, each order started from the last.
 
 The poles of one order are nearly those of the order before. Ehrlich-Aberth iteration
-uses that: all roots are polished at once, each repelled by the others so that no two
-meet in one root, at a cost of n^2 a sweep where a companion matrix takes n^3. What does
-not converge, or does not add up to the trace, is solved by LAPACK instead.
+uses that: all roots are refined at once, each repelled by the others so that no two
+converge to one root, at a cost of n^2 per sweep where a companion matrix takes n^3.
+What does not converge, or does not add up to the trace, is solved by LAPACK instead.
 
 Source:
     Aberth, Math. Comp. 27 (1973) 339; Bini and Noferini, Linear Algebra Appl. 439
@@ -16,7 +16,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray
 from jointbench.acquisition.basics.compiled import compiled
 
-# Convergence is cubic: the step after one this small is lost in rounding.
+# Convergence is cubic: the next step is below rounding.
 _SMALL_STEP = 1e-9
 _SWEEPS = 30
 # Roots of a monic polynomial add up to minus its next coefficient, within this.
@@ -50,7 +50,7 @@ def inverse_roots(
 
 
 def companion_roots(denominator: ComplexArray) -> ComplexArray:
-    """Return the same by LAPACK, from the block companion matrix."""
+    """Return the inverse roots by LAPACK, from the block companion matrix."""
     order, width = denominator.shape[0] - 1, denominator.shape[1]
     companion = np.eye(order * width, k=width, dtype=complex)
     last = -denominator[:0:-1].transpose(1, 0, 2).reshape(width, -1)
@@ -59,9 +59,9 @@ def companion_roots(denominator: ComplexArray) -> ComplexArray:
 
 
 def _grown(start: ComplexArray, size: int) -> ComplexArray:
-    """Add the roots that a higher order has more, in the widest gaps of angle.
+    """Add the extra roots of a higher order in the widest gaps of angle.
 
-    A tilt off the ring keeps them from standing on top of one another.
+    An offset from the ring keeps them distinct.
     """
     roots = start
     radius = float(np.median(np.abs(start)))
@@ -79,7 +79,7 @@ def _grown(start: ComplexArray, size: int) -> ComplexArray:
 def _polish(
     denominator: ComplexArray, roots: ComplexArray, small: float, sweeps: int
 ) -> bool:
-    """Polish all roots in place; tell whether all came to rest."""
+    """Refine all roots in place; return whether all converged."""
     moving = np.ones(roots.size, np.bool_)
     for _ in range(sweeps):
         left = 0
@@ -95,7 +95,7 @@ def _polish(
                     push += away.conjugate() / square
             slope = _slope(denominator, root) - push
             square = slope.real * slope.real + slope.imag * slope.imag
-            # An infinite slope stands on a root, a slope that is no number is lost.
+            # An infinite slope is at a root; a NaN has failed.
             change = slope.conjugate() / square if square < np.inf else 0.0j
             if not abs(change) < np.inf:
                 return False
@@ -135,7 +135,7 @@ def _slope(denominator: ComplexArray, root: complex) -> complex:
 
 @compiled(error_model="numpy")
 def _log_slope(value: ComplexArray, slope: ComplexArray) -> complex:
-    """Return trace(value^-1 slope) by elimination; both are used up."""
+    """Return trace(value^-1 slope) by elimination; both are overwritten."""
     width = value.shape[0]
     for k in range(width):
         best = k

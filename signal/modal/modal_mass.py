@@ -23,7 +23,7 @@ class NormalisedShapes:
         shapes: [1/sqrt(kg)], shape (n_modes, n_outputs).
         modal_mass: with the largest component scaled to 1 [kg], shape (n_modes,).
         driving_points: the point that scaled each mode, the one where it moves most.
-        phase: of 2 j omega R there [rad], shape (n_modes,): 0 of a real mode and a
+        phase: of 2 j omega R there [rad], shape (n_modes,): 0 for a real mode and a
             well-placed sensor. Beyond a few degrees the mode is complex, or sensor and
             hammer do not share point and direction; beyond 90 one has its sign wrong.
     """
@@ -79,7 +79,7 @@ def mass_normalise(
         raise ChannelMissing(
             "no driving point: none of the responses "
             f"({', '.join(model.outputs)}) is where a force acts "
-            f"({', '.join(model.inputs)}); hit once beside a sensor, in its direction"
+            f"({', '.join(model.inputs)}); hit once next to a sensor, in its direction"
         )
     rows, columns = (list(side) for side in zip(*points, strict=True))
     damped = model.poles.imag

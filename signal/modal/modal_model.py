@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The modal model of a structure, and how a fit becomes one."""
+"""The modal model of a structure, built from a fit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -20,7 +20,7 @@ from jointbench.signal.modal.mode_selection import FittedModes
 from jointbench.signal.modal.residue_covariance import residue_uncertainty
 from jointbench.signal.modal.stabilisation import PoleCandidate
 
-# Interval twice as wide as noise alone would make it.
+# Interval twice as wide as for noise alone.
 _SYSTEMATIC = 4.0
 
 
@@ -33,8 +33,8 @@ class ModalModel:
         frequency_sd: its standard uncertainty [Hz], shape (n_modes,).
         damping_ratio: [-], shape (n_modes,).
         damping_ratio_sd: its standard uncertainty [-], shape (n_modes,).
-        residues: of the receptance, whatever was measured [m/(N s)], shape
-            (n_modes, n_outputs, n_inputs).
+        residues: of the receptance, for any kind of FRF [m/(N s)], shape (n_modes,
+            n_outputs, n_inputs).
         residues_sd: standard uncertainty of their real part and, as imaginary part, of
             their imaginary part, same shape.
         shapes: response of each output, largest component real and 1, shape
@@ -42,14 +42,15 @@ class ModalModel:
         shapes_sd: standard uncertainty of real and imaginary part, likewise.
         participation: residue of that largest component from each input [m/(N s)],
             shape (n_modes, n_inputs).
-        significance: chi-squared lost if the mode were left out [-], shape (n_modes,).
-        misfit: residual around each mode over its noise [-]: 1 where noise is all
-            there is, shape (n_modes,).
+        significance: increase of chi-squared if the mode were left out [-], shape
+            (n_modes,).
+        residual_ratio: around each mode, rms residual over noise [-]: 1 for noise
+            alone, shape (n_modes,).
         stable_orders: at how many orders it was stable, shape (n_modes,).
-        by_hand: True for a mode that a person insisted on, shape (n_modes,).
+        by_hand: True for a mode kept by the operator, shape (n_modes,).
         outputs: labels of the outputs.
         inputs: labels of the inputs.
-        provenance: how it came about.
+        provenance: origin and processing steps.
     """
 
     natural_frequency: FloatArray
@@ -62,7 +63,7 @@ class ModalModel:
     shapes_sd: ComplexArray
     participation: ComplexArray
     significance: FloatArray
-    misfit: FloatArray
+    residual_ratio: FloatArray
     stable_orders: IntArray
     by_hand: BoolArray
     outputs: tuple[str, ...]
@@ -86,7 +87,7 @@ class ModalModel:
             ("shapes_sd", (n_modes, n_outputs)),
             ("participation", (n_modes, n_inputs)),
             ("significance", (n_modes,)),
-            ("misfit", (n_modes,)),
+            ("residual_ratio", (n_modes,)),
             ("stable_orders", (n_modes,)),
             ("by_hand", (n_modes,)),
         ):
@@ -96,12 +97,12 @@ class ModalModel:
 
     @property
     def systematic(self) -> BoolArray:
-        """True where misfit, not noise, makes most of the interval, shape (n_modes,).
+        """True where the residual exceeds the noise in the interval, shape (n_modes,).
 
-        The model is not quite right there: leakage, a neighbour left out, a structure
-        that is not linear. More averages would not narrow the interval.
+        The model is inexact there: leakage, a missing neighbour, a nonlinear structure.
+            More averages would not narrow the interval.
         """
-        return np.asarray(self.misfit > _SYSTEMATIC)
+        return np.asarray(self.residual_ratio > _SYSTEMATIC)
 
     @property
     def poles(self) -> ComplexArray:
@@ -117,11 +118,11 @@ def build_model(
     found: Sequence[PoleCandidate],
     provenance: Provenance,
 ) -> ModalModel:
-    """Turn fitted poles and residues into a modal model.
+    """Build a modal model from fitted poles and residues.
 
     Args:
-        frf: what was fitted; names outputs and inputs.
-        fitted: the modes that passed.
+        frf: the fitted FRF; names outputs and inputs.
+        fitted: the accepted modes.
         found: all candidates; `fitted.chosen` indexes them.
         provenance: of the model.
 
@@ -149,7 +150,7 @@ def build_model(
         shapes_sd=shapes_sd[by_frequency],
         participation=participation,
         significance=fitted.significance[by_frequency],
-        misfit=fitted.misfit[by_frequency],
+        residual_ratio=fitted.residual_ratio[by_frequency],
         stable_orders=np.array([c.stable_orders for c in chosen], np.int64),
         by_hand=np.array([c.by_hand for c in chosen], bool),
         outputs=frf.outputs,

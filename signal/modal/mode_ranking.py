@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""How sure each mode is, and how much of its uncertainty is no noise.
+"""Confidence in each mode, and the systematic part of its uncertainty.
 
-Two things make a mode doubtful: it stands still at few model orders, and its damping is
-hardly known. Confidence is the product of both on scales from 0 to 1. What the model
-misses around a mode is not random: more hits would not lessen it, so it is given apart.
+A mode is doubtful if it is stable at few model orders or its damping is uncertain.
+Confidence is the product of both on scales from 0 to 1. The model error around a mode
+is not random: more hits would not reduce it, so it is reported separately.
 """
 
 from dataclasses import dataclass
@@ -15,17 +15,17 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.signal.modal.modal_model import ModalModel
 
 FEW_ORDERS = 0.25
-"""Share of the orders below which a mode is shown apart [-]."""
+"""Share of the orders below which a mode is listed separately [-]."""
 _SURE, _DOUBTFUL = 0.4, 0.2
-"""Confidence from which a mode is sure, and below which it is doubtful [-]."""
+"""Least confidence of a reliable mode, and of one that is not doubtful [-]."""
 _BROAD = 10.0
-"""Damping over the median of all modes from which a pole may be background [-]."""
+"""Damping over the median of all modes above which a pole may be background [-]."""
 _VAGUE = 1.0 / 3.0
-"""Relative sd of damping at which selection gives a mode up [-]."""
+"""Relative sd of damping at which selection drops a mode [-]."""
 
 
 class Grade(StrEnum):
-    """How far a mode can be relied on."""
+    """Reliability of a mode."""
 
     SURE = "sure"
     FAIR = "fair"
@@ -34,15 +34,15 @@ class Grade(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModeConfidence:
-    """What speaks for each mode.
+    """Confidence in each mode, with its parts.
 
     Attributes:
         share: of the orders at which it was stable [-], shape (n_modes,).
-        confidence: from 0, doubtful, to 1, sure [-], shape (n_modes,).
-        rank: 1 for the surest, shape (n_modes,).
-        grades: in words.
-        broad: True where the damping is ten times that of the usual mode, so that the
-            pole may stand for a background; never sure, shape (n_modes,).
+        confidence: from 0, doubtful, to 1, reliable [-], shape (n_modes,).
+        rank: 1 for the highest confidence, shape (n_modes,).
+        grades: reliability of each.
+        broad: True where the damping is ten times the median, so that the pole may
+            represent a background; never reliable, shape (n_modes,).
         frequency_error: systematic part of the sd of the natural frequency [Hz], shape
             (n_modes,).
         damping_error: that of the damping ratio [-], shape (n_modes,).
@@ -71,8 +71,8 @@ def rate_modes(model: ModalModel, orders: int) -> ModeConfidence:
 
     Returns:
         Share of orders times 1 - 3 sd / value of the damping ratio, which is 0 where
-        selection would give the mode up. The systematic part of an sd is what noise
-        does not explain: sd sqrt(1 - 1 / misfit).
+        selection would drop the mode. The systematic part of an sd is what noise does
+        not explain: sd sqrt(1 - 1 / residual_ratio).
     """
     share = np.clip(model.stable_orders / max(orders, 1), 0.0, 1.0)
     vague = model.damping_ratio_sd / np.abs(model.damping_ratio) / _VAGUE
@@ -80,7 +80,7 @@ def rate_modes(model: ModalModel, orders: int) -> ModeConfidence:
     broad = np.asarray(model.damping_ratio > _BROAD * np.median(model.damping_ratio))
     rank = np.empty(confidence.size, np.int64)
     rank[np.argsort(-confidence, kind="stable")] = np.arange(1, confidence.size + 1)
-    beyond_noise = np.sqrt(1.0 - 1.0 / np.maximum(model.misfit, 1.0))
+    beyond_noise = np.sqrt(1.0 - 1.0 / np.maximum(model.residual_ratio, 1.0))
     return ModeConfidence(
         share=share,
         confidence=confidence,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""From candidate poles to modes: what the FRF itself has to say about each.
+"""Selection of modes among candidate poles by the chi-squared of the FRF.
 
-A pole that keeps still over orders may still describe nothing: a wiggle of noise, or a
-patch on the misfit of a stronger mode. So each candidate must pay its way: leaving it
-out must cost more chi-squared than noise and the misfit around it could explain.
+A pole that is stable over orders may still describe noise, or the residual of a
+stronger mode. So a candidate is kept only if leaving it out raises chi-squared by more
+than noise and the local residual can explain.
 """
 
 from dataclasses import dataclass
@@ -18,12 +18,12 @@ from jointbench.acquisition.basics.arrays import (
     IntArray,
 )
 from jointbench.signal.modal.computational_modes import find_beyond
-from jointbench.signal.modal.fit_residuals import misfit_around
+from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
     local_level,
-    local_misfit,
+    local_residual,
     model_error,
 )
 from jointbench.signal.modal.lscf import Progress
@@ -34,29 +34,29 @@ from jointbench.signal.modal.refined_pole_covariance import (
     unresolved,
 )
 
-# Relative model error taken for granted before a fit has shown its own [-].
+# Relative model error assumed before a fit has estimated it [-].
 _FIRST_MODEL_ERROR = 0.02
-# Chance that any wiggle of noise in the whole band passes for a mode; every line is a
-# look of its own (Bonferroni).
+# Probability that noise anywhere in the band passes for a mode; every line is one test
+# (Bonferroni).
 _CHANCE = 1e-6
-# A mode whose damping has an sd beyond this share of it is not known.
+# A mode whose damping has a relative sd above this is dropped.
 _VAGUE = 1.0 / 3.0
 _STEPS = 30
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FittedModes:
-    """Modes that passed, with everything the fit knows of them.
+    """Accepted modes with the results of their fit.
 
     Attributes:
-        chosen: indices of the candidates that passed, shape (n_modes,).
+        chosen: indices of the accepted candidates, shape (n_modes,).
         poles: refined, with covariance and inflation.
         fit: residues on the same lines.
         variance: noise and model error of each line, shape (n_frf, n_lines).
-        significance: chi-squared lost without each mode, by the misfit around it,
-            shape (n_modes,).
+        significance: increase of chi-squared without each mode, over the local
+            residual, shape (n_modes,).
         model_error: of the fit, as a share of the local level [-].
-        misfit: residual around each mode over noise alone [-], shape (n_modes,).
+        residual_ratio: around each mode, rms residual over noise [-], shape (n_modes,).
     """
 
     chosen: IntArray
@@ -65,7 +65,7 @@ class FittedModes:
     variance: FloatArray
     significance: FloatArray
     model_error: float
-    misfit: FloatArray
+    residual_ratio: FloatArray
 
 
 def fit_modes(
@@ -79,17 +79,17 @@ def fit_modes(
 ) -> FittedModes:
     """Refine candidate poles and keep those that the FRF needs.
 
-    The weights are worked out twice: a first fit assumes a model error of 2 % of the
-    local level beside the noise, the second takes the error the first one showed.
+    The weights are calculated twice: the first fit assumes a model error of 2 % of the
+        local level in addition to the noise, the second uses the error found by the
+        first.
 
     Args:
-        lines: what is fitted.
+        lines: lines of the fit.
         candidates: poles [rad/s], shape (n_candidates,).
         scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
-        held: True for candidates that stay whatever the FRF says, shape
-            (n_candidates,), or None.
-        refine: False keeps the poles where LSCF put them.
-        progress: told what is done, and the share of it; None for nobody.
+        held: True for candidates that are always kept, shape (n_candidates,), or None.
+        refine: False keeps the poles of LSCF.
+        progress: called with the current step and its share; None for no reports.
 
     Returns:
         The modes, possibly none.
@@ -98,11 +98,11 @@ def fit_modes(
     variance = noise + _FIRST_MODEL_ERROR**2 * level
     steps = _STEPS if refine else 0
     held = np.zeros(candidates.size, bool) if held is None else held
-    tell = progress or _nobody
-    tell("refining modes", 0.0)
+    report = progress or _silent
+    report("refining modes", 0.0)
     chosen, poles = _first_fit(lines, candidates, held, noise, variance, steps)
-    tell("refining modes", 0.4)
-    # The response itself is rough where it resonates; what a fit leaves is not.
+    report("refining modes", 0.4)
+    # The response itself is rough at resonances; the residual of a fit is not.
     noise = line_noise(lines.response, scatter, poles.residual)
     beyond = poles.beyond
     if refine:
@@ -115,7 +115,7 @@ def fit_modes(
     error = model_error(residual, noise, lines.response)
     variance = noise + error**2 * level
     kept = _needed(lines, poles.pole, held[chosen], noise, variance, beyond)
-    tell("refining modes", 0.7)
+    report("refining modes", 0.7)
     while True:
         chosen = chosen[kept]
         poles = refine_poles(
@@ -133,7 +133,7 @@ def fit_modes(
         aside = unresolved(lines, poles.pole) & ~held[chosen]
         bad = (_vague(lines, poles, significance) & ~held[chosen]) | aside
         if not bad.any():
-            tell("refining modes", 1.0)
+            report("refining modes", 1.0)
             return FittedModes(
                 chosen,
                 poles,
@@ -141,14 +141,14 @@ def fit_modes(
                 variance,
                 significance,
                 error,
-                misfit_around(lines, poles.pole, poles.residual, noise),
+                residual_around(lines, poles.pole, poles.residual, noise),
             )
         beyond = np.append(beyond, poles.pole[aside])
         kept = np.flatnonzero(~bad)
 
 
-def _nobody(what: str, share: float) -> None:
-    """Tell no one."""
+def _silent(what: str, share: float) -> None:
+    """Report nothing."""
 
 
 def _first_fit(
@@ -178,12 +178,12 @@ def _first_fit(
 
 
 def _vague(lines: FrfLines, poles: RefinedPoles, significance: FloatArray) -> BoolArray:
-    """Tell which modes to give up because their damping cannot be told.
+    """Return which modes to drop because their damping is uncertain.
 
-    The damping without the window's: under a strong exponential window every wiggle of
-    noise has a width, and it is the window's.
+    The damping is taken without the window's: under a strong exponential window every
+    noise peak has the window's width.
 
-    Two poles laid on one peak are both vague, and the fit is as good with one: of
+    Two poles on one peak are both vague, and the fit is as good with one: of
     overlapping vague poles only the least significant goes, then the rest are refitted.
     """
     width = measured_width(lines, poles.pole)
@@ -213,7 +213,8 @@ def _needed(
         weak: BoolArray = (significance < limit) & ~held[left]
         if not weak.any():
             break
-        # Weak ones may stand in for each other: only the weakest goes, unless hopeless.
+        # Weak poles may replace each other: only the weakest is dropped, and those far
+        # below the limit.
         weak &= significance <= max(0.1 * limit, float(significance[weak].min()))
         left = left[~weak]
     return left
@@ -226,21 +227,21 @@ def _significance(
     noise: FloatArray,
     beyond: ComplexArray,
 ) -> FloatArray:
-    """Judge each mode by the noise or by the misfit around it, whichever is more."""
-    misfit = local_misfit(lines.response - fit.synthesis)
+    """Judge each mode by the noise or by the local residual, whichever is larger."""
+    local = local_residual(lines.response - fit.synthesis)
     everything = np.append(pole, beyond)
-    judged = fit_residues(lines, everything, np.maximum(noise, misfit))
+    judged = fit_residues(lines, everything, np.maximum(noise, local))
     apparent = np.nan_to_num(judged.significance[: pole.size])
     return np.asarray(apparent / _window_gain(lines, pole))
 
 
 def _window_gain(lines: FrfLines, pole: ComplexArray) -> FloatArray:
-    """Return how much more noise a mode meets than its lines show, 1 or more.
+    """Return the noise at a mode over that on its lines, 1 or more.
 
-    An exponential window exp(-a t) on a block T leaves the noise early in the block,
+    An exponential window exp(-a t) on a block T keeps the noise early in the block,
     where the mode is too: its power there is 2 a T / (1 - exp(-2 a T)) times the mean.
     Weighted with a decay exp(-(a + d) t), that is the factor below; 1 without a window.
-    In terms of lines: the window makes neighbours share one error.
+    In terms of lines: the window correlates the errors of neighbours.
     """
     added = float(lines.laplace.real[0])
     if added <= 0.0:

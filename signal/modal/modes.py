@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Modes of a structure from its FRF: the whole way, from lines to a modal model."""
+"""Identify the modes of a structure from its FRF."""
 
 from dataclasses import dataclass, field, replace
 
@@ -31,19 +31,19 @@ _HIGHEST_ORDER = 100
 _ORDERS_TRIED = 50
 # An order needs at least this many lines for each coefficient it adds.
 _LINES_PER_ORDER = 6
-# Beyond these an order that is asked for cannot be meant: noise, or hours.
+# Largest accepted order; beyond it a fit takes hours and fits noise.
 _LARGEST_ORDER = 200
 _LEAST_LINES_PER_ORDER = 2
 
 
 @dataclass(frozen=True, slots=True)
 class ModalSettings:
-    """How modes are looked for.
+    """Settings of the modal identification.
 
     Attributes:
         band: lowest and highest frequency [Hz], or None for the automatic choice.
         highest_order: of the fit, 2 or more, or None for 100 over the number of inputs.
-        stability: when a pole counts as stable.
+        stability: criteria of a stable pole.
         refine: whether poles are refined by nonlinear least squares.
         choices: poles kept or dropped by hand.
     """
@@ -57,17 +57,17 @@ class ModalSettings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModalResult:
-    """What `identify_modes` found and how far it goes.
+    """Result of `identify_modes`.
 
     Attributes:
         model: the modes.
         stabilisation: poles of all orders.
         synthesis: FRF of the model on the lines of the band.
-        synthesis_error: rms over all pairs of what the synthesis misses, as a share of
-            the rms of the FRF on that line [-], shape (n_lines,).
-        settings: as asked for.
-        band: lowest and highest line that was fitted [Hz].
-        stage_gain: what the Kalman stage did at each mode, or None without one.
+        synthesis_error: rms over all pairs of measured less synthesised FRF, as a share
+            of the rms of the FRF on that line [-], shape (n_lines,).
+        settings: as requested.
+        band: lowest and highest fitted line [Hz].
+        stage_gain: gain of the Kalman stage at each mode, or None without one.
     """
 
     model: ModalModel
@@ -90,30 +90,30 @@ def identify_modes(
     *,
     progress: Progress | None = None,
 ) -> ModalResult:
-    """Identify the modes of an FRF without being told where they are.
+    """Identify the modes of an FRF without start values.
 
-    Poles of all orders (LSCF), those that keep still (stabilisation), those that the
-    FRF needs (selection), refined by nonlinear least squares, then residues (LSFD).
+    The steps are: poles of all orders (LSCF), stable poles (stabilisation), significant
+        poles (selection), refinement by nonlinear least squares, residues (LSFD).
 
     Standard uncertainties are linearised at the optimum from the line variances, times
-    the factor by which the residual around each mode exceeds them (noise is the least
-    of it on real hits: leakage and small local modes dominate, and they are correlated
-    from line to line). A jackknife over hits was not chosen: the hits of one session
-    share those errors, so it calls them exact. A pole that could not be refined gets
-    the scatter over orders on top.
+    the factor by which the residual around each mode exceeds them (on real hits leakage
+    and small local modes dominate over noise, and they are correlated from line to
+    line). A jackknife over hits is not used: the hits of one session share those
+    errors, so it would not include them. The variance of a pole that could not be
+    refined includes the scatter over orders.
 
     Args:
         frf: any kind, any number of outputs and inputs.
         settings: see `ModalSettings`; None for the defaults.
-        progress: told what is done, and the share of it; None for nobody.
+        progress: called with the current step and its share; None for no reports.
 
     Returns:
-        The modal model with the evidence for it.
+        The modal model with its evidence.
 
     Raises:
         NoModeFound: no pole is stable and needed, or a response is zero throughout.
         BadData: the band holds too few lines.
-        UsageError: the highest order asked for is out of range.
+        UsageError: the requested highest order is out of range.
     """
     settings = settings or ModalSettings()
     _require_alive(frf)
@@ -153,7 +153,7 @@ def identify_modes(
 def _stabilisation(
     frf: Frf, keep: BoolArray, settings: ModalSettings, progress: Progress | None
 ) -> tuple[Stabilisation, str]:
-    """Return the poles of all orders, and what their lines were weighed by."""
+    """Return the poles of all orders, and the source of the line weights."""
     orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
     weight, source = weights_of(frf, keep)
     poles = fit_poles(
@@ -161,7 +161,7 @@ def _stabilisation(
         frf.response[:, :, keep],
         orders,
         weight=weight,
-        # One pole a mode draws the clearer table; refinement knows mirror images.
+        # One pole per mode gives the clearer table; refinement includes mirror images.
         mirrored=False,
         added_decay_rate=frf.added_decay_rate,
         progress=progress,
@@ -175,7 +175,7 @@ def orders_to_try(
     """Return the orders of the fit, about fifty at most.
 
     Args:
-        settings: `highest_order` is taken as it is where given.
+        settings: `highest_order` is used as given.
         n_lines: lines in the band.
         n_inputs: each order has as many poles as there are inputs.
 
@@ -183,7 +183,7 @@ def orders_to_try(
         Ascending orders.
 
     Raises:
-        UsageError: the highest order asked for is below 2, or beyond 200 or one pole
+        UsageError: the requested highest order is below 2, or beyond 200 or one pole
             for every two lines.
     """
     highest = settings.highest_order
@@ -203,7 +203,7 @@ def orders_to_try(
 
 
 def _require_alive(frf: Frf) -> None:
-    """Raise `NoModeFound` that names the responses that are zero on every line."""
+    """Raise `NoModeFound` with the names of responses that are zero on every line."""
     dead = ~np.any(frf.response, axis=2)
     if dead.any():
         names = sorted({frf.outputs[row] for row in np.flatnonzero(dead.any(axis=1))})
@@ -237,7 +237,7 @@ def _record(
 
 
 def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:
-    """Return the variance of the kept lines, one row a pair, or None."""
+    """Return the variance of the kept lines, one row per pair, or None."""
     if frf.variance is None:
         return None
     kept = frf.variance[:, :, keep]

@@ -6,7 +6,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 
 _RIDGE = 1e-13
-# Up to here the products of columns cost more than they save.
+# Up to this number of rows the products of columns cost more than they save.
 _FEW_FRFS = 8
 # Products of columns are formed for this many lines at a time, to stay in the cache.
 _LINES_AT_ONCE = 512
@@ -18,9 +18,9 @@ def stacked(values: ComplexArray) -> FloatArray:
 
 
 def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
-    """Return Re(columns^H diag(weight) columns) for all rows of weights.
+    """Return Re(columns^H diag(weight) columns) for every row of weights.
 
-    With many rows, each product of two columns serves them all.
+    With many rows, each product of two columns is formed once for all.
 
     Args:
         columns: shape (n_lines, n).
@@ -60,7 +60,7 @@ def inverses(gram: FloatArray) -> FloatArray:
     Returns:
         Same shape.
     """
-    # Rounding can leave the square of next to nothing below zero.
+    # Rounding can make the square of a tiny value negative.
     diagonal = np.sqrt(np.maximum(np.einsum("...ii->...i", gram), 0.0))
     scale = 1.0 / np.where(diagonal > 0.0, diagonal, 1.0)
     outer = scale[..., :, None] * scale[..., None, :]

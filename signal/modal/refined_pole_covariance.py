@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Poles refined by nonlinear least squares (variable projection), with covariance.
 
-LSCF minimises an equation error, which biases damping where noise is strong. From its
-poles a few Gauss-Newton steps on the output error remove that: residues and residual
-terms are solved for inside every step, so that only the poles are searched (Golub and
-Pereyra; Kaufman's Jacobian). With per-line variances this is maximum likelihood.
+LSCF minimises an equation error, which biases damping where noise is strong. A few
+Gauss-Newton steps on the output error, started from its poles, remove the bias:
+residues and residual terms are solved for inside every step, so that only the poles are
+searched (Golub and Pereyra; Kaufman's Jacobian). With per-line variances this is
+maximum likelihood.
 """
 
 from dataclasses import dataclass
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
-from jointbench.signal.modal.fit_residuals import misfit_around
+from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.lsfd import modal_basis, modal_size
 from jointbench.signal.modal.normal_equations import (
@@ -23,12 +24,12 @@ from jointbench.signal.modal.normal_equations import (
 
 # Stop when no pole moves by more than this share of its own half-power width.
 _SMALL_STEP = 1e-4
-# A pole that leaves its start by this many half-power half-widths is lost, not refined.
+# A pole that leaves its start by this many half-power half-widths has diverged.
 _LEASH = 1.0
 _LEASH_DAMPING = 10.0
 # A band that begins below this share of its end begins at zero.
 _NEXT_TO_ZERO = 0.1
-# Damping of the step beyond which it is the pole that is wrong, not the step.
+# Damping of the step above which the pole is dropped instead.
 _PATIENCE = 1.0
 _STUCK = 1e6
 
@@ -39,8 +40,8 @@ class Linearised:
 
     Attributes:
         poles: covariance of (Re p, Im p) of all poles, shape (2 n_modes, 2 n_modes).
-        residue_noise: covariance of (Re R, Im R) of all residues of an FRF while the
-            poles stand still, shape (n_frf, 2 n_modes, 2 n_modes).
+        residue_noise: covariance of (Re R, Im R) of all residues of an FRF at fixed
+            poles, shape (n_frf, 2 n_modes, 2 n_modes).
         residue_slope: their change with (Re p, Im p), same shape.
     """
 
@@ -55,16 +56,16 @@ class RefinedPoles:
 
     Attributes:
         pole: [rad/s], shape (n_modes,).
-        covariance: of (Re p, Im p) of each pole [rad^2/s^2] if the variances handed in
-            are right, shape (n_modes, 2, 2).
+        covariance: of (Re p, Im p) of each pole [rad^2/s^2] if the given variances are
+            right, shape (n_modes, 2, 2).
         inflation: residual around each pole over those variances, correlation between
             lines included; about 1 where they are right, less where they are too
             large; shape (n_modes,).
-        converged: False for a pole that ran away and was put back where it started,
-            and for all if the steps ran out; shape (n_modes,).
-        linearised: how residues follow, those of computational poles last.
-        beyond: computational poles where they came to rest [rad/s], shape (n,).
-        residual: what is left of the FRF, shape (n_frf, n_lines).
+        converged: False for a pole that diverged and was reset to its start, and for
+            all if the iteration limit was reached; shape (n_modes,).
+        linearised: how residues depend on poles, computational poles last.
+        beyond: computational poles after the refinement [rad/s], shape (n,).
+        residual: measured less fitted FRF, shape (n_frf, n_lines).
     """
 
     pole: ComplexArray
@@ -94,12 +95,12 @@ class _Point:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Prior:
-    """Where LSCF put the poles, and how much that weighs.
+    """Prior of the poles: their LSCF values, with weights.
 
-    Modes that overlap closely can trade damping for residue at no cost in misfit; only
-    the start then tells them apart: it is taken to be right within a half-power
-    half-width, beyond which a pole counts as another one. Wherever the lines resolve a
-    pole, that is worth nothing beside them. The first `n_modes` are modes, the others
+    Closely overlapping modes can exchange damping for residue without a larger
+    residual; only the start then distinguishes them. Its sd is taken as a half-power
+    half-width, beyond which a pole counts as another one. Where the lines resolve a
+    pole, this prior is negligible. The first `n_modes` are modes, the others
     computational poles beyond the band.
     """
 
@@ -125,18 +126,18 @@ def refine_poles(
     """Refine poles by Levenberg-Marquardt on the output error.
 
     Args:
-        lines: what is fitted.
-        start: poles that the answer may not leave [rad/s], shape (n_modes,).
+        lines: lines of the fit.
+        start: poles from which the result may not diverge [rad/s], shape (n_modes,).
         variance: E|error|^2 of each line, shape (n_frf, n_lines).
-        beyond: computational poles outside the band, fitted along wherever they go
-            as long as they stay outside [rad/s], shape (n,), or None.
-        doubt: inflation met in an earlier fit, shape (n_modes,): the start weighs that
-            much more against lines that were wrong by as much; None for 1.
-        begin: where the search begins, if an earlier one came close; None for `start`.
-        steps: most evaluations; 0 keeps the start and only tells its covariance.
+        beyond: computational poles outside the band, free as long as they stay outside
+            [rad/s], shape (n,), or None.
+        doubt: inflation found in an earlier fit, shape (n_modes,): the weight of the
+            start grows with it; None for 1.
+        begin: start of the search from an earlier fit; None for `start`.
+        steps: most evaluations; 0 keeps the start and only returns its covariance.
 
     Returns:
-        Refined poles; those that ran away stand where they started.
+        Refined poles; those that diverged are reset to their start.
 
     Source:
         Golub and Pereyra, Inverse Problems 19 (2003) R1; Kaufman, BIT 15 (1975) 49.
@@ -155,7 +156,7 @@ def refine_poles(
     return RefinedPoles(
         own,
         _own_blocks(joint)[:n_modes],
-        misfit_around(lines, own, here.residual, variance),
+        residual_around(lines, own, here.residual, variance),
         converged[:n_modes],
         Linearised(joint, here.residue_noise, here.residue_slope),
         pole[n_modes:],
@@ -170,7 +171,7 @@ def _search(
     variance: FloatArray,
     steps: int,
 ) -> tuple[ComplexArray, _Point, BoolArray]:
-    """Return the poles at the optimum, what is known there, and which converged."""
+    """Return the poles at the optimum, their cost terms, and which converged."""
     free, damping = np.ones(pole.size, bool), 1e-3
     here, settled = _evaluate(lines, pole, variance), False
     for _ in range(steps):
@@ -198,8 +199,9 @@ def _search(
 def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Point:
     """Project the residues out and return cost, gradient and Gauss-Newton matrix.
 
-    The slopes with respect to a pole are the same two columns for every FRF, turned and
-    scaled by its residue, so that one weighted product of fixed columns serves an FRF.
+    The derivatives with respect to a pole are the same two columns for every FRF,
+    rotated and scaled by its residue, so that each FRF needs one weighted product of
+    fixed columns.
     """
     n_linear, n_poles = modal_size(pole), 2 * pole.size
     columns = np.hstack((modal_basis(lines, pole), _pole_slopes(lines, pole)))
@@ -268,27 +270,27 @@ def _step(
 
 
 def _lost(lines: FrfLines, pole: ComplexArray, prior: _Prior) -> BoolArray:
-    """Tell which poles are no longer damped, or no longer those they started as.
+    """Return which poles are no longer damped, or have diverged from their start.
 
-    A computational pole is lost where it has come to stand within the band.
+    A computational pole is lost if it has moved into the band.
     """
     start = prior.start
     ratio = pole.real / start.real
     before, now = measured_width(lines, start), measured_width(lines, pole)
-    astray: BoolArray = np.abs((pole - start).imag) > _LEASH * np.maximum(before, now)
-    astray |= (ratio < 1.0 / _LEASH_DAMPING) | (ratio > _LEASH_DAMPING)
+    diverged: BoolArray = np.abs((pole - start).imag) > _LEASH * np.maximum(before, now)
+    diverged |= (ratio < 1.0 / _LEASH_DAMPING) | (ratio > _LEASH_DAMPING)
     inside = ~unresolved(lines, pole) | (pole.real >= 0.0) | (pole.imag <= 0.0)
-    return np.asarray(np.where(np.arange(pole.size) < prior.n_modes, astray, inside))
+    return np.asarray(np.where(np.arange(pole.size) < prior.n_modes, diverged, inside))
 
 
 def unresolved(lines: FrfLines, pole: ComplexArray) -> BoolArray:
-    """Tell which poles do not have their peak within the band.
+    """Return which poles do not have their peak within the band.
 
-    Beyond it, or within less than a half-power half-width of its edge, where one flank
-    is all that was measured: nothing tells such a pole from what lies beyond.
+    These are poles beyond it, or less than a half-power half-width from its edge: with
+    only one flank measured they cannot be distinguished from modes outside.
 
     Args:
-        lines: what is fitted.
+        lines: lines of the fit.
         pole: [rad/s], shape (n,).
 
     Returns:
@@ -296,13 +298,13 @@ def unresolved(lines: FrfLines, pole: ComplexArray) -> BoolArray:
     """
     low, high = lines.laplace.imag[[0, -1]]
     width = measured_width(lines, pole)
-    # Below a band that begins next to zero there is nothing.
+    # There are no modes below a band that begins next to zero.
     floor = low + width if low > _NEXT_TO_ZERO * high else 0.0 * width
     return np.asarray((pole.imag < floor) | (pole.imag > high - width))
 
 
 def _joint_covariance(here: _Point, prior: _Prior) -> FloatArray:
-    """Return the covariance of all (Re p, Im p), the start counted as it was."""
+    """Return the covariance of all (Re p, Im p), with the prior of the start."""
     inverse = inverses(here.gram + np.diag(np.repeat(prior.weight, 2)))
     # Rounding can leave a variance of exact data below zero.
     np.fill_diagonal(inverse, np.maximum(np.diag(inverse), 0.0))

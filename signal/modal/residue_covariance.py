@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""How well residues and mode shapes are known, errors of the poles included.
+"""Uncertainty of residues and mode shapes, with the errors of the poles.
 
-An error of a residue is what noise does at fixed poles, independent from FRF to FRF,
-and what it does through the poles, common to all FRFs. A complex error e is carried as
+The error of a residue has a part at fixed poles, independent from FRF to FRF, and a
+part from the error of the poles, common to all FRFs. A complex error e is carried as
 E|e|^2 and E e^2, which a complex factor c turns into |c|^2 E|e|^2 and c^2 E e^2.
 """
 
@@ -16,17 +16,17 @@ from jointbench.signal.modal.refined_pole_covariance import Linearised, RefinedP
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Noise:
-    """E|e|^2 and E e^2 of complex errors, shapes alike."""
+    """E|e|^2 and E e^2 of complex errors, of equal shape."""
 
     power: FloatArray
     pseudo: ComplexArray
 
     def turned(self, factor: ComplexArray) -> "_Noise":
-        """Return those of factor times the error."""
+        """Return the moments of factor times the error."""
         return _Noise(np.abs(factor) ** 2 * self.power, factor**2 * self.pseudo)
 
     def sum(self) -> "_Noise":
-        """Return those of the sum over the last axis of independent errors."""
+        """Return the moments of the sum of independent errors over the last axis."""
         return _Noise(self.power.sum(axis=-1), self.pseudo.sum(axis=-1))
 
     def sd(self) -> ComplexArray:
@@ -42,7 +42,7 @@ def residue_uncertainty(
     """Propagate the noise of the lines to residues and shapes, to first order.
 
     Args:
-        poles: refined, with what is linearised around them.
+        poles: refined, with their linearisation.
         residues: shape (n_modes, n_outputs, n_inputs).
 
     Returns:
@@ -53,7 +53,7 @@ def residue_uncertainty(
     n_modes, n_outputs, n_inputs = residues.shape
     noise = _residue_noise(poles.linearised, residues.shape)
     slope = poles.linearised.residue_slope
-    # After the modes come computational poles: their errors count, not residues.
+    # Computational poles follow the modes: only their errors are used.
     slope = slope[:, : 2 * n_modes].reshape(n_outputs, n_inputs, n_modes, 2, -1)
     slope = slope.transpose(2, 0, 1, 3, 4)
     moved = np.asarray(slope[:, :, :, 0] + 1j * slope[:, :, :, 1])
@@ -80,7 +80,7 @@ def _residue_noise(linearised: Linearised, shape: tuple[int, int, int]) -> _Nois
 
 
 def _together(noise: _Noise, moved: ComplexArray, joint: FloatArray) -> ComplexArray:
-    """Return the sd of noise at fixed poles and of what the poles move."""
+    """Return the sd from noise at fixed poles and from errors of the poles."""
     through = moved @ joint
     power = np.sum(through * moved.conj(), axis=-1).real
     pseudo = np.sum(through * moved, axis=-1)

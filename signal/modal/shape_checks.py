@@ -11,7 +11,7 @@ from jointbench.acquisition.basics.errors import ShapeError
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShapeChecks:
-    """How alike shapes are, and how nearly real each is.
+    """Similarity of shapes, and how close each is to a real mode.
 
     Attributes:
         mac: of each pair, shape (n_modes, n_modes).
@@ -31,13 +31,13 @@ class ShapeChecks:
 
 
 def check_shapes(shapes: ComplexArray) -> ShapeChecks:
-    """Run all checks.
+    """Calculate MAC, MPC and MPD of shapes.
 
     Args:
         shapes: shape (n_modes, n_outputs).
 
     Returns:
-        The checks; with a single output they are all perfect and say nothing.
+        The checks; with a single output all are 1 or 0 and carry no information.
     """
     return ShapeChecks(
         mac_matrix(shapes, shapes),
@@ -76,8 +76,8 @@ def mac_matrix(one: ComplexArray, other: ComplexArray) -> FloatArray:
 def phase_collinearity(shapes: ComplexArray) -> FloatArray:
     """Return the modal phase collinearity: how nearly a shape is one line.
 
-    The spread of the components in the complex plane has two principal values; of a
-    real mode, turned by any phase, the smaller is zero.
+    The spread of the components in the complex plane has two principal values; for a
+    real mode, rotated by any phase, the smaller is zero.
 
     Args:
         shapes: shape (n_modes, n_outputs).
@@ -96,7 +96,7 @@ def phase_collinearity(shapes: ComplexArray) -> FloatArray:
 
 
 def mean_phase(shapes: ComplexArray) -> FloatArray:
-    """Return the phase of the line that a shape lies nearest to.
+    """Return the phase of the straight line closest to a shape.
 
     Args:
         shapes: shape (n_modes, n_outputs).
@@ -133,7 +133,7 @@ def real_shapes(shapes: ComplexArray) -> FloatArray:
         shapes: shape (n_modes, n_outputs).
 
     Returns:
-        Turned to their mean phase, imaginary part left out, largest component 1, shape
+        Rotated to their mean phase, imaginary part left out, largest component 1, shape
         (n_modes, n_outputs).
     """
     turned = (shapes * np.exp(-1j * mean_phase(shapes))[:, None]).real

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The stabilisation table, and the tracks that poles draw through it.
+"""The stabilisation diagram as a table, and the tracks of poles through it.
 
-A pole of the structure comes back at every order; one made of noise wanders. From each
-order to the next, poles are matched one to one (so that two modes 0.8 % apart can never
-share a pole), and a chain of matches is a track. A track that keeps still for long
-enough is a candidate mode; whether it is one, `mode_selection` decides on the FRF.
+A structural pole recurs at every order; a noise pole scatters. From each order to the
+next, poles are matched one to one (so that two modes 0.8 % apart cannot share a pole),
+and a chain of matches is a track. A track that is stable over enough orders is a
+candidate mode, for `mode_selection` to test on the FRF.
 """
 
 from collections.abc import Sequence
@@ -26,8 +26,8 @@ from jointbench.signal.modal.lscf import OrderPoles
 # Poles further apart than this from one order to the next are not the same.
 _LINK_FREQUENCY = 0.004
 _LINK_DAMPING = 4.0
-# Before a track has shown how it scatters it is taken to do so by this share of the
-# above, and by this much in 1 - MAC; that opinion weighs as much as so many orders.
+# Prior scatter of a track: this share of the distance above, this much in 1 - MAC, and
+# its weight as a number of orders.
 _USUAL_SHARE, _USUAL_SHAPE, _USUAL_ORDERS = 1.0 / 3.0, 0.03, 2.0
 # Orders a track may miss before it ends.
 _MISSED = 3
@@ -36,7 +36,7 @@ _UNMATCHED = 1e6
 
 @dataclass(frozen=True, slots=True)
 class StabilityLimits:
-    """When a pole counts as the same as its match at the order before.
+    """Criteria of a pole that is the same as its match at the order before.
 
     Attributes:
         frequency: largest relative change of frequency [-].
@@ -65,7 +65,7 @@ class Stabilisation:
         stable_frequency: same frequency as its match one order down, shape (n,).
         stable_damping: same damping ratio as its match, shape (n,).
         stable_shape: same shape as its match (true for one output), shape (n,).
-        track: number of the track it lies on, shape (n,).
+        track: number of its track, shape (n,).
         orders: all orders that were fitted, shape (n_orders,).
     """
 
@@ -106,14 +106,14 @@ class Stabilisation:
 
 @dataclass(frozen=True, slots=True)
 class PoleCandidate:
-    """A track that kept still.
+    """A stable track.
 
     Attributes:
         pole: median over the last third of its stable orders [rad/s].
         scatter: sd of frequency [Hz] and of damping ratio [-] over those orders.
-        stable_orders: how many orders it was stable at.
+        stable_orders: number of orders at which it was stable.
         track: its number in the table.
-        by_hand: True if a person insisted on it.
+        by_hand: True if kept by the operator.
     """
 
     pole: complex
@@ -125,7 +125,7 @@ class PoleCandidate:
 
 @dataclass(slots=True, eq=False)
 class _Track:
-    """The last pole of a track while the table is being walked.
+    """The last pole of a track during the matching.
 
     Attributes:
         moved: sums of squared steps from order to order: relative frequency, logarithm
@@ -142,7 +142,7 @@ class _Track:
 
     @property
     def variance(self) -> FloatArray:
-        """Of a step in frequency, damping and shape: its own as soon as it has one."""
+        """Variance of a step in frequency, damping and shape, prior included."""
         usual = np.array(
             [
                 (_USUAL_SHARE * _LINK_FREQUENCY) ** 2,
@@ -154,7 +154,7 @@ class _Track:
         return np.asarray(total / (_USUAL_ORDERS + self.steps))
 
     def move(self, pole: complex, shape: ComplexArray, position: int) -> None:
-        """Go on to its pole at a later order."""
+        """Extend the track to a pole of a later order."""
         ratio = _damping(np.array([pole, self.pole]))
         frequency = abs(pole) / abs(self.pole) - 1.0
         damping = float(np.log(ratio[0] / ratio[1]))
@@ -171,7 +171,7 @@ def stabilise(
 
     Args:
         orders: poles of each order, orders ascending.
-        limits: what counts as stable; None for the defaults.
+        limits: criteria of stability; None for the defaults.
 
     Returns:
         The table of all poles below the highest damping.
@@ -201,14 +201,14 @@ def stabilise(
 def candidates(
     table: Stabilisation, limits: StabilityLimits | None = None
 ) -> tuple[PoleCandidate, ...]:
-    """Return the tracks that kept still, by ascending frequency.
+    """Return the stable tracks, by ascending frequency.
 
     Args:
         table: from `stabilise`.
         limits: `persistence` sets how long a track must be; None for the defaults.
 
     Returns:
-        One candidate a track, none twice, and no splinters of broader ones.
+        One candidate per track, without repeats and without splinters of broader ones.
     """
     limits = limits or StabilityLimits()
     least = max(3, round(limits.persistence * table.orders.size))
@@ -238,7 +238,7 @@ def _match(
     """Pair poles with tracks one to one; return the track of each matched pole.
 
     Distances are in standard deviations of each track's own steps, so that of two close
-    modes the one that stands still is not swapped for the one that wanders.
+    modes the steady one is not exchanged for the scattered one.
     """
     if not tracks or poles.size == 0:
         return {}
@@ -302,7 +302,7 @@ def _candidate(table: Stabilisation, members: IntArray, number: int) -> PoleCand
 def _without_repeats(
     found: Sequence[PoleCandidate], table: Stabilisation
 ) -> list[PoleCandidate]:
-    """Keep the longer of two tracks of one pole that broke in between.
+    """Keep the longer of two tracks of one pole with a break in between.
 
     Tracks that share an order are two poles, however close.
     """
@@ -317,10 +317,10 @@ def _without_repeats(
 
 
 def _splinter(one: PoleCandidate, host: PoleCandidate) -> bool:
-    """Tell whether a pole only helps a broader, steadier one to follow its peak.
+    """Return whether a pole only improves the fit of a broader, steadier one.
 
-    High orders lay a second, narrow pole on a broad peak that is not quite that of a
-    single mode. A mode of its own right keeps still at nearly as many orders.
+    High orders place a second, narrow pole on a broad peak that is not exactly that of
+    a single mode. A separate mode is stable at nearly as many orders.
     """
     inside = abs(one.pole.imag - host.pole.imag) < abs(host.pole.real)
     narrow = abs(one.pole.real) < 0.5 * abs(host.pole.real)

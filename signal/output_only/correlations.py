@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Correlations of responses alone: the data of output-only modal identification.
 
-Under broadband excitation that nobody measured, the correlation functions of the
-responses decay with the poles of the structure. They are kept block by block, because
-the scatter between blocks is what tells how well any result is known.
+Under unmeasured broadband excitation, the correlation functions of the responses decay
+with the poles of the structure. They are kept block by block, because the scatter
+between blocks gives the uncertainty of all results.
 """
 
 from dataclasses import dataclass
@@ -17,11 +17,11 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.records.recordings import Recording, response_rows
 
-# Samples a period of the highest frequency of interest.
+# Samples per period of the highest frequency of interest.
 _SAMPLES_PER_PERIOD = 2.56
 # Every output serves as a reference up to this many; of more, the most independent.
 _MOST_REFERENCES = 4
-# A block shorter than this many spans of the lags no longer sees the correlation.
+# Least length of a block in spans of the lags; shorter ones lose the correlation.
 _LEAST_SPANS = 4
 
 
@@ -63,12 +63,12 @@ def correlate_responses(
     """Correlate the responses of a recording with each other.
 
     Args:
-        recording: its forces, if any, take no part.
-        highest: frequency of interest [Hz]; beyond it the responses are filtered off,
-            without phase and alike in all channels.
+        recording: its forces, if any, are not used.
+        highest: frequency of interest [Hz]; a zero-phase filter, the same for all
+            channels, removes what is above.
         n_lags: of the correlation functions, zero lag included.
-        n_blocks: of equal length; each reaches into the next by the lags, so that
-            nothing is lost at their borders.
+        n_blocks: of equal length; each overlaps the next by the lags, so that no
+            products are lost at their borders.
 
     Returns:
         Unbiased estimates at the decimated rate.
@@ -111,7 +111,7 @@ def _correlate(samples: FloatArray, references: IntArray, n_lags: int) -> FloatA
 
 
 def _references(scaled: FloatArray) -> IntArray:
-    """Choose references by pivoted elimination: each as independent as can be."""
+    """Choose references by pivoted elimination: each as independent as possible."""
     if scaled.shape[0] <= _MOST_REFERENCES:
         return np.arange(scaled.shape[0])
     _, pivots = scipy.linalg.qr(scaled @ scaled.T, mode="r", pivoting=True)
@@ -126,7 +126,7 @@ def _require_long(
         has = recording.samples.shape[1] / recording.sample_rate
         raise BadData(
             f"recording {recording.name!r} lasts {has:.3g} s, {needed:.3g} s are "
-            "needed to tell modes and their scatter from responses alone; record longer"
+            "needed for modes and their scatter from responses alone; record longer"
         )
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Sines that pass for modes: a rotating spindle leaves lines that never decay.
+"""Detect sines that look like modes: a rotating spindle leaves undamped lines.
 
-Through a filter as narrow as the mode, a resonance driven by noise has an envelope
-that comes and goes (its power is exponentially distributed), a sine has one that stays.
+Through a filter as narrow as the mode, a resonance driven by noise has a fluctuating
+envelope (its power is exponentially distributed); that of a sine is constant.
 """
 
 import numpy as np
@@ -13,21 +13,21 @@ from jointbench.acquisition.records.recordings import Recording, response_rows
 
 # Variance over squared mean of the power: 1 for noise, 0 for a sine.
 _STEADY = 0.35
-# Width of the filter in half-power half-widths, and how narrow it may be at least, as
-# a number of lines: fewer hold too few independent envelopes.
+# Width of the filter in half-power half-widths, and its least width in lines: fewer
+# hold too few independent envelopes.
 _WIDTHS = 4.0
 _LEAST_LINES = 40
 
 
 def sine_like(recording: Recording, pole: ComplexArray) -> BoolArray:
-    """Tell which poles belong to a steady sine.
+    """Return which poles belong to a steady sine.
 
     Args:
-        recording: its responses are looked at.
+        recording: its responses are used.
         pole: [rad/s], shape (n_modes,).
 
     Returns:
-        True where the envelope keeps still in the loudest response, shape (n_modes,).
+        True where the envelope of the strongest response is constant, shape (n_modes,).
     """
     spread = envelope_spread(recording, pole)
     return np.asarray(spread < _STEADY)
@@ -37,7 +37,7 @@ def envelope_spread(recording: Recording, pole: ComplexArray) -> FloatArray:
     """Return variance over squared mean of the power around each pole [-].
 
     Args:
-        recording: its responses are looked at.
+        recording: its responses are used.
         pole: [rad/s], shape (n_modes,).
 
     Returns:

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Modes from responses alone, with uncertainty: nobody measured the force.
+"""Modes from responses alone, with uncertainty: the force is not measured.
 
-A spindle that runs excites a machine over a broad band but through no force channel.
-The poles of the structure are in the correlations of its responses (`correlations`,
-`subspace`); residues, and with them modal masses, are not.
+A running spindle excites a machine over a broad band without a force channel. The poles
+of the structure are in the correlations of its responses (`correlations`, `subspace`);
+residues, and with them modal masses, are not.
 
-The same poles are worked out again with each block of the record left out in turn. The
-jackknife over blocks knows what a formula for one order would not: the noise of the
-correlations, however it is correlated over lags, channels and modes. A pole that
-wanders from order to order or from block to block is no mode.
+The poles are estimated again with each block of the record left out in turn. Unlike a
+formula for one order, this jackknife over blocks includes the noise of the correlations
+with its correlation over lags, channels and modes. A pole that scatters from order to
+order or from block to block is no mode.
 """
 
 from dataclasses import dataclass, field
@@ -38,21 +38,21 @@ from jointbench.signal.output_only.harmonics import sine_like
 from jointbench.signal.output_only.pole_jackknife import correlation_poles, judge_poles
 from jointbench.signal.output_only.stochastic_subspace import most_states
 
-# The band reaches up to this share of the sample rate unless told.
+# Default upper end of the band, as a share of the sample rate.
 _HIGHEST = 1.0 / 2.56
 
 
 @dataclass(frozen=True, slots=True)
 class OutputOnlySettings:
-    """How modes are looked for in responses alone.
+    """Settings of the identification from responses alone.
 
     Attributes:
-        band: lowest and highest frequency [Hz], or None for all up to what the sample
-            rate carries.
+        band: lowest and highest frequency [Hz], or None for all up to the limit of the
+            sample rate.
         highest_order: states of the largest model, two a mode; even.
         rows: block rows of the Hankel matrix; the lags used are twice as many.
         blocks: of the record, whose scatter gives the uncertainty.
-        stability: when a pole counts as stable.
+        stability: criteria of a stable pole.
     """
 
     band: tuple[float, float] | None = None
@@ -66,7 +66,7 @@ class OutputOnlySettings:
     )
 
     def __post_init__(self) -> None:
-        """Refuse numbers that no fit can be made with."""
+        """Refuse numbers too small for a fit."""
         for name, value, least in (
             ("highest order", self.highest_order, 4),
             ("rows", self.rows, 4),
@@ -87,13 +87,13 @@ class OutputOnlyModes:
         damping_ratio_sd: standard uncertainty [-], shape (n_modes,).
         shapes: largest component 1, not scaled by mass, shape (n_modes, n_outputs).
         stable_orders: at how many orders it was stable, shape (n_modes,).
-        sine_like: True where the response around the mode is a steady sine, as a
-            rotating spindle makes, and no resonance; shape (n_modes,).
+        sine_like: True where the response around the mode is a steady sine, such as
+            that of a rotating spindle, and no resonance; shape (n_modes,).
         outputs: labels of the outputs.
         band: that was searched [Hz].
         stabilisation: poles of all orders.
-        correlations: what they were fitted to.
-        provenance: how it came about.
+        correlations: the data of the fit.
+        provenance: origin and processing steps.
     """
 
     natural_frequency: FloatArray
@@ -127,7 +127,7 @@ def identify_output_only(
     """Identify modes from the responses of a recording.
 
     Args:
-        recording: stationary broadband excitation; a force channel takes no part.
+        recording: stationary broadband excitation; a force channel is not used.
         settings: None for the defaults.
 
     Returns:
@@ -136,9 +136,9 @@ def identify_output_only(
         cover as Student's t does.
 
     Raises:
-        NoModeFound: no pole keeps still.
+        NoModeFound: no pole is steady.
         BadData: the record is too short, or a response is constant.
-        UsageError: the band is not inside 0 to what the sample rate carries.
+        UsageError: the band is not inside 0 to the limit of the sample rate.
 
     Source:
         Peeters and De Roeck (1999), see `subspace`; Efron and Stein, Annals of
@@ -162,8 +162,8 @@ def identify_output_only(
     if not modes:
         raise NoModeFound(
             f"none of {len(found)} stable poles between {band[0]:g} and {band[1]:g} Hz "
-            f"keeps still over {settings.blocks} blocks of the record; record longer, "
-            "or give the --band in which the structure answers"
+            f"is steady over {settings.blocks} blocks of the record; record longer, "
+            "or give the --band in which the structure responds"
         )
     pole, sd = np.array([m.pole for m in modes]), np.array([m.sd for m in modes])
     done = step(
@@ -193,11 +193,11 @@ def identify_output_only(
 
 def _band(recording: Recording, settings: OutputOnlySettings) -> tuple[float, float]:
     carried = recording.sample_rate * _HIGHEST
-    # Below two periods in the span of the lags nothing can be told.
+    # A span of the lags below two periods resolves no mode.
     low, high = settings.band or (carried / settings.rows, carried)
     if not 0.0 <= low < high <= 0.5 * recording.sample_rate:
         raise UsageError(
-            f"the band {low:g} to {high:g} Hz does not lie within 0 to "
+            f"the band {low:g} to {high:g} Hz is not within 0 to "
             f"{0.5 * recording.sample_rate:g} Hz, half the sample rate"
         )
     return low, high

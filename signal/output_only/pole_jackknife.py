@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Which poles of correlations stand still, and how still: a jackknife over blocks.
+"""Jackknife over blocks: steady poles of correlations and their scatter.
 
-Everything is worked out again with each block of the record left out in turn. The
-scatter of a pole over these is its uncertainty, whatever the noise of the correlations
-is like; a pole that wanders is no mode.
+All poles are estimated again with each block of the record left out in turn. The
+scatter of a pole is its uncertainty, for any kind of noise in the correlations; a pole
+with too large a scatter is no mode.
 """
 
 from collections.abc import Sequence
@@ -18,16 +18,16 @@ from jointbench.signal.modal.stabilisation import PoleCandidate, Stabilisation, 
 from jointbench.signal.output_only.correlations import Correlations
 from jointbench.signal.output_only.stochastic_subspace import subspace_poles
 
-# A pole is looked for at this many of the orders it was stable at.
+# A pole is followed at this many of the orders at which it was stable.
 _ORDERS_AVERAGED = 5
-# A mode's damping is known to better than this share of itself, and its frequency to
-# better than this share of its half-power half-width.
+# Largest sd of a mode: of damping as a share of itself, of frequency as a share of the
+# half-power half-width.
 _VAGUE = 0.4
 _ADRIFT = 0.4
-# Two poles closer than their half-power half-width whose shapes agree this
-# well are one.
+# Two poles closer than their half-power half-width are one if the MAC of their shapes
+# exceeds this.
 _ALIKE = 0.9
-# Beyond this many half-power half-widths another pole has been met.
+# A pole further off than this many half-power half-widths is another pole.
 _LEASH = 3.0
 
 
@@ -36,8 +36,8 @@ class JudgedPole:
     """A candidate after the jackknife.
 
     Attributes:
-        candidate: it was.
-        pole: median over the orders at which it is known best [rad/s].
+        candidate: as found in the diagram.
+        pole: median over the orders with the least scatter [rad/s].
         sd: of frequency [Hz] and of damping ratio, shape (2,).
         shape: largest component 1, shape (n_outputs,).
     """
@@ -54,7 +54,7 @@ def judge_poles(
     table: Stabilisation,
     band: tuple[float, float],
 ) -> list[JudgedPole]:
-    """Jackknife all candidates and keep those that stand still, each once.
+    """Jackknife all candidates and keep the steady ones, each once.
 
     Args:
         data: correlations, block by block.
@@ -88,10 +88,10 @@ def _judge(
     whole: Sequence[OrderPoles],
     parts: Sequence[Sequence[OrderPoles]],
 ) -> JudgedPole | None:
-    """Follow a candidate through the blocks, at the orders that know it best.
+    """Follow a candidate through the blocks, at the orders with the least scatter.
 
-    At high orders a resonance may be shared by two poles, and which of them is nearer
-    changes from block to block: such orders scatter, and are passed over.
+    At high orders a resonance may be shared by two poles, and the nearer one changes
+    from block to block: such orders scatter and are skipped.
     """
     members = table.order[table.stable & (table.track == candidate.track)]
     places = [int(i) for i in np.flatnonzero(np.isin(table.orders, members))]
@@ -110,7 +110,7 @@ def _judge(
 
 
 def _nearest(order: OrderPoles, pole: complex) -> tuple[complex, ComplexArray]:
-    """Return the pole of an order nearest to another, NaN where none is near."""
+    """Return the pole of an order nearest to another, or NaN if none is near."""
     if order.pole.size:
         distance = np.abs(order.pole - pole)
         nearest = int(np.argmin(distance))
@@ -124,7 +124,7 @@ def _middle(poles: ComplexArray) -> complex:
 
 
 def _doubt(poles: ComplexArray) -> float:
-    """Return the relative variance of a leave-one-out pole; infinite if ever lost."""
+    """Return the relative variance of a leave-one-out pole; infinite if lost once."""
     if not np.isfinite(poles).all():
         return np.inf
     middle = _middle(poles)
@@ -135,13 +135,13 @@ def _doubt(poles: ComplexArray) -> float:
 
 
 def _mean_shape(shapes: Sequence[ComplexArray]) -> ComplexArray:
-    """Return the common shape: each order's has a phase of its own."""
+    """Return the common shape; the shape of each order has an arbitrary phase."""
     shape = np.linalg.svd(np.array(shapes), full_matrices=False)[2][0]
     return np.asarray(shape / shape[np.argmax(np.abs(shape))])
 
 
 def _each_once(known: Sequence[JudgedPole]) -> list[JudgedPole]:
-    """Of two tracks that come to one pole and one shape keep the better known."""
+    """Keep the better known of two tracks with the same pole and shape."""
     kept: list[JudgedPole] = []
     for one in sorted(known, key=lambda k: float(k.sd[1] / -k.pole.real * abs(k.pole))):
         if not any(_same(one, other) for other in kept):

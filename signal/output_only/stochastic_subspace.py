@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Poles from correlation functions: covariance-driven stochastic subspace.
+"""Covariance-driven stochastic subspace identification of poles.
 
 Correlations at positive lags are C A^(lag - 1) G of a linear system. Stacked in a
 block Hankel matrix they factor into observability and controllability; the shift of
@@ -27,10 +27,10 @@ def subspace_poles(
     band: tuple[float, float],
     scale: FloatArray | None = None,
 ) -> tuple[OrderPoles, ...]:
-    """Return the poles of several orders.
+    """Return the poles of the models of several orders.
 
     Args:
-        correlation: lags from zero on, shape (n_lags, n_outputs, n_references).
+        correlation: lags from zero upward, shape (n_lags, n_outputs, n_references).
         orders: states of the model, ascending; two for each mode.
         sample_rate: one lag is one sample [Hz].
         band: poles outside it are left out [Hz].

@@ -2,7 +2,7 @@
 """Spectrum of the height differences of profiles, in narrow bins of frequency.
 
 Ordinates of a spectrum are independent, which values of a structure function are not:
-a slow bend of a long-wave surface shows here long before it shows there.
+a gradual bend at long waves is detected here much earlier.
 """
 
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.records.surfaces import Profile, Surface
 
 TAPERED = 0.1
-"""Share of the profile that is faded at each end, against leakage [-]."""
+"""Share of the profile that is tapered at each end, against leakage [-]."""
 FIRST_ORDINATE = 3
-"""Ordinates below are moved by levelling [-]."""
+"""Lowest ordinate used; levelling changes those below [-]."""
 BIN_RATIO = 1.1
 """Ratio of the edges of a bin [-]."""
 FEWEST_POINTS = 512
-"""Points of a profile that give a spectrum worth a look [-]."""
+"""Least points of a profile for a spectrum [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,7 +31,7 @@ class BinnedSpectrum:
     Attributes:
         omega: angular frequency [rad/sample], shape (n_bins,), ascending.
         power: two-sided density, whose integral is the variance [m^2], same shape.
-        count: independent ordinates behind each mean [-], same shape.
+        count: independent ordinates in each mean [-], same shape.
     """
 
     omega: FloatArray
@@ -46,9 +46,9 @@ class BinnedSpectrum:
 
 
 def spectrum_of(surface: Surface) -> BinnedSpectrum | None:
-    """Return the spectrum of a long profile without gaps; None of anything else.
+    """Return the spectrum of a long profile without gaps, or None for others.
 
-    Rows of a map are not independent, and gaps make ordinates hang together.
+    Rows of a map are not independent, and gaps correlate ordinates.
     """
     if not isinstance(surface, Profile) or not surface.valid.all():
         return None
@@ -56,7 +56,7 @@ def spectrum_of(surface: Surface) -> BinnedSpectrum | None:
 
 
 def _spectrum(heights: FloatArray) -> BinnedSpectrum:
-    """Return the spectrum of one profile, its differences faded at the ends."""
+    """Return the spectrum of one profile, its differences tapered at the ends."""
     steps = np.diff(heights)
     fade = _fade(steps.size)
     faded = (steps - steps.mean()) * fade
@@ -67,7 +67,7 @@ def _spectrum(heights: FloatArray) -> BinnedSpectrum:
     label = np.floor(np.log(index) / np.log(BIN_RATIO)).astype(np.int64)
     starts = np.concatenate([[0], np.flatnonzero(np.diff(label)) + 1])
     sizes = np.diff(np.append(starts, index.size)).astype(np.float64)
-    # Fading makes neighbouring ordinates hang together.
+    # The taper correlates neighbouring ordinates.
     independent = squares.sum() ** 2 / (squares.size * np.sum(squares**2))
     middle = np.exp(np.add.reduceat(np.log(index), starts) / sizes)
     return BinnedSpectrum(
@@ -78,7 +78,7 @@ def _spectrum(heights: FloatArray) -> BinnedSpectrum:
 
 
 def pooled_spectrum(parts: list[BinnedSpectrum | None]) -> BinnedSpectrum | None:
-    """Average the spectra of profiles of one length; None where any has none."""
+    """Average the spectra of profiles of one length; None if one is missing."""
     known = [part for part in parts if part is not None]
     if len(known) < len(parts) or not known:
         return None

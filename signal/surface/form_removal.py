@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Takes form and outliers off a surface; each step is said in its provenance."""
+"""Remove form and outliers from a surface; its provenance records each step."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from jointbench.acquisition.records.surfaces import Profile, Surface
 from jointbench.signal.surface.levelling import MINIMUM_VALID_POINTS, SurfaceTooSmall
 
 HIGHEST_DEGREE = 8
-"""Higher polynomials take roughness for form [-]."""
+"""Highest degree; higher polynomials fit roughness [-]."""
 OUTLIER_LIMIT = 6.0
 """Distance from the median of its neighbours that makes an outlier, over the robust
 standard deviation of the differences of neighbours [-]."""
@@ -27,13 +27,13 @@ def remove_form(surface: Surface, *, degree: int = 2) -> Surface:
     """Remove the least-squares polynomial of a profile or map.
 
     Args:
-        surface: a profile or a map; missing points take no part.
-        degree: total degree of the polynomial [-]; 1 is a line or plane, 2 takes
+        surface: a profile or a map; missing points are not used.
+        degree: total degree of the polynomial [-]; 1 is a line or plane, 2 includes
             cylinders and spheres.
 
     Returns:
         Residual heights [m] (0 where missing) and one more step ``"remove_form"`` in
-        the provenance, with the root mean square that was taken.
+        the provenance, with the removed root mean square.
 
     Raises:
         UsageError: the degree is not 1 to 8.
@@ -41,8 +41,8 @@ def remove_form(surface: Surface, *, degree: int = 2) -> Surface:
     """
     if not 1 <= degree <= HIGHEST_DEGREE:
         raise UsageError(
-            f"degree is {degree!r}, a form has 1 to {HIGHEST_DEGREE}; higher ones take "
-            "roughness away"
+            f"degree is {degree!r}, a form has 1 to {HIGHEST_DEGREE}; higher ones "
+            "remove roughness"
         )
     terms = _terms(surface, degree)
     count = int(np.count_nonzero(surface.valid))
@@ -69,7 +69,7 @@ def remove_form(surface: Surface, *, degree: int = 2) -> Surface:
 
 
 def mask_outliers(surface: Surface, *, limit: float = OUTLIER_LIMIT) -> Surface:
-    """Mask points that stand far off their neighbours.
+    """Mask points that are far from their neighbours.
 
     Args:
         surface: a profile or a map.
@@ -78,7 +78,7 @@ def mask_outliers(surface: Surface, *, limit: float = OUTLIER_LIMIT) -> Surface:
 
     Returns:
         The surface with outliers no longer valid (height 0), and one more step
-        ``"mask_outliers"`` with their number. No height is changed into another.
+        ``"mask_outliers"`` with their number. No height is changed.
 
     Raises:
         UsageError: the limit is not above 1.
@@ -103,9 +103,9 @@ def mask_outliers(surface: Surface, *, limit: float = OUTLIER_LIMIT) -> Surface:
 
 
 def _filled(surface: Surface) -> FloatArray:
-    """Return heights with the nearest measured one where a point is missing.
+    """Return heights with missing points replaced by the nearest measured one.
 
-    One height for all gaps would make outliers of their edges on a tilted surface.
+    One height for all gaps would turn their edges into outliers on a tilted surface.
     """
     known = int(np.count_nonzero(surface.valid))
     if known < MINIMUM_VALID_POINTS:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Profiles of a map along any direction, through measured points only.
 
-Heights between points would have to be interpolated, which smooths them and moves D;
+Heights between points would have to be interpolated, which smooths them and biases D;
 lines through the grid's own points do not.
 """
 
@@ -15,21 +15,21 @@ from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.surfaces import Areal, Profile
 
 LONGEST_STEP = 5
-"""Grid steps along one axis from a point of a line to the next, at the most [-]."""
+"""Most grid steps along one axis between neighbouring points of a line [-]."""
 SHORTEST_SHARE = 0.5
 """Lines shorter than this share of the longest are left out [-]."""
 
 
 def profiles_along(areal: Areal, angle: float) -> tuple[Profile, ...]:
-    """Return the lines of a map that run nearest to a direction.
+    """Return the lines of a map closest to a direction.
 
     Args:
         areal: the map.
         angle: from the rows towards the columns [rad], any.
 
     Returns:
-        Lines of one spacing, through points of the grid, each beside the one before
-        it; the angle that was met is in their provenance. Neighbouring lines are not
+        Lines of one spacing, through points of the grid, each adjacent to the previous
+        one; their provenance holds the actual angle. Neighbouring lines are not
         independent: `structure_along` takes that into account.
 
     Raises:
@@ -53,7 +53,7 @@ def profiles_along(areal: Areal, angle: float) -> tuple[Profile, ...]:
     if longest < 16:
         raise UsageError(
             f"surface {areal.name!r} has at most {longest} points along {angle:g} rad; "
-            "ask for a direction nearer to rows or columns"
+            "choose a direction nearer to rows or columns"
         )
     spacing = hypot(down * areal.spacing[0], across * areal.spacing[1])
     return tuple(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Levels a surface before its statistics are taken, and says so in its provenance."""
+"""Level a surface before its statistics, and record it in its provenance."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.surfaces import Areal, Profile, Surface
 
 MINIMUM_VALID_POINTS = 16
-"""Fewer points than this say nothing about how roughness depends on the lag [-]."""
+"""Least points for the dependence of roughness on the lag [-]."""
 
 
 class SurfaceTooSmall(BadData):
@@ -22,7 +22,7 @@ def level(surface: Surface) -> Surface:
     """Remove the least-squares mean line of a profile or mean plane of a map.
 
     Args:
-        surface: a profile or a map; missing points take no part.
+        surface: a profile or a map; missing points are not used.
 
     Returns:
         The same surface with residual heights [m] (0 where missing) and one more

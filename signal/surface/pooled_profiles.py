@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Several profiles of one surface as one structure function, with their scatter."""
+"""Pool several profiles of one surface into one structure function."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,16 +16,16 @@ from jointbench.signal.surface.structure_function import (
 )
 
 SAME_SPACING = 1e-6
-"""Relative difference of spacings that counts as none [-]."""
+"""Relative tolerance of equal spacings [-]."""
 FEWEST_FOR_SCATTER = 8
-"""Profiles from which on their own scatter checks the stated one [-]."""
+"""Least profiles whose scatter checks the stated uncertainty [-]."""
 
 
 def pool_profiles(profiles: Sequence[Profile]) -> StructureFunction:
     """Average the structure functions of independent profiles of one surface.
 
-    Each profile is levelled by itself. From eight profiles on, their own scatter
-    checks the stated uncertainty, as strips do on a map.
+    Each profile is levelled separately. From eight profiles on, their scatter checks
+    the stated uncertainty, as strips do on a map.
 
     Args:
         profiles: two or more, of one spacing; longer ones are cut to the shortest.
@@ -51,7 +51,7 @@ def pool_profiles(profiles: Sequence[Profile]) -> StructureFunction:
         replace(p, heights=p.heights[:points], valid=p.valid[:points]) for p in profiles
     ]
     parts = _at_common_lags([structure_function(p) for p in cut])
-    pairs = np.array([part.faces[0].pairs for part in parts])
+    pairs = np.array([part.samplings[0].pairs for part in parts])
     values = np.array([part.value for part in parts])
     total = pairs.sum(axis=0)
     value = (values * pairs).sum(axis=0) / total
@@ -63,9 +63,9 @@ def pool_profiles(profiles: Sequence[Profile]) -> StructureFunction:
         name=f"{len(profiles)} profiles",
         value=value,
         kurtosis=(fourths * pairs).sum(axis=0) / total / safe**2,
-        faces=(
+        samplings=(
             replace(
-                parts[0].faces[0],
+                parts[0].samplings[0],
                 profiles=len(profiles),
                 row_distance=np.inf,
                 pairs=total,

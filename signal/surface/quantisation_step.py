@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""Finds the step in which heights were read, where it is coarse enough to matter."""
+"""Find the quantisation step of heights, if it is coarse enough to matter."""
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 
 FEWEST_LEVELS = 5
-"""Fewer distinct heights are steps of the surface, not of a converter [-]."""
+"""Least distinct heights; fewer are steps of the surface, not of a converter [-]."""
 FEWEST_READINGS = 4
-"""Readings a level, on average, without which the step is finer than the relief [-]."""
+"""Least mean readings per level; with fewer the step is finer than the relief [-]."""
 OFF_STEP = 0.02
-"""How far a height may lie from a whole number of steps [steps]."""
+"""Largest distance of a height from a whole number of steps [steps]."""
 SAME_LEVEL = 1e-9
-"""Heights nearer than this share of their range are the same up to rounding [-]."""
+"""Heights closer than this share of their range are equal up to rounding [-]."""
 
 
 def height_step(heights: FloatArray) -> float:
@@ -22,7 +22,7 @@ def height_step(heights: FloatArray) -> float:
         heights: measured ones [m], any shape.
 
     Returns:
-        The step [m]; 0 where heights are as good as continuous.
+        The step [m]; 0 for practically continuous heights.
     """
     met = np.unique(heights)
     if not FEWEST_LEVELS <= met.size <= heights.size / FEWEST_READINGS:

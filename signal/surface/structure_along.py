@@ -29,18 +29,17 @@ def structure_along(areal: Areal, angle: float) -> StructureFunction:
         angle: from the rows towards the columns [rad], any.
 
     Returns:
-        The structure function of the lines of the grid that run nearest to the
-        direction, cut to the shortest of them; the angle asked and the angle met are
-        in its provenance. Along rows and columns its values are those of
-        `structure_function`.
+        The structure function of the grid lines closest to the direction, cut to the
+        shortest of them; its provenance holds the requested and the actual angle. Along
+        rows and columns its values are those of `structure_function`.
 
     Raises:
         UsageError: no line of the map has 16 points in that direction.
         SurfaceTooSmall: too few measured points, or no pair at any lag.
 
     Note:
-        Lines lie as far apart as the area of a grid cell over their spacing, and
-        heights are taken to vary across them as along them. As independent profiles,
+        The distance of the lines is the area of a grid cell over their spacing, and
+        heights are assumed to vary across them as along them. As independent profiles,
         the lines of isotropic maps at 45 degrees gave a standard deviation of D three
         times too small (`test_the_scatter_along_a_diagonal_is_what_is_stated`).
     """
@@ -51,14 +50,16 @@ def structure_along(areal: Areal, angle: float) -> StructureFunction:
         found = structure_function(areal, direction=along)
         return replace(found, provenance=(*found.provenance, note))
     flat = cast(Areal, level(areal))
-    sheet = _side_by_side(profiles_along(flat, angle), areal)
-    found = structure_function(sheet, remove="mean")
-    apart = sheet.spacing[0]
+    rows = _side_by_side(profiles_along(flat, angle), areal)
+    found = structure_function(rows, remove="mean")
+    apart = rows.spacing[0]
     return replace(
         found,
         name=areal.name,
-        # The lines start at different places, so that S across them cannot be read.
-        faces=tuple(replace(face, row_distance=apart) for face in found.faces),
+        # The lines start at different places, so S across them is not available.
+        samplings=tuple(
+            replace(sampling, row_distance=apart) for sampling in found.samplings
+        ),
         quantum=height_step(areal.heights[areal.valid]),
     )
 

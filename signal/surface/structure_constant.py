@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The constant C in S(lag) = C G^(2(D-1)) lag^(4-2D), and what follows from it."""
+"""The constant C in S(lag) = C G^(2(D-1)) lag^(4-2D), and G from S."""
 
 from typing import Literal
 
@@ -55,7 +55,7 @@ def structure_constant(
         (2 pi)^((2-D)/(D-1)); the corrected form carries (2 pi)^(4-2D).
     """
     if not 1 < dimension < 2:
-        raise UsageError(f"dimension is {dimension:g}, it must lie between 1 and 2")
+        raise UsageError(f"dimension is {dimension:g}, it must be between 1 and 2")
     if not gamma > 1:
         raise UsageError(f"gamma is {gamma:g}, it must be above 1, for example 1.5")
     if form not in {"corrected", "as-printed"}:

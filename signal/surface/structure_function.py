@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Estimates how the mean squared height difference grows with the lag."""
+"""Estimate the structure function: the mean squared height difference over the lag."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -22,7 +22,7 @@ from jointbench.signal.surface.quantisation_step import height_step
 from jointbench.signal.surface.texture_direction import stretch_across
 
 _LAG_COUNT = 55
-"""Logarithmic lags asked for by default; equal integers fall together [-]."""
+"""Default number of logarithmic lags before equal integers are merged [-]."""
 _LARGEST_LAG_SHARE = 1 / 3
 """Largest default lag as a share of the length of a profile [-]."""
 _MOST_BLOCKS = 16
@@ -34,19 +34,19 @@ _Removal = Literal["line", "mean"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sampling:
-    """How one face was sampled: all that the covariance of S needs to know.
+    """Sampling of one contact surface, for the covariance of S.
 
     Attributes:
         points: points of one profile.
         profiles: parallel profiles averaged.
         spacing: distance of neighbours along the profiles [m].
-        row_distance: distance of neighbouring profiles, stretched by the lay so
-            that heights differ across it as they do along the profiles [m]; infinite
-            where the profiles are unrelated and each was levelled by itself.
-        share: part of S that this face contributes [-].
+        row_distance: distance of neighbouring profiles, scaled by the lay so that
+            heights vary across it as along the profiles [m]; infinite for unrelated,
+            separately levelled profiles.
+        share: share of S from this contact surface [-].
         pairs: pairs of measured points at each lag, shape (n_lags,).
         blocks: S of strips of neighbouring profiles [m^2], shape (n_blocks, n_lags);
-            no rows where it was not taken.
+            no rows if not calculated.
     """
 
     points: int
@@ -73,17 +73,17 @@ class StructureFunction:
         value: S [m^2], same shape.
         kurtosis: fourth moment of the differences over S squared, same shape [-];
             3 where the heights are Gaussian.
-        faces: how each contributing face was sampled.
-        quantum: step in which the heights were read [m]; 0 for none.
-        provenance: how the values came about.
-        spectrum: of profiles without gaps; None where it was not taken.
+        samplings: sampling of each contributing contact surface.
+        quantum: quantisation step of the heights [m]; 0 for none.
+        provenance: origin and processing steps.
+        spectrum: of profiles without gaps; None if not calculated.
     """
 
     name: str
     lag: FloatArray
     value: FloatArray
     kurtosis: FloatArray
-    faces: tuple[Sampling, ...]
+    samplings: tuple[Sampling, ...]
     quantum: float = 0.0
     provenance: Provenance = field(default=())
     spectrum: BinnedSpectrum | None = None
@@ -98,42 +98,46 @@ class StructureFunction:
 
     @property
     def pairs(self) -> FloatArray:
-        """Pairs of measured points at each lag, of the scarcest face."""
-        pairs: FloatArray = np.min([face.pairs for face in self.faces], axis=0)
+        """Measured pairs at each lag, of the contact surface with the fewest."""
+        pairs: FloatArray = np.min(
+            [sampling.pairs for sampling in self.samplings], axis=0
+        )
         return pairs
 
     @property
     def spacing(self) -> float:
-        """Distance of neighbouring points, of the coarsest face [m]."""
-        return max(face.spacing for face in self.faces)
+        """Distance of neighbouring points, of the coarsest contact surface [m]."""
+        return max(sampling.spacing for sampling in self.samplings)
 
     @property
     def points(self) -> int:
-        """Points of one profile, of the face with the fewest."""
-        return min(face.points for face in self.faces)
+        """Points of one profile, of the contact surface with the fewest."""
+        return min(sampling.points for sampling in self.samplings)
 
     @property
     def profiles(self) -> int:
-        """Parallel profiles, of the face with the fewest."""
-        return min(face.profiles for face in self.faces)
+        """Parallel profiles, of the contact surface with the fewest."""
+        return min(sampling.profiles for sampling in self.samplings)
 
     @property
     def separate(self) -> bool:
-        """Whether every profile was levelled by itself, not as part of a map."""
-        return all(f.profiles == 1 or np.isinf(f.row_distance) for f in self.faces)
+        """Whether every profile was levelled separately, not as part of a map."""
+        return all(f.profiles == 1 or np.isinf(f.row_distance) for f in self.samplings)
 
     def only(self, keep: BoolArray) -> "StructureFunction":
         """Return the structure function at the lags marked in `keep`."""
-        faces = tuple(
-            replace(face, pairs=face.pairs[keep], blocks=face.blocks[:, keep])
-            for face in self.faces
+        samplings = tuple(
+            replace(
+                sampling, pairs=sampling.pairs[keep], blocks=sampling.blocks[:, keep]
+            )
+            for sampling in self.samplings
         )
         return replace(
             self,
             lag=self.lag[keep],
             value=self.value[keep],
             kurtosis=self.kurtosis[keep],
-            faces=faces,
+            samplings=samplings,
         )
 
 
@@ -146,20 +150,19 @@ def structure_function(
 ) -> StructureFunction:
     """Estimate the structure function of a surface by direct sums.
 
-    The mean line or plane is removed first, unless told otherwise. Sums over pairs are
-    exact (no Fourier route, which loses digits by cancellation) and skip missing
-    points.
+    The mean line or plane is removed first by default. Sums over pairs are exact (a
+    Fourier transform loses digits by cancellation) and skip missing points.
 
     Args:
-        surface: a profile, or a map that is taken as parallel profiles.
+        surface: a profile, or a map as parallel profiles.
         lags: lags in samples; by default about 45 from 1 to a third of the length,
             at even steps of their logarithm.
         direction: of the profiles of a map: ``"x"`` along its rows, ``"y"`` along its
             columns. A profile has the direction ``"x"`` only.
-        remove: ``"line"``, or ``"mean"`` where the heights hold no tilt.
+        remove: ``"line"``, or ``"mean"`` for heights without tilt.
 
     Returns:
-        The structure function at those lags at which any pair was measured.
+        The structure function at the lags with at least one measured pair.
 
     Raises:
         SurfaceTooSmall: too few measured points, or no pair at any lag.
@@ -179,7 +182,7 @@ def structure_function(
     lag = np.asarray(wanted[keep] * spacing, dtype=np.float64)
     value = sums.sum(axis=0) / pairs.sum(axis=0)
     safe = np.where(value > 0, value, 1.0)
-    face = Sampling(
+    sampling = Sampling(
         points=heights.shape[1],
         profiles=heights.shape[0],
         spacing=spacing,
@@ -193,7 +196,7 @@ def structure_function(
         lag=lag,
         value=value,
         kurtosis=fourths.sum(axis=0) / pairs.sum(axis=0) / safe**2,
-        faces=(face,),
+        samplings=(sampling,),
         quantum=height_step(surface.heights[surface.valid]),
         provenance=(
             *levelled.provenance,
@@ -204,14 +207,14 @@ def structure_function(
 
 
 def combine(a: StructureFunction, b: StructureFunction) -> StructureFunction:
-    """Add the structure functions of two independent faces that meet in a joint.
+    """Add the structure functions of two independent contact surfaces of a joint.
 
     Where the lags differ, `b` is interpolated at the lags of `a` (straight in the
     logarithms) over the range that both share.
 
     Args:
-        a: of one face.
-        b: of the other face.
+        a: of one contact surface.
+        b: of the other contact surface.
 
     Returns:
         S_e = S_a + S_b with both samplings, so that its covariance is the sum of
@@ -227,7 +230,7 @@ def combine(a: StructureFunction, b: StructureFunction) -> StructureFunction:
     if not keep.any() or min(a.value.min(), b.value.min()) <= 0:
         raise UsageError(
             f"surfaces {a.name!r} and {b.name!r} share no lag with roughness on both; "
-            "give two rough faces measured over the same range of lags"
+            "give two rough surfaces measured over the same range of lags"
         )
     a = a.only(keep)
     b = _at(b, a.lag)
@@ -240,7 +243,7 @@ def combine(a: StructureFunction, b: StructureFunction) -> StructureFunction:
         value=value,
         # Fourth moments of a sum of independent differences with S_a and S_b.
         kurtosis=3 + (a.kurtosis - 3) * part**2 + (b.kurtosis - 3) * (1 - part) ** 2,
-        faces=(*_shared(a, share), *_shared(b, 1 - share)),
+        samplings=(*_shared(a, share), *_shared(b, 1 - share)),
         quantum=max(a.quantum, b.quantum),
         provenance=(
             *a.provenance,
@@ -252,30 +255,31 @@ def combine(a: StructureFunction, b: StructureFunction) -> StructureFunction:
 
 
 def _shared(one: StructureFunction, share: float) -> tuple[Sampling, ...]:
-    """Return the faces of one side with their share of the sum, without strips."""
+    """Return the samplings of one side with their share of the sum, without strips."""
     none = np.empty((0, one.lag.size))
     return tuple(
-        replace(face, share=face.share * share, blocks=none) for face in one.faces
+        replace(sampling, share=sampling.share * share, blocks=none)
+        for sampling in one.samplings
     )
 
 
 def _at(one: StructureFunction, lag: FloatArray) -> StructureFunction:
     """Return `one` at other lags, straight between its own in the logarithms."""
     known, asked = np.log(one.lag), np.log(lag)
-    faces = tuple(
+    samplings = tuple(
         replace(
-            face,
-            pairs=np.interp(asked, known, face.pairs),
+            sampling,
+            pairs=np.interp(asked, known, sampling.pairs),
             blocks=np.empty((0, lag.size)),
         )
-        for face in one.faces
+        for sampling in one.samplings
     )
     return replace(
         one,
         lag=lag,
         value=np.exp(np.interp(asked, known, np.log(one.value))),
         kurtosis=np.interp(asked, known, one.kurtosis),
-        faces=faces,
+        samplings=samplings,
     )
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Structure function at all lags by Fourier transform: profiles, and maps all around.
+"""Structure function at all lags by Fourier transform, of profiles and maps.
 
 The transform gives S as a difference of large sums, which loses digits where S is
-small. The mean line or plane is removed first, the loss is bounded, and lags at which
-it matters are summed directly.
+small. The mean line or plane is removed first, the loss of digits is bounded, and lags
+at which it matters are summed directly.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ _DIRECTIONS = ((0, 1), (1, 1), (1, 0), (1, -1))
 _COMPARED_LAGS = 12
 """Lags at which directions are compared [-]."""
 _CLEAR_LAY = 0.25
-"""Difference of ln S between directions that makes a lay [-]."""
+"""Least difference of ln S between directions of a lay [-]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -37,8 +37,8 @@ class StructureMap:
 
     Attributes:
         value: S [m^2], NaN where no pair was measured; of a profile shape (n_lags,)
-            from lag 0 on, of a map shape (n_down, 2 n_across - 1) for lags from 0 on
-            down the columns and from minus to plus along the rows.
+            from lag 0 upward, of a map shape (n_down, 2 n_across - 1) for lags from 0
+            upward down the columns and from minus to plus along the rows.
         spacing: of the lags, as in the surface [m].
         summed: lags that were summed directly [-].
     """
@@ -77,9 +77,9 @@ def structure_map(surface: Surface, *, reach: float = _REACH) -> StructureMap:
     pairs = np.rint(_correlated(known, known, shape, lags))
     cross = _correlated(heights, heights, shape, lags)
     square = heights * heights
-    ahead = _correlated(known, square, shape, lags)
-    behind = _correlated(square, known, shape, lags)
-    sums = ahead + behind - 2 * cross
+    forward = _correlated(known, square, shape, lags)
+    backward = _correlated(square, known, shape, lags)
+    sums = forward + backward - 2 * cross
     lost = _MACHINE * float(square.sum()) > _LOST_DIGITS * np.maximum(sums, 0)
     for place in np.argwhere(lost & (pairs > 0)):
         sums[tuple(place)] = _direct(heights, known, place, lags)
@@ -155,7 +155,7 @@ def isotropy(areal: Areal, *, reach: float = _REACH) -> Isotropy:
         reach: longest lag over its sides [-].
 
     Returns:
-        Directions and their S at equal lags, from one step of the coarsest to the
+        Directions and S of each at equal lags, from one step of the coarsest to the
         reach of the shortest.
 
     Raises:

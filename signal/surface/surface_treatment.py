@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is done to a surface before its fit, as asked: outliers, form, direction."""
+"""Optional treatment of a surface before its fit: outliers, form, direction."""
 
 from dataclasses import dataclass, replace
 
@@ -16,7 +16,7 @@ from jointbench.signal.surface.structure_function import (
 
 @dataclass(frozen=True, slots=True)
 class SurfaceTreatment:
-    """Steps that are taken only where somebody asks for them.
+    """Steps that are made only on request.
 
     Attributes:
         form: degree of the polynomial to remove [-]; None for none.
@@ -32,7 +32,7 @@ class SurfaceTreatment:
 
     @property
     def changes_heights(self) -> bool:
-        """Whether any height is masked or moved."""
+        """Whether any height is masked or changed."""
         return self.form is not None or self.outliers is not None
 
 
@@ -73,7 +73,7 @@ def treated_structure(
             "--direction or give maps"
         )
     if treatment.form is not None:
-        # The steps of the instrument show in the heights that it read only.
+        # The instrument's quantisation steps are only in the original heights.
         step = height_step(surface.heights[surface.valid])
         estimate = replace(estimate, quantum=step)
     return flat, estimate

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The lay of a map: how differently heights run across its rows than along them."""
+"""The lay of a map: how heights vary across its rows compared with along them."""
 
 import numpy as np
 
@@ -18,7 +18,7 @@ def stretch_across(
     value: FloatArray,
     across: float,
 ) -> float:
-    """Return how much farther apart rows are than they look, judged by S across.
+    """Return the factor on the row distance at which S across rows equals S along them.
 
     Args:
         heights: levelled rows [m], shape (n_rows, n_points).

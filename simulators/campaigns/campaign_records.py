@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two-body hammer campaigns with hidden effects, and the truth about them."""
+"""Two-body hammer campaigns with hidden effects, and their truth."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,15 +23,16 @@ from jointbench.simulators.hidden.effect_draws import (
     FAMILIES,
     OUTSIDE_CATALOGUE,
     draw_effect,
+    require_effect,
     resize_effect,
     specimen_scales,
 )
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 MARGIN_RANGE = (1.0, 1e4)
-_CLOSE = 0.15  # relative, at which the size of an effect is close enough
+_CLOSE = 0.15  # relative tolerance of the size of an effect
 _MOST_SIZES = 6
-_FAR = 3.0  # ratio of margins at which rivals at their best call for another size
+_FAR = 3.0  # ratio of margins at which refitted rivals require another size
 _MORE_SIZES = 2
 
 
@@ -41,9 +42,9 @@ class SimulatedCampaign:
 
     Attributes:
         design: specimen, hits and noise.
-        effects: what is hidden in it.
-        margins: what an ideal analyst could make of each effect, same order; empty
-            where nobody worked them out.
+        effects: hidden ones.
+        margins: best possible margin of each effect, same order; empty if not
+            calculated.
         force: hammer force [N], shape (n_records, n).
         acceleration: of base and top [m/s^2], shape (n_records, 2, n).
     """
@@ -81,23 +82,23 @@ def make_campaign(
     noise: float | None = None,
     hit_scatter: float = 0.0,
 ) -> SimulatedCampaign:
-    """Draw a campaign and hide effects in it.
+    """Draw a campaign with hidden effects.
 
     Args:
-        seed: of everything that is drawn.
-        effects: names, whose parameters are drawn, or effects as they are; each name
-            is sized by itself, as if the others were not there.
+        seed: of all draws.
+        effects: names, whose parameters are drawn, or complete effects; each name is
+            sized alone, without the others.
         margin: expected margin of each named effect [-], or a range to draw it from
             log-uniformly.
-        size: share of the largest physical size [-] in place of a margin.
+        size: share of the largest physical size [-] instead of a margin.
         grid: of hits, one of `GRIDS`; None draws it.
         noise: of each acceleration [m/s^2]; None draws it.
-        hit_scatter: relative standard deviation between hits [-]; 0.001 to 0.002 is
-            a good hand.
+        hit_scatter: relative standard deviation between hits [-]; 0.001 to 0.002 is a
+            good operator.
 
     Returns:
-        The campaign. An effect that cannot reach its margin at a physical size is as
-        large as it can be; `margins` says what came out.
+        The campaign. An effect that cannot reach its margin at a physical size has the
+        largest size; `margins` holds the result.
 
     Raises:
         UsageError: an effect is unknown, or named twice.
@@ -105,6 +106,8 @@ def make_campaign(
     names = [each if isinstance(each, str) else each.name for each in effects]
     if len(set(names)) < len(names):
         raise UsageError(f"effects {names} name one twice; hide each of them once")
+    for name in names:
+        require_effect(name)
     design = draw_design(seed, grid=grid, noise=noise, hit_scatter=hit_scatter)
     hidden: tuple[HiddenEffect, ...] = ()
     margins: tuple[Margin, ...] = ()
@@ -127,12 +130,12 @@ def quick_campaign(
     noise: float | None = None,
     hit_scatter: float = 0.0,
 ) -> SimulatedCampaign:
-    """Draw a campaign as `make_campaign` does, without working out margins.
+    """Draw a campaign as `make_campaign` does, without margins.
 
-    Margins take ten times as long as the records themselves.
+    Margins take ten times as long as the records.
 
     Args:
-        seed: of everything that is drawn.
+        seed: of all draws.
         effects: names, whose parameters are drawn.
         size: share of the largest physical size of each effect [-].
         grid: of hits, one of `GRIDS`; None draws it.
@@ -157,7 +160,7 @@ def quick_campaign(
 def campaign_noise_free(
     campaign: SimulatedCampaign, *, with_effects: bool = True
 ) -> tuple[FloatArray, FloatArray]:
-    """Return what the channels of a campaign would record without noise.
+    """Return the noise-free records of a campaign.
 
     Args:
         campaign: the campaign.
@@ -173,7 +176,7 @@ def campaign_noise_free(
 def size_to_margin(
     scale: MarginScale, largest: HiddenEffect, wanted: float
 ) -> HiddenEffect:
-    """Shrink an effect until its expected margin is the wanted one.
+    """Reduce an effect to a wanted expected margin.
 
     Args:
         scale: the design, prepared.
@@ -181,9 +184,8 @@ def size_to_margin(
         wanted: expected margin [-].
 
     Returns:
-        The effect, within 15 % of the margin by the first-order one, and within a
-        factor of 3, mostly, by that of rivals at their best; or as large as
-        `largest`.
+        The effect, within 15 % of the first-order margin, and mostly within a factor of
+        3 of the margin with refitted rivals; or `largest`.
     """
     return _sized(scale, largest, wanted)[0]
 
@@ -191,7 +193,7 @@ def size_to_margin(
 def _sized(
     scale: MarginScale, largest: HiddenEffect, wanted: float
 ) -> tuple[HiddenEffect, Margin | None]:
-    """Return the effect at its size, with its margin where that is known already."""
+    """Return the effect at its size, with its margin if known already."""
     if not FAMILIES[largest.name].resizable:
         return largest, None
     share = _first_share(scale, largest, wanted)
@@ -203,7 +205,7 @@ def _sized(
         missing = float(np.log(wanted / margin))
         if abs(missing) < np.log(_FAR) or (share == 1.0 and missing > 0):
             return sized, known
-        # Between a change that grows as the square and a second-order one.
+        # Between first-order and second-order growth.
         power = 3.0
         if last is not None and last[0] != share:
             slope = np.log(margin / last[1]) / np.log(share / last[0])
@@ -214,7 +216,7 @@ def _sized(
 
 
 def _first_share(scale: MarginScale, largest: HiddenEffect, wanted: float) -> float:
-    """Return the share of the size at which the first-order margin is the wanted."""
+    """Return the share of the size with the wanted first-order margin."""
     share, power = 0.01, 2.0
     known: list[tuple[float, float]] = []
     for _ in range(_MOST_SIZES):

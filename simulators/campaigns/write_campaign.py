@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Campaigns as HDF5 files of schema two-body-campaign/1, the truth as JSON beside."""
+"""Write campaigns as HDF5 of schema two-body-campaign/1, with the truth as JSON."""
 
 import json
 from dataclasses import asdict
@@ -17,12 +17,12 @@ SCHEMA = "two-body-campaign/1"
 
 
 def truth_path(path: Path) -> Path:
-    """Return where the truth about the campaign in `path` lies."""
+    """Return the path of the truth about the campaign in `path`."""
     return path.with_name(f"{path.stem}.truth.json")
 
 
 def write_campaign(campaign: SimulatedCampaign, path: Path) -> None:
-    """Write a campaign, and what is hidden in it beside it.
+    """Write a campaign, and its truth next to it.
 
     Args:
         campaign: the campaign.
@@ -48,7 +48,7 @@ def write_campaign(campaign: SimulatedCampaign, path: Path) -> None:
 
 
 def campaign_truth(campaign: SimulatedCampaign) -> dict[str, object]:
-    """Return the truth about a campaign as JSON has it.
+    """Return the truth about a campaign as JSON types.
 
     Args:
         campaign: the campaign.
@@ -81,7 +81,7 @@ def read_truth(path: Path) -> dict[str, object]:
         path: of the campaign's HDF5 file.
 
     Returns:
-        As `campaign_truth` made it.
+        The content of `campaign_truth`.
 
     Raises:
         FormatError: there is none, or it is not JSON.

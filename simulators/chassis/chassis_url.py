@@ -20,7 +20,7 @@ _KEYS = (
 
 
 def is_plates_url(url: str) -> bool:
-    """Tell whether a URL names a chassis, with the plates or the mass before it."""
+    """Return whether a URL names a chassis, with the plates or the mass."""
     parts = urlsplit(url)
     return parts.scheme == "sim" and parts.path in ("plates", "mass")
 
@@ -32,14 +32,14 @@ def chassis_from_url(url: str) -> ChassisSetup:
         url: ``sim:plates``, or ``sim:mass`` for a mass to calibrate on, and, as a
             query, any of: ``seed``; ``speed``, seconds of
             signal per second or ``max``; ``level``, usual peak force [N];
-            ``interval``, between strokes of the hand's own accord [s]; ``fates`` of
-            the strokes in turn, for example ``good,double*2,weak``; ``faults`` as
-            `parse_faults` reads them; ``modules``; ``top_rate`` [Hz]; ``trigger``, 0
-            for modules without an analogue trigger; ``port``. The mass has ``mass``
-            [kg], and ``hammer`` and ``response``, true sensitivity over the usual one.
+            ``interval``, between unrequested strokes [s]; ``fates`` of the strokes in
+            turn, for example ``good,double*2,weak``; ``faults`` as `parse_faults` reads
+            them; ``modules``; ``top_rate`` [Hz]; ``trigger``, 0 for modules without an
+            analogue trigger; ``port``. The mass has ``mass`` [kg], and ``hammer`` and
+            ``response``, true sensitivity over the usual one.
 
     Raises:
-        UsageError: an unknown key, or a value that does not read so.
+        UsageError: an unknown key, or an invalid value.
     """
     values = dict(parse_qsl(urlsplit(url).query, keep_blank_values=True))
 
@@ -52,14 +52,14 @@ def chassis_from_url(url: str) -> ChassisSetup:
 
     seed = int(take("seed", "1", int))
     interval = values.pop("interval", "")
-    hand = SimulatedOperator(
+    operator = SimulatedOperator(
         seed=seed,
         level=take("level", "150", float),
         interval=_positive(interval) if interval else None,
         fates=_fates(values.pop("fates", "good")),
     )
     speed = values.pop("speed", "max")
-    bench = PlatesBench(hand=hand, seed=seed)
+    bench = PlatesBench(operator=operator, seed=seed)
     if urlsplit(url).path == "mass":
         bench = _mass_bench(bench, take)
     setup = ChassisSetup(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the devices of the simulated chassis answer when asked for a property."""
+"""Properties of the devices of the simulated chassis."""
 
 from jointbench.simulators.chassis.inventory import (
     INPUTS_PER_MODULE,
@@ -27,7 +27,7 @@ _TEDS_MANUFACTURER, _TEDS_MODEL, _TEDS_SERIAL, _TEDS_VERSION = (
 
 
 def device_text(inventory: Inventory, device: str, attribute: int) -> str:
-    """Return a text about a device."""
+    """Return a text property of a device."""
     place = _place(inventory, device)
     if attribute == _PRODUCT_TYPE:
         return _PRODUCT if place else "cDAQ-9178"
@@ -38,7 +38,7 @@ def device_text(inventory: Inventory, device: str, attribute: int) -> str:
 
 
 def device_flag(inventory: Inventory, device: str, attribute: int) -> bool:
-    """Return a yes or no about a device."""
+    """Return a boolean property of a device."""
     _place(inventory, device)
     if attribute == _SIMULATED:
         return True
@@ -48,7 +48,7 @@ def device_flag(inventory: Inventory, device: str, attribute: int) -> bool:
 
 
 def device_number(inventory: Inventory, device: str, attribute: int) -> float:
-    """Return a number about a device."""
+    """Return a numeric property of a device."""
     place = _place(inventory, device)
     if attribute in _MAX_RATES:
         return inventory.top_rate

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What goes wrong at the simulated chassis, and when: a short script of faults."""
+"""Faults of the simulated chassis, as a short script."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,26 +8,26 @@ from jointbench.acquisition.basics.errors import UsageError
 
 
 class FaultKind(StrEnum):
-    """What can go wrong; `at` and `value` are explained with each."""
+    """Kind of fault; the comment of each explains `at` and `value`."""
 
     OVERRUN = "overrun"
     """At a sample, `value` samples are overwritten before they are read."""
     ERROR = "error"
     """At a sample, one read ends with NI's error number -`value`."""
     DROP = "drop"
-    """At a sample, the server goes away for `value` seconds."""
+    """At a sample, the server is unreachable for `value` seconds."""
     SLOW = "slow"
     """From a sample on, every read takes `value` seconds longer."""
     OPEN = "open"
     """From a sample on, the IEPE loop of input number `value` is open."""
     CLOSE = "close"
-    """From a sample on, the IEPE loop of input number `value` is whole again."""
+    """From a sample on, the IEPE loop of input number `value` is closed again."""
     REFUSE = "refuse"
     """From the start, input number `value` does not exist."""
     TEDS_ERROR = "teds_error"
     """From the start, every TEDS is refused with NI's error number -`value`."""
     WRONG_TEDS = "wrong_teds"
-    """From the start, another sensor's TEDS answers at input number `value`."""
+    """From the start, input number `value` returns another sensor's TEDS."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +35,9 @@ class Fault:
     """One fault.
 
     Attributes:
-        kind: what goes wrong.
+        kind: of fault.
         at: sample at which it happens, counted over all streams of the chassis.
-        value: how much, as `FaultKind` explains.
+        value: parameter, see `FaultKind`.
     """
 
     kind: FaultKind
@@ -52,7 +52,7 @@ def parse_faults(text: str) -> tuple[Fault, ...]:
         text: faults joined by commas: kind, ``@`` sample, ``:`` value.
 
     Raises:
-        UsageError: a fault does not read so.
+        UsageError: a fault has another form.
     """
     return tuple(_parse(word) for word in text.split(",") if word.strip())
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is in the simulated chassis: modules of four IEPE inputs, what they can do."""
+"""Modules of the simulated chassis: four IEPE inputs each, and their properties."""
 
 import math
 from dataclasses import dataclass
@@ -19,16 +19,15 @@ class Inventory:
 
     Attributes:
         name: of the chassis; its modules are ``<name>Mod1`` and so on.
-        modules: how many.
-        top_rate: samples per second and channel at the most [Hz]; slower rates are
-            this one over a whole number.
+        modules: number of modules.
+        top_rate: highest samples per second and channel [Hz]; lower rates are this one
+            over an integer.
         analogue_trigger: whether the modules can trigger on a signal.
-        currents: that the modules offer to IEPE sensors [A]; empty for none.
-        teds_error: number of NI's error that ends every question for a TEDS, 0 for
-            none.
+        currents: available for IEPE sensors [A]; empty for none.
+        teds_error: number of NI's error for every TEDS query, 0 for none.
         sensors: plugged into the first inputs.
         missing: inputs that are refused.
-        swapped_teds: inputs at which a wrong TEDS answers.
+        swapped_teds: inputs with a wrong TEDS.
     """
 
     name: str = "cDAQSim1"
@@ -69,10 +68,10 @@ def input_number(inventory: Inventory, physical: str) -> int:
 
 
 def coerced_rate(inventory: Inventory, asked: float) -> float:
-    """Return the rate that the modules really run at: the next one not below [Hz].
+    """Return the actual rate of the modules: the next available one not below [Hz].
 
     Raises:
-        Refusal: it is above what the modules can do.
+        Refusal: it is above the highest rate.
     """
     if not 0 < asked <= inventory.top_rate * (1 + 1e-9):
         raise Refusal(
@@ -85,7 +84,7 @@ def coerced_rate(inventory: Inventory, asked: float) -> float:
 
 
 def require_current(inventory: Inventory, current: float) -> None:
-    """Refuse a current that the modules do not offer [A].
+    """Refuse a current that is not available [A].
 
     Raises:
         Refusal: as an NI module refuses it.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""NI's own protocol, as the official client package ships it.
+"""NI's protocol, from the official client package.
 
 The package's generated modules are private to it, but they are the published interface
 of NI's device server; a simulated server that used a copy would test the copy.
@@ -45,7 +45,7 @@ add_servicer: Any = nidaqmx_pb2_grpc.add_NiDAQmxServicer_to_server
 
 
 class Refusal(Exception):
-    """A DAQmx error: its negative code, its words, and how far a read got.
+    """A DAQmx error: its negative code, its text, and the samples read.
 
     Attributes:
         code: of DAQmx.
@@ -59,7 +59,7 @@ class Refusal(Exception):
 
 
 def refuse(context: grpc.ServicerContext, refusal: Refusal) -> None:
-    """End a call the way NI's server does: the code travels as trailing metadata."""
+    """End a call as NI's server does, with the code in the trailing metadata."""
     metadata = [("ni-error", str(refusal.code))]
     if refusal.read is not None:
         metadata.append(("ni-samps-per-chan-read", str(refusal.read)))
@@ -68,5 +68,5 @@ def refuse(context: grpc.ServicerContext, refusal: Refusal) -> None:
 
 
 def attribute_of(request: Any) -> int:
-    """Return the attribute that a request names, in whichever of two fields."""
+    """Return the attribute of a request, from either of two fields."""
     return int(request.attribute_raw or request.attribute)

@@ -26,11 +26,11 @@ _EVENT_POLL = 0.02  # [s]
 
 
 class ReadingService(TaskService):
-    """The whole service.
+    """The complete service.
 
     Attributes:
         delivered: samples per channel delivered over all streams.
-        reached: sample up to which faults have happened.
+        reached: sample up to which faults were applied.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class ReadingService(TaskService):
         self._delay = 0.0
 
     def latest(self) -> int:
-        """Return the newest sample of the task that runs, 0 without one."""
+        """Return the latest sample of the running task, 0 without one."""
         return max((t.acquired() for t in self.tasks.values() if t.running), default=0)
 
     @answered
@@ -100,7 +100,7 @@ class ReadingService(TaskService):
         return samples
 
     def _break(self, task: SimulatedTask, count: int) -> None:
-        """Let every fault happen whose sample is reached by this read."""
+        """Apply every fault up to the last sample of this read."""
         while self._waiting and self._waiting[0].at < self.delivered + count:
             fault = self._waiting.pop(0)
             self.reached = fault.at
@@ -125,7 +125,7 @@ class ReadingService(TaskService):
 
     @answered
     def GetReadAttributeUInt32(self, request: Any, context: Any) -> Any:
-        """Answer for the samples that wait in the buffer."""
+        """Answer for the samples available in the buffer."""
         return Daqmx.GetReadAttributeUInt32Response(value=self._counter(request))
 
     def _counter(self, request: Any) -> int:
@@ -177,22 +177,22 @@ class ReadingService(TaskService):
         return Daqmx.WaitUntilTaskDoneResponse()
 
     def RegisterEveryNSamplesEvent(self, request: Any, context: Any) -> Iterator[Any]:
-        """Tell of every n samples that were acquired, until the client hangs up."""
+        """Send an event for every n acquired samples, until the client disconnects."""
         context.send_initial_metadata(())
         task = self.tasks.get(request.task.name)
-        told = 0
+        sent = 0
         while task is not None and context.is_active():
-            reached = task.acquired() // request.n_samples if task.running else told
-            for _ in range(told, reached):
+            reached = task.acquired() // request.n_samples if task.running else sent
+            for _ in range(sent, reached):
                 yield Daqmx.RegisterEveryNSamplesEventResponse(
                     every_n_samples_event_type_raw=request.every_n_samples_event_type_raw,
                     n_samples=request.n_samples,
                 )
-            told = max(told, reached)
+            sent = max(sent, reached)
             self._pace.sleep(_EVENT_POLL)
 
     def RegisterDoneEvent(self, request: Any, context: Any) -> Iterator[Any]:
-        """Tell when a finite task has made its last sample."""
+        """Send an event when a finite task is done."""
         context.send_initial_metadata(())
         task = self.tasks.get(request.task.name)
         while task is not None and context.is_active():
@@ -203,7 +203,7 @@ class ReadingService(TaskService):
 
     @answered
     def IsTaskDone(self, request: Any, context: Any) -> Any:
-        """Answer whether a finite task has made its last sample."""
+        """Answer whether a finite task is done."""
         return Daqmx.IsTaskDoneResponse(is_task_done=self.task(request).done())
 
 

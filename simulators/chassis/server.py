@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The simulated chassis as a server on the loopback interface.
 
-Beside NI's service it answers a second, small one: where the hammer is to be, and when
-to strike. A real server has none of it, and no measuring program depends on it.
+Besides NI's service it has a second, small one for the position and the strokes of the
+hammer. A real server does not have it, and no measuring program depends on it.
 """
 
 import json
@@ -30,7 +30,7 @@ from jointbench.simulators.plates.plates_bench import (
 )
 
 HAND_SERVICE = "jointbench.Hand"
-# Every event stream of a client holds a worker for as long as it is open.
+# Every open event stream of a client occupies a worker.
 _WORKERS = 24
 _OPTIONS = (
     ("grpc.max_receive_message_length", -1),
@@ -41,18 +41,18 @@ _OPTIONS = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChassisSetup:
-    """What stands on the bench.
+    """Set-up of the simulated bench.
 
     Attributes:
-        bench: specimen, hand and sensors; or a source of samples, whose channels are
-            then plugged in in their order.
+        bench: specimen, operator and sensors; or a source of samples, whose channels
+            are connected in order.
         speed: seconds of signal per second; infinite for as fast as it is read.
         modules: of four inputs each.
-        top_rate: samples per second and channel at the most [Hz].
+        top_rate: highest samples per second and channel [Hz].
         analogue_trigger: whether the modules can trigger on a signal.
-        currents: that the modules offer to IEPE sensors [A]; empty for none.
-        faults: what goes wrong, and when.
-        port: to listen on; 0 for any that is free.
+        currents: available for IEPE sensors [A]; empty for none.
+        faults: script of faults.
+        port: to listen on; 0 for any free one.
     """
 
     bench: PlatesBench | Source = field(default_factory=PlatesBench)
@@ -66,7 +66,7 @@ class ChassisSetup:
 
 
 class SimulatedChassis:
-    """A server that can be started, dropped and started again on the same port."""
+    """A server that can be started, stopped and restarted on the same port."""
 
     def __init__(self, setup: ChassisSetup) -> None:
         self._setup = setup
@@ -86,18 +86,18 @@ class SimulatedChassis:
 
     @property
     def address(self) -> str:
-        """Host and port, as a client types them."""
+        """Host and port, as given to a client."""
         return f"127.0.0.1:{self.port}"
 
     @property
     def history(self) -> tuple[PlannedStroke, ...]:
-        """What the hand struck so far; nothing where there is none."""
+        """Strokes so far; empty without an operator."""
         live = self._live
         return tuple(live.history) if isinstance(live, LivePlates) else ()
 
     @property
     def sensors(self) -> tuple[PluggedSensor, ...]:
-        """What is plugged into the first inputs."""
+        """Sensors at the first inputs."""
         return self._live.sensors
 
     def __enter__(self) -> "SimulatedChassis":
@@ -115,7 +115,7 @@ class SimulatedChassis:
         self.close()
 
     def start(self) -> None:
-        """Listen, with no task yet.
+        """Listen, without a task.
 
         Raises:
             InstrumentError: the port is taken.
@@ -136,7 +136,7 @@ class SimulatedChassis:
         self._server = server
 
     def drop(self, away: float) -> None:
-        """Go away without a word, and come back after a while [s]."""
+        """Stop without a message, and restart after a time [s]."""
         with self._lock:
             if self._server is None:
                 return
@@ -160,7 +160,7 @@ class SimulatedChassis:
         threading.Event().wait()
 
     def _remember(self) -> None:
-        """Keep, over a restart, what was delivered and which faults are spent."""
+        """Keep the delivered samples and applied faults over a restart."""
         if self._service is not None:
             self._delivered = self._service.delivered
             self._faults = [f for f in self._faults if f.at > self._service.reached]
@@ -200,9 +200,9 @@ def _inventory(setup: ChassisSetup, sensors: tuple[PluggedSensor, ...]) -> Inven
 
 def _hand_handler(live: LivePlates, service: ReadingService) -> grpc.GenericRpcHandler:
     def strike(request: bytes, context: grpc.ServicerContext) -> bytes:
-        wishes: dict[str, Any] = json.loads(request)
+        changes: dict[str, Any] = json.loads(request)
         try:
-            live.place(**wishes)
+            live.place(**changes)
         except (UsageError, TypeError) as error:
             context.abort(grpc.StatusCode.INVALID_ARGUMENT, str(error))
         planned = live.strike(position=service.latest())

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""NI's device service, answered by the simulated chassis: about devices and tasks.
+"""NI's device service of the simulated chassis: devices and tasks.
 
-Only what a hammer session asks for is there; every other call gets gRPC's own answer,
+Only the calls of a hammer session are implemented; every other call gets gRPC's answer
 "unimplemented", as from an older server. Names of methods are NI's.
 """
 
@@ -49,7 +49,7 @@ NewTask = Callable[[str], SimulatedTask]
 def answered(
     method: Callable[[Any, Any, Any], _Answer],
 ) -> Callable[[Any, Any, Any], _Answer]:
-    """Turn a `Refusal` raised in a method into the error of the protocol."""
+    """Convert a `Refusal` raised in a method to the error of the protocol."""
 
     @wraps(method)
     def call(self: Any, request: Any, context: grpc.ServicerContext) -> _Answer:
@@ -63,7 +63,7 @@ def answered(
 
 
 class DeviceService(Servicer):  # type: ignore[misc]
-    """What is in the chassis."""
+    """Calls about the devices of the chassis."""
 
     def __init__(self, inventory: Inventory) -> None:
         self.inventory = inventory
@@ -90,7 +90,7 @@ class DeviceService(Servicer):  # type: ignore[misc]
 
     @answered
     def GetDeviceAttributeBool(self, request: Any, context: Any) -> Any:
-        """Answer for what the device is and can do."""
+        """Answer for boolean properties of the device."""
         flag = properties.device_flag(
             self.inventory, request.device_name, attribute_of(request)
         )
@@ -143,10 +143,10 @@ class TaskService(DeviceService):
         self._lock = threading.Lock()
 
     def task(self, request: Any) -> SimulatedTask:
-        """Return the task that a request is about.
+        """Return the task of a request.
 
         Raises:
-            Refusal: there is none; a server that came back knows no old one.
+            Refusal: there is none; a restarted server has no earlier one.
         """
         found = self.tasks.get(request.task.name)
         if found is None:
@@ -306,7 +306,7 @@ class TaskService(DeviceService):
 
     @answered
     def SetReadAttributeInt32(self, request: Any, context: Any) -> Any:
-        """Move the place of the next read; say whether unread samples may go."""
+        """Set the position of the next read, or the overwriting of unread samples."""
         task = self.task(request)
         value = request.value_raw or request.value
         if attribute_of(request) == 0x190A:

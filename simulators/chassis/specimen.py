@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What stands behind the inputs of the simulated chassis."""
+"""Specimen at the inputs of the simulated chassis."""
 
 from collections.abc import Iterator, Sequence
 from typing import Protocol
@@ -12,9 +12,9 @@ from jointbench.acquisition.records.source import Source
 from jointbench.simulators.plates.plates_bench import PluggedSensor
 
 INPUT_RANGE = 5.0  # [V]
-_KEPT = 4  # blocks behind the newest one that may still be asked for
-_NO_SENSITIVITY = 1e-3  # [V per SI unit] where the source names none
-_NO_RANGE = 0.25  # of its sensitivity, where a source names none of its ranges
+_KEPT = 4  # earlier blocks kept for late reads
+_NO_SENSITIVITY = 1e-3  # [V per SI unit] for a source without one
+_NO_RANGE = 0.25  # range for a source without one
 
 
 class Specimen(Protocol):
@@ -30,7 +30,7 @@ class Specimen(Protocol):
 
 
 class StreamedSpecimen:
-    """A source of samples behind the inputs: its channels are plugged in in order.
+    """A source of samples at the inputs: its channels are connected in order.
 
     After the last sample of the source the inputs are silent.
     """
@@ -44,7 +44,7 @@ class StreamedSpecimen:
         self._from = 0
 
     def begin(self, sample_rate: float) -> None:
-        """Start the source again from its first sample; its rate is its own."""
+        """Restart the source from its first sample; the rate is that of the source."""
         self._blocks = self._source.blocks()
         self._data, self._from = np.zeros((len(self.sensors), 0)), 0
 

@@ -14,9 +14,9 @@ from jointbench.simulators.measuring.converter import Digitiser
 
 INPUT_RANGE = 5.0  # [V], either sign
 BITS = 24
-_LONGEST_SLEEP = 0.02  # [s] between looks at the clock
+_LONGEST_SLEEP = 0.02  # [s] between polls of the clock
 _NEVER = 2**63
-# Samples searched for a trigger before the search gives way to a read's time-out.
+# Samples searched for a trigger before a read's time-out is checked.
 _SEARCH = 4096
 
 
@@ -26,8 +26,8 @@ class TaskChannel:
 
     Attributes:
         name: as the client called it.
-        input: number of the input that it is wired to.
-        sensitivity: that the client believes in [V per unit returned].
+        input: number of its input.
+        sensitivity: set by the client [V per unit returned].
     """
 
     name: str
@@ -54,7 +54,7 @@ class Trigger:
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How the chassis keeps time.
+    """Time base of the chassis.
 
     Attributes:
         speed: seconds of signal per second, infinite for as fast as it is read.
@@ -135,11 +135,11 @@ class SimulatedTask:
         return min(int(elapsed * self.rate), self._end)
 
     def skip_to(self, sample: int) -> None:
-        """Let the converter run on to a sample, whoever reads or does not."""
+        """Advance the converter to a sample, read or not."""
         self._skipped = max(self._skipped, sample)
 
     def done(self) -> bool:
-        """Tell whether a finite task has made its last sample."""
+        """Return whether a finite task is done."""
         if self.trigger is not None and self._end == _NEVER and self.running:
             self._look()
         return self._end != _NEVER and (
@@ -180,7 +180,7 @@ class SimulatedTask:
         return samples
 
     def _require_kept(self, first: int) -> None:
-        """Refuse samples that the buffer holds no more.
+        """Refuse samples that are no longer in the buffer.
 
         Source:
             NI-DAQmx properties, OverWrite Mode.
@@ -223,7 +223,7 @@ class SimulatedTask:
             self._pace.sleep(min(max(missing, 1e-3), left, _LONGEST_SLEEP))
 
     def _await_trigger(self, deadline: float) -> None:
-        """Look for the edge in what was acquired, and fix the end of the task by it."""
+        """Search the acquired samples for the edge, and set the end of the task."""
         while not self._look():
             if self._pace.now() >= deadline:
                 raise Refusal(
@@ -235,7 +235,7 @@ class SimulatedTask:
                 self._pace.sleep(_LONGEST_SLEEP)
 
     def _look(self) -> bool:
-        """Search what was acquired since the last look; True once the edge is found."""
+        """Search the new samples; return True once the edge is found."""
         fast = math.isinf(self._pace.speed)
         reach = self._found_to + _SEARCH if fast else self.acquired()
         if self.trigger is not None and reach > self._found_to:

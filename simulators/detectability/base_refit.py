@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Refit the base model of a campaign to noise-free responses, priors included.
 
-Only for judging how much of a hidden effect the base, alone or with a rival of that
-effect, can follow; it starts at the truth and knows the noise, which no analyst does.
+Only to estimate how much of a hidden effect the base, alone or with a rival, can
+represent; it starts at the true values and uses the true noise, which no analyst has.
 """
 
 from collections.abc import Mapping
@@ -43,7 +43,7 @@ _WINDOWS = (3e-3, 12e-3)  # [s]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BaseView:
-    """The base of a design as weighted least squares sees it.
+    """The base of a design for weighted least squares.
 
     Attributes:
         design: the campaign without effects.
@@ -84,7 +84,7 @@ class BaseFit:
 
     @property
     def cost(self) -> float:
-        """Sum of squares of what is left [-]."""
+        """Sum of squares of the residual [-]."""
         return float(self.left @ self.left)
 
 
@@ -116,7 +116,7 @@ def _stiffer_and_softer(design: CampaignDesign) -> list[FloatArray]:
 
 
 def project(view: BaseView, change: FloatArray) -> FloatArray:
-    """Return what is left of a small change once the base has followed it.
+    """Return the residual of a small change after the base is refitted.
 
     Args:
         view: the base.
@@ -130,22 +130,22 @@ def project(view: BaseView, change: FloatArray) -> FloatArray:
 
 
 def follow(view: BaseView, change: FloatArray) -> FloatArray:
-    """Return the offsets by which the base follows a small change, shape (6,)."""
+    """Return the base offsets fitted to a small change, shape (6,)."""
     return _solve(view.slopes, _row(view, change, np.zeros(_BASE)))
 
 
 def refit_base(view: BaseView, responses: FloatArray) -> BaseFit:
     """Refit the base alone to responses with an effect.
 
-    A large change is followed from its beginning: the first milliseconds have few
-    oscillations in which a fit could lose its place.
+    A large change is fitted from its beginning: the first milliseconds have few
+        oscillations, and so no local minima.
 
     Args:
         view: the base, with its slopes at the truth.
         responses: noise-free, with the effect [m/s^2], shape (n_records, 2, n).
 
     Returns:
-        The base that comes nearest.
+        The closest base.
     """
     start = np.zeros(_BASE)
     if np.linalg.norm(project(view, responses - view.responses)) > _LARGE:
@@ -167,15 +167,15 @@ def refit_moves(
 
     Args:
         view: the base, with its slopes at the truth.
-        wanted: responses to come near to [m/s^2], shape (n_records, 2, n).
+        wanted: responses to fit [m/s^2], shape (n_records, 2, n).
         start: moves to start from, shape (6 + n_free,).
-        rival: what acts on the base besides; none for the base alone.
+        rival: additional effects; none for the base alone.
 
     Returns:
         The best moves.
 
     Source:
-        Beside a rival the slopes are corrected by secants, Broyden, Math. Comp. 19
+        With a rival the derivatives are corrected by secants, Broyden, Math. Comp. 19
         (1965) 577: sliders are slow to differentiate.
     """
     fit = try_moves(view, wanted, start, rival)
@@ -191,7 +191,7 @@ def refit_moves(
             break
         last, fit = fit, better
         if fit.cost < 1.02 * hoped + 0.01:
-            break  # the model was straight enough: no step would gain more
+            break  # the model is nearly linear: no step would gain more
         if rival is None:
             slopes = _slopes(view, fit.moves)
         else:
@@ -202,7 +202,7 @@ def refit_moves(
 def try_moves(
     view: BaseView, wanted: FloatArray, moves: FloatArray, rival: HiddenEffect | None
 ) -> BaseFit:
-    """Return what moves leave of the wanted responses, as in `refit_moves`."""
+    """Return the residual of the wanted responses after moves, as in `refit_moves`."""
     change = wanted - _responses(view, moves, rival)
     return BaseFit(moves, _row(view, change, -_priors() * moves[:_BASE]))
 
@@ -236,7 +236,7 @@ def _shorten(
 
 
 def _solve(slopes: FloatArray, left: FloatArray) -> FloatArray:
-    """Return the least-squares step; a move that changes nothing stays still."""
+    """Return the least-squares step; a move without effect stays 0."""
     size = np.linalg.norm(slopes, axis=0) + 1e-12
     scaled = slopes / size
     gram = scaled.T @ scaled + 1e-10 * np.eye(size.size)
@@ -256,7 +256,7 @@ def _responses(
 ) -> FloatArray:
     physical = _values(view.design.physical, moves[:_BASE])
     effects = () if rival is None else (move_rival(rival, moves[_BASE:]),)
-    # A move too far may blow up; its cost is then refused.
+    # Too large a move may diverge; its cost is then refused.
     with np.errstate(all="ignore"):
         return sketch_responses(view.design, effects, physical=physical)
 
@@ -305,7 +305,7 @@ def _all_slopes(
 
 
 def _secant(slopes: FloatArray, last: BaseFit, fit: BaseFit) -> FloatArray:
-    """Correct slopes by what the last step changed, Broyden's good update."""
+    """Correct derivatives by the change of the last step, Broyden's good update."""
     step = fit.moves - last.moves
     missed = last.left - fit.left - slopes @ step
     return slopes + np.outer(missed, step / _square(step))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""How well a hidden effect can be seen, and told from its rivals, at best.
+"""Best possible detectability of a hidden effect, and its distinction from rivals.
 
-Numerically differenced responses of the simulators' own plant, projected. The
+By projection of numerically differenced responses of the simulators' plant. The
 held-out records are all records, since every group is held out in turn.
 """
 
@@ -23,7 +23,7 @@ from jointbench.simulators.detectability.rival_effects import rival_effects
 from jointbench.simulators.detectability.rival_refit import (
     best_shape,
     refit_rival,
-    sized_twin,
+    sized_at_other_site,
 )
 from jointbench.simulators.detectability.settling_margin import settled_shares
 from jointbench.simulators.hidden.campaign_design import CampaignDesign
@@ -31,17 +31,17 @@ from jointbench.simulators.hidden.campaign_response import sketch_responses
 from jointbench.simulators.hidden.effect_draws import FAMILIES, Scales, specimen_scales
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
-_REFITTED = 4  # rivals, the most alike by the grid
-_ALIKE = 0.7  # correlation below which a rival is not worth a refit
+_REFITTED = 4  # rivals, the most similar by the grid
+_ALIKE = 0.7  # least correlation of a rival that is refitted
 
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """What an ideal analyst could make of one effect.
+    """Best possible margin of one effect.
 
     Attributes:
         rho: norm of the weighted change that the base cannot follow, over the square
-            root of the number of parameters [-]; below 1 nobody sees it.
+            root of the number of parameters [-]; below 1 it cannot be detected.
         correlation: of that change with the best rival's [-].
         rival: name and site of the best rival.
         margin: rho^2 (1 - correlation^2) [-].
@@ -55,11 +55,11 @@ class Margin:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rival:
-    """Small effects of one name and site, and what the base leaves of them.
+    """Small effects of one name and site, and their residuals after the base fit.
 
     Attributes:
         shapes: the effects.
-        directions: what the base leaves of each, (n_rows,) each.
+        directions: residual of each after the base fit, (n_rows,) each.
         plane: orthonormal columns that span the directions.
     """
 
@@ -73,8 +73,8 @@ class MarginScale:
     """Everything about a design that margins need, computed once.
 
     Attributes:
-        scales: what its specimen does.
-        view: its base as least squares sees it.
+        scales: of its specimen.
+        view: its base for least squares.
         rivals: of any hidden effect, by name and site.
     """
 
@@ -101,16 +101,16 @@ def margin_scale(design: CampaignDesign) -> MarginScale:
 
 
 def expected_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
-    """Judge how visible an effect is, and how distinct from the best rival.
+    """Estimate the detectability of an effect, and its distinction from the best rival.
 
     Args:
         scale: the design, prepared.
         effect: the hidden effect, at its size.
 
     Returns:
-        rho, the best rival and the margin. The rivals most alike by their grids, and
-        the effect itself at its other site, are refitted with all their parameters
-        and the base's; the correlation is that of the best fit.
+        rho, the best rival and the margin. The rivals most similar by their grids, and
+        the effect itself at its other site, are refitted with all their parameters and
+        the base's; the correlation is that of the best fit.
     """
     responses = sketch_responses(scale.view.design, [effect])
     alone = refit_base(scale.view, responses)
@@ -126,7 +126,7 @@ def expected_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
 
 
 def first_order_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
-    """Judge an effect by the grid of small rivals alone, for a quick first size.
+    """Estimate the margin by the grid of small rivals alone, for a quick first size.
 
     Args:
         scale: the design, prepared.
@@ -136,8 +136,8 @@ def first_order_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
         As `expected_margin`; a rival may mix all shapes of its grid, but no others.
 
     Source:
-        Cook and Weisberg's added-variable projection, with the rival's plane in
-        place of one regressor.
+        Cook and Weisberg's added-variable projection, with the rival's plane instead of
+        one regressor.
     """
     responses = sketch_responses(scale.view.design, [effect])
     alone = refit_base(scale.view, responses)
@@ -148,7 +148,7 @@ def first_order_margin(scale: MarginScale, effect: HiddenEffect) -> Margin:
 
 
 def _over_scatter(scale: MarginScale, effect: HiddenEffect, found: Margin) -> Margin:
-    """Return a margin, or what the joint's own scatter leaves of it."""
+    """Return a margin, reduced by the scatter of the joint if that is smaller."""
     settled = settled_shares(scale.view, effect)
     if settled is None:
         return found
@@ -167,7 +167,7 @@ def _rival(view: BaseView, shapes: list[HiddenEffect]) -> Rival:
 def _correlations(
     scale: MarginScale, effect: HiddenEffect, left: FloatArray
 ) -> dict[str, float]:
-    """Return how much of what is left lies in the plane of each rival."""
+    """Return the correlation of the residual with the plane of each rival."""
     norm = max(float(np.linalg.norm(left)), 1e-300)
     return {
         site: min(float(np.linalg.norm(rival.plane.T @ left)) / norm, 1.0)
@@ -179,7 +179,7 @@ def _correlations(
 def _starts(
     scale: MarginScale, effect: HiddenEffect, alone: BaseFit, alike: dict[str, float]
 ) -> list[tuple[str, HiddenEffect]]:
-    """Return the rivals worth a refit, each as it should start."""
+    """Return the start of each rival to refit."""
     starts: list[tuple[str, HiddenEffect]] = []
     for site in sorted(alike, key=lambda site: -alike[site]):
         if alike[site] < _ALIKE:
@@ -188,8 +188,8 @@ def _starts(
         best = best_shape(known.shapes, known.directions, alone.left)
         if best is not None and len(starts) < _REFITTED:
             starts.append((site, best[0]))
-    twin = sized_twin(scale.view, effect, alone.left)
-    return starts if twin is None else [*starts, (_site(twin), twin)]
+    other = sized_at_other_site(scale.view, effect, alone.left)
+    return starts if other is None else [*starts, (_site(other), other)]
 
 
 def _margin(effect: HiddenEffect, norm: float, rival: str, square: float) -> Margin:
@@ -202,9 +202,10 @@ def _site(effect: HiddenEffect) -> str:
 
 
 def _same_thing(effect: HiddenEffect, site: str) -> bool:
-    """Say whether a rival is the effect itself, perhaps under another name.
+    """Return whether a rival is the effect itself, perhaps under another name.
 
-    A turned sign is a gain of -2; a limit on all channels is one on that which clips.
+    A reversed sign is a gain of -2; a limit on all channels equals one on the clipping
+    channel.
     """
     name = site.split()[0]
     return (

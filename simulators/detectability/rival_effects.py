@@ -13,7 +13,7 @@ from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 # Small enough to change the responses in proportion, large enough for differences.
 _SMALL = 1e-5
 
-# What an analyst would fit of each, size first.
+# Parameters that an analyst would fit, size first.
 _FREE: Mapping[str, tuple[str, ...]] = {
     "cubic_stiffness": ("k3",),
     "quadratic_stiffness": ("k2",),
@@ -47,13 +47,13 @@ _SIGNED = frozenset(
 
 
 def rival_effects(scales: Scales) -> list[HiddenEffect]:
-    """Return small effects whose responses span what each rival could explain.
+    """Return small effects whose responses span those of each rival.
 
     Args:
         scales: of the specimen.
 
     Returns:
-        Effects; those of one name and site differ in shape and belong together.
+        Effects; those of one name and site differ in shape only.
     """
     return [
         *_elastic(scales),
@@ -66,12 +66,12 @@ def rival_effects(scales: Scales) -> list[HiddenEffect]:
 
 
 def may_turn(name: str) -> bool:
-    """Say whether a rival of negative size is physical."""
+    """Return whether a rival of negative size is physical."""
     return name in _SIGNED
 
 
 def free_count(rival: HiddenEffect) -> int:
-    """Return how many parameters of a rival can move."""
+    """Return the number of free parameters of a rival."""
     return len(_FREE[rival.name])
 
 
@@ -80,11 +80,11 @@ def move_rival(rival: HiddenEffect, moves: FloatArray) -> HiddenEffect:
 
     Args:
         rival: where the moves start.
-        moves: by which the logarithms of its free parameters change, and by which
-            those change that may be zero [-], shape (n_free,).
+        moves: changes of the logarithms of its free parameters, and of those that may
+            be zero [-], shape (n_free,).
 
     Returns:
-        The moved rival, every parameter within what its law allows.
+        The moved rival, every parameter within the limits of its law.
     """
     moved = dict(rival.parameters)
     for name, move in zip(_FREE[rival.name], moves, strict=True):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Refit a rival of a hidden effect: what is left of the effect at its best.
+"""Refit a rival of a hidden effect, and return the residual.
 
-A grid of small rivals says who could mimic an effect to first order. How well they do
-is decided by their own parameters, and at the size of the effect.
+A grid of small rivals shows which can mimic an effect to first order. How well they do
+depends on their own parameters and on the size of the effect.
 """
 
 from collections.abc import Sequence
@@ -23,11 +23,11 @@ from jointbench.simulators.hidden.campaign_response import sketch_responses
 from jointbench.simulators.hidden.effect_draws import CATALOGUE, FAMILIES, resize_effect
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
-_HALVINGS = 6  # of the size of a rival that starts out too large
+_HALVINGS = 6  # of the size of a rival that starts too large
 
 
-def twin_effect(effect: HiddenEffect) -> HiddenEffect | None:
-    """Return the same effect at its other site; None where it has no other."""
+def at_other_site(effect: HiddenEffect) -> HiddenEffect | None:
+    """Return the same effect at its other site; None if it has no other."""
     movable = effect.name in CATALOGUE and FAMILIES[effect.name].resizable
     if not movable or "dof" not in effect.parameters or effect.name == "hum":
         return None
@@ -38,16 +38,15 @@ def twin_effect(effect: HiddenEffect) -> HiddenEffect | None:
 def best_shape(
     shapes: Sequence[HiddenEffect], directions: Sequence[FloatArray], left: FloatArray
 ) -> tuple[HiddenEffect, float] | None:
-    """Return the shape most like what an effect leaves, at the size that fits.
+    """Return the shape most similar to the residual of an effect, at the fitted size.
 
     Args:
         shapes: small effects of one name and site.
-        directions: what the base leaves of each, (n_rows,) each.
-        left: what the base leaves of the hidden effect, shape (n_rows,).
+        directions: residual of each after the base fit, (n_rows,) each.
+        left: residual of the hidden effect after the base fit, shape (n_rows,).
 
     Returns:
-        Shape and its correlation [-]; None where each would need a sign it cannot
-        have.
+        Shape and its correlation [-]; None if each would need an impossible sign.
     """
     best: tuple[HiddenEffect, float] | None = None
     norm = float(np.linalg.norm(left)) + 1e-300
@@ -74,7 +73,7 @@ def refit_rival(
         rival: to start from.
 
     Returns:
-        Norm of what is left [-], that of `alone` where the rival is of no use.
+        Norm of the residual [-], that of `alone` if the rival does not reduce it.
     """
     for halving in range(_HALVINGS):
         trial = resize_effect(rival, 0.5**halving)
@@ -91,13 +90,13 @@ def refit_rival(
     return float(np.sqrt(alone.cost))
 
 
-def sized_twin(
+def sized_at_other_site(
     view: BaseView, effect: HiddenEffect, left: FloatArray
 ) -> HiddenEffect | None:
-    """Return the twin of an effect at the size that fits what the base leaves."""
-    twin = twin_effect(effect)
-    if twin is None:
+    """Return the effect at its other site, sized to fit the residual of the base."""
+    other = at_other_site(effect)
+    if other is None:
         return None
-    change = sketch_responses(view.design, [twin]) - view.responses
-    best = best_shape([twin], [project(view, change)], left)
+    change = sketch_responses(view.design, [other]) - view.responses
+    best = best_shape([other], [project(view, change)], left)
     return None if best is None else best[0]

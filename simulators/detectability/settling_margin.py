@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""How well a law of preload or order is seen over the joint's own scatter.
+"""Detectability of a law of preload or order over the scatter of the joint.
 
-Such an effect is a stiffness of its own for each record, and so is the scatter from
-hit to hit: whatever the responses hold, nobody tells the two apart better than from
-one stiffness a record. Weighted samples cannot say this: they blur two orders of the
-scatter only, and a sharp record shows the third.
+Such an effect is a separate stiffness for each record, and so is the scatter from hit
+to hit: the two cannot be distinguished better than from one stiffness per record.
+Weighted samples do not include this: they blur only two orders of the scatter, and a
+precise record resolves the third.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ _SMALL = 1e-3
 def settled_shares(
     view: BaseView, effect: HiddenEffect
 ) -> tuple[float, float, str] | None:
-    """Return how large an effect is beside the scatter, and how like its rival.
+    """Return the size of an effect over the scatter, and its rival's correlation.
 
     Args:
         view: the base of a design.
@@ -29,11 +29,11 @@ def settled_shares(
 
     Returns:
         Norm of the stiffnesses' shift over their sd, their mean free [-], its
-        correlation with the rival's, and that rival's name and site; None where
-        nothing scatters or the effect is no stiffness of the records.
+        correlation with the rival's, and that rival's name and site; None without
+        scatter, or if the effect is no stiffness of the records.
 
     Source:
-        Weighted least squares of a mean and a pattern, one value a record.
+        Weighted least squares of a mean and a pattern, one value per record.
     """
     scatter = view.design.hit_scatter
     if effect.name not in _RIVALS or scatter <= 0:

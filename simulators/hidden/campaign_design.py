@@ -11,7 +11,7 @@ from jointbench.simulators.hidden.campaign_sampling import PRETRIGGER, SAMPLE_RA
 from jointbench.simulators.measuring.hammer import Pulse
 
 BASE_NAMES = ("m1", "m2", "k0", "c0", "kj", "cj")
-# One-sigma relative errors of the nominal sheet: masses are weighed.
+# One-sigma relative errors of the nominal parameters: masses are weighed.
 NOMINAL_SIGMA: Mapping[str, float] = {
     "m1": 0.003,
     "m2": 0.003,
@@ -32,17 +32,17 @@ _NOMINAL_RANGE: Mapping[str, tuple[float, float]] = {
 
 @dataclass(frozen=True, slots=True)
 class CampaignCondition:
-    """One record: what was struck, how hard, under which preload.
+    """One record: struck body, force level and preload.
 
     Attributes:
         level: nominal peak force [N].
         hit_dof: 0 the base, 1 the top.
         preload: on the joint [N].
         preload_ratio: preload over the reference preload [-].
-        order: place in the sequence of recording.
+        order: index in the sequence of recording.
         progress: `order` over the last one, 0..1 [-].
-        pulse: the hit as the hand made it.
-        force_factor: acting over measured force, the scatter of the hand [-].
+        pulse: the force of the hit.
+        force_factor: acting over measured force, the scatter of the operator [-].
         joint_factor: joint stiffness over its mean, the scatter of the joint [-].
         phase: of any hum at the start of the record [rad].
     """
@@ -64,10 +64,10 @@ class CampaignDesign:
     """All of a campaign but its hidden effects.
 
     Attributes:
-        seed: it was drawn from.
-        nominal: sheet values of m1, m2 [kg], k0, kj [N/m], c0, cj [N s/m].
+        seed: of all draws.
+        nominal: values of m1, m2 [kg], k0, kj [N/m], c0, cj [N s/m].
         physical: true values.
-        preload_reference: preload to which they belong [N].
+        preload_reference: preload of the true values [N].
         noise: standard deviation of each acceleration [m/s^2].
         hit_scatter: relative standard deviation between hits [-].
         conditions: of the records, in order.
@@ -108,7 +108,7 @@ GRIDS: Mapping[str, _Grid] = {
         (1, 200.0, 2.0),
         (0, 200.0, 2.0),
     ),
-    # Every condition twice, the preloads up and down again: what loosens shows.
+    # Every condition twice, with preloads up and down, to show loosening.
     "crossed": tuple(
         (dof, level, ratio)
         for ratio in (0.5, 1.0, 2.0, 2.0, 1.0, 0.5)
@@ -126,12 +126,12 @@ def draw_design(
     noise: float | None = None,
     hit_scatter: float = 0.0,
 ) -> CampaignDesign:
-    """Draw a specimen, its sheet and its hits.
+    """Draw a specimen, its nominal parameters and its hits.
 
     Args:
         seed: of all draws.
-        grid: name of one of `GRIDS`; None draws one of those that no design crosses,
-            most often the full one.
+        grid: name of one of `GRIDS`; None draws one, except crossed designs, most often
+            the full one.
         noise: of each acceleration [m/s^2]; None draws it from 0.02 to 0.5.
         hit_scatter: relative standard deviation of force and joint stiffness from
             hit to hit [-].

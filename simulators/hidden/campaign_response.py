@@ -16,9 +16,9 @@ from jointbench.simulators.hidden.sensor_faults import clip_samples, distort_sig
 from jointbench.simulators.measuring.converter import AntiAlias, decimate
 from jointbench.simulators.measuring.hammer import pulse_force
 from jointbench.simulators.mechanics.plant import two_bodies
-from jointbench.simulators.mechanics.plant_march import step_plant
+from jointbench.simulators.mechanics.plant_integration import step_plant
 
-# Pass band 0.42 of the sample rate, as a sigma-delta converter has it.
+# Pass band 0.42 of the sample rate, as of a sigma-delta converter.
 CONVERTER = AntiAlias(
     oversampling=16, pass_band=0.42, stop_band=0.48, attenuation=100.0
 )
@@ -30,12 +30,12 @@ def simulate_records(
     *,
     converter: AntiAlias = CONVERTER,
 ) -> tuple[FloatArray, FloatArray]:
-    """Return what noise-free channels record.
+    """Return the noise-free records.
 
     Args:
         design: specimen and hits.
         effects: hidden ones; none for the base model at its true values.
-        converter: that records force and accelerations alike.
+        converter: of force and accelerations.
 
     Returns:
         Forces [N], shape (n_records, n), and accelerations [m/s^2], shape
@@ -65,15 +65,15 @@ def sketch_responses(
     physical: Mapping[str, float] | None = None,
     oversampling: int = 4,
 ) -> FloatArray:
-    """Return accelerations as `simulate_records` does, quicker and less exact.
+    """Return accelerations as `simulate_records` does, faster and less exact.
 
-    Four steps a sample and no anti-alias filter: good to a per cent of a change, which
-    is enough to judge the size of an effect.
+    Four steps per sample and no anti-alias filter: within one percent of a change,
+    enough for the size of an effect.
 
     Args:
         design: specimen and hits.
         effects: hidden ones.
-        physical: values in place of the true ones of the design.
+        physical: replaces the true values of the design.
         oversampling: steps of the plant per sample.
 
     Returns:

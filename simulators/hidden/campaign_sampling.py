@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How every record of a campaign is sampled, and the noise of its force."""
+"""Sampling of the records of a campaign, and the force noise."""
 
 SAMPLE_RATE = 16384.0  # [Hz]
 SAMPLES = 2048  # per record

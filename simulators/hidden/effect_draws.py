@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Random hidden effects: shapes drawn log-uniformly, sizes from nothing to extreme.
+"""Random hidden effects: shapes drawn log-uniformly, sizes from zero to extreme.
 
-Shapes are drawn in proportion to what the specimen does (its largest elongation, its
+Shapes are drawn in proportion to the response of the specimen (largest elongation,
 frequencies), so that a gap closes and a slider slips within the levels of the hits.
 """
 
@@ -23,7 +23,7 @@ _Draw = Callable[["Scales", np.random.Generator], dict[str, float]]
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """What the specimen of a design does without hidden effects.
+    """Response of the specimen of a design without hidden effects.
 
     Attributes:
         elongation: largest of the joint over all records [m].
@@ -46,7 +46,7 @@ class Scales:
 
 @dataclass(frozen=True, slots=True)
 class EffectFamily:
-    """How to draw one kind of effect.
+    """Distribution of one kind of effect.
 
     Attributes:
         draw: parameters at the largest size that is still physical.
@@ -62,7 +62,7 @@ class EffectFamily:
 
     @property
     def resizable(self) -> bool:
-        """True where a size makes sense: a turned sign has none."""
+        """True if the effect has a size; a reversed sign has none."""
         return bool(self.scaled or self.inverse)
 
 
@@ -96,16 +96,25 @@ def draw_effect(name: str, scales: Scales, rng: np.random.Generator) -> HiddenEf
         rng: source of the draw.
 
     Returns:
-        The effect; `resize_effect` makes it smaller.
+        The effect; `resize_effect` reduces it.
 
     Raises:
         UsageError: there is no such effect.
+    """
+    require_effect(name)
+    return HiddenEffect(name, FAMILIES[name].draw(scales, rng))
+
+
+def require_effect(name: str) -> None:
+    """Raise unless there is an effect of that name.
+
+    Raises:
+        UsageError: there is none.
     """
     if name not in FAMILIES:
         raise UsageError(
             f"unknown effect {name!r}; there are {', '.join(sorted(FAMILIES))}"
         )
-    return HiddenEffect(name, FAMILIES[name].draw(scales, rng))
 
 
 def resize_effect(effect: HiddenEffect, share: float) -> HiddenEffect:
@@ -193,7 +202,7 @@ def _rattling_mass(s: Scales, rng: np.random.Generator) -> dict[str, float]:
     }
 
 
-# Sizes: everything up to what an analyst would call gross.
+# Sizes up to gross effects.
 FAMILIES: Mapping[str, EffectFamily] = {
     "cubic_stiffness": EffectFamily(_odd("k3", 3), 1, ("k3",)),
     "quadratic_stiffness": EffectFamily(

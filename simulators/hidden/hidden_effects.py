@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a hidden effect does to the specimen, by name."""
+"""Changes of the specimen by hidden effects, by name."""
 
 import difflib
 from collections.abc import Callable, Mapping
@@ -26,14 +26,14 @@ class HiddenEffect:
 
     Attributes:
         name: as in the catalogue of campaigns.
-        parameters: by name, SI units; `dof` is the body or channel it sits on.
+        parameters: by name, SI units; `dof` is its body or channel.
     """
 
     name: str
     parameters: Mapping[str, float]
 
     def __post_init__(self) -> None:
-        """Refuse names nobody can simulate."""
+        """Refuse unknown names."""
         if self.name not in MECHANICS and self.name not in SENSOR_FAULTS:
             known = sorted((*MECHANICS, *SENSOR_FAULTS))
             near = difflib.get_close_matches(self.name, known, n=3)
@@ -44,7 +44,7 @@ class HiddenEffect:
 
     @property
     def site(self) -> str:
-        """Where it sits: a link, a body or a channel."""
+        """Site of the effect: a link, a body or a channel."""
         if self.name in {"saturation", "clock_drift"}:
             return "channel:all"
         dof = int(self.parameters.get("dof", 0))
@@ -60,7 +60,7 @@ class HiddenEffect:
 def change_plant(
     plant: Plant, effect: HiddenEffect, condition: CampaignCondition
 ) -> Plant:
-    """Put an effect into the plant; a sensor fault leaves it as it is."""
+    """Add an effect to the plant; a sensor fault does not change it."""
     change = MECHANICS.get(effect.name)
     return plant if change is None else change(plant, effect.parameters, condition)
 
@@ -83,7 +83,7 @@ def _scale(
 
 
 def _take(plant: Plant, stiffness: float) -> Plant:
-    """Leave the joint's own spring what the sliders do not carry."""
+    """Reduce the spring of the joint by the stiffness of the sliders."""
     own = plant.links[_JOINT].stiffness
     return _scale(plant, (own - stiffness) / own)
 
@@ -127,7 +127,7 @@ def _extra_damping(plant: Plant, p: Parameters, _: CampaignCondition) -> Plant:
 
 
 def _rattling_mass(plant: Plant, p: Parameters, _: CampaignCondition) -> Plant:
-    """Hang a loose part into a slot; a weak spring at 20 Hz keeps it centred."""
+    """Add a loose part in a slot; a weak spring at 20 Hz keeps it centred."""
     body, dof = len(plant.masses), int(p["dof"])
     weak = p["m"] * (2 * np.pi * 20) ** 2
     link = PlantLink(dof, body, weak, 0.1 * weak / (2 * np.pi * 20))
@@ -136,8 +136,8 @@ def _rattling_mass(plant: Plant, p: Parameters, _: CampaignCondition) -> Plant:
 
 
 def _coulomb(plant: Plant, p: Parameters, _: CampaignCondition) -> Plant:
-    # The stick velocity lies far below every velocity measured, and the reduced
-    # mass of the joint, 2 kg at least, stays within the stability of the stepper.
+    # The stick velocity is far below every measured velocity, and the reduced mass of
+    # the joint, at least 2 kg, is within the stability of the stepper.
     stick = max(2e-5, p["Fc"] / (2.0 * 2e5))
     return _law(plant, LawKind.COULOMB, p["Fc"], stick)
 

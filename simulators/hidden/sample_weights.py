@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What the samples of a campaign are worth: noise, force noise, scatter of hits.
+"""Weights of the samples of a campaign: noise, force noise, scatter of hits.
 
-The scatter is no noise of samples: each hit has one factor on its force and one on
-the stiffness of its joint, so it blurs few known directions of each record only.
+The scatter is no noise of samples: each hit has one factor on its force and one on the
+    stiffness of its joint, so it blurs only a few known directions of each record.
 """
 
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ from jointbench.simulators.hidden.campaign_sampling import FORCE_NOISE, SAMPLE_R
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SampleWeights:
-    """How to whiten changes of the responses.
+    """Whitening of changes of the responses.
 
     Attributes:
         inverse: 1/sigma of every sample, shape (n_records, 2, n).
         blurred: orthonormal directions of each record, weighted, that the scatter
             blurs, shape (n_records, 2 n, n_directions).
-        kept: share of each that is left of a change [-], (n_records, n_directions).
+        kept: remaining share of a change in each [-], (n_records, n_directions).
     """
 
     inverse: FloatArray
@@ -97,8 +97,8 @@ def windowed(weights: SampleWeights, window: FloatArray) -> SampleWeights:
 def _force_gain(design: CampaignDesign, base: FloatArray) -> FloatArray:
     """Return the summed squares of the responses to unit samples of the force.
 
-    Noise counts while the hit lasts, outside the force is known to be zero. A hit is
-    short: its response over the sum of its samples stands for that to one sample.
+    Noise counts during the hit; outside the force is zero. A hit is short: its response
+    over the sum of its samples approximates that to one sample.
     """
     gain = np.empty_like(base)
     for i, condition in enumerate(design.conditions):

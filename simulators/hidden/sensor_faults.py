@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Faults of the measuring chain of a campaign: what the accelerometers get wrong.
+"""Faults of the measuring chain of a campaign: errors of the accelerometers.
 
 Everything linear happens before the anti-alias filter, at the steps of the plant;
 clipping happens at the converter, after it.
@@ -29,12 +29,12 @@ def distort_signals(
 
     Args:
         acceleration: true ones [m/s^2], shape (2, n).
-        effects: names and parameters; those that are no sensor fault are passed over.
+        effects: names and parameters; those that are no sensor fault are ignored.
         rate: samples per second of `acceleration` [Hz].
         condition: of the record.
 
     Returns:
-        What the sensors put out [m/s^2], shape (2, n).
+        Output of the sensors [m/s^2], shape (2, n).
     """
     for name, parameters in effects:
         if name in ANALOGUE_FAULTS:
@@ -47,7 +47,7 @@ def distort_signals(
 def clip_samples(
     samples: FloatArray, effects: Sequence[tuple[str, Parameters]]
 ) -> FloatArray:
-    """Clip what a converter with too small a range would clip, shape unchanged."""
+    """Clip samples as a converter with too small a range does, shape unchanged."""
     for name, parameters in effects:
         if name == "saturation":
             samples = np.clip(samples, -parameters["amax"], parameters["amax"])
@@ -57,7 +57,7 @@ def clip_samples(
 def _through(
     signal: FloatArray, rate: float, response: Callable[[FloatArray], ComplexArray]
 ) -> FloatArray:
-    """Filter a signal that is zero before its start; the padding holds its decay."""
+    """Filter a signal that is zero before its start; the padding contains its decay."""
     size = scipy.fft.next_fast_len(signal.size + signal.size // 4, real=True)
     frequency = scipy.fft.rfftfreq(size, 1 / rate)
     spectrum = scipy.fft.rfft(signal, size) * response(frequency)
@@ -132,7 +132,7 @@ def _hum(
 def _clock_drift(
     a: FloatArray, p: Parameters, rate: float, _: CampaignCondition
 ) -> FloatArray:
-    """Read both accelerations at times that run ahead of those of the force."""
+    """Sample both accelerations with a clock faster than that of the force."""
     index = np.arange(a.shape[1], dtype=float)
     late = np.minimum(index * (1 + p["rate"]), index[-1])
     return np.asarray(CubicSpline(index, a, axis=1)(late), dtype=float)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a measuring channel does to a signal: filter, noise, range and quantisation."""
+"""Measuring channel: filter, noise, range and quantisation."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class AntiAlias:
     Attributes:
         oversampling: steps of the plant per sample [-].
         pass_band: edge of the pass band over the sample rate [-].
-        stop_band: where the stop band begins, over the sample rate [-].
+        stop_band: edge of the stop band over the sample rate [-].
         attenuation: in the stop band [dB].
     """
 
@@ -52,7 +52,7 @@ class Digitiser:
     """One input of the converter.
 
     Attributes:
-        range: largest value it can carry, either sign [SI unit].
+        range: largest value of either sign [SI unit].
         noise: standard deviation of the white noise of the sensor [SI unit].
         bits: of the converter, sign included.
     """
@@ -69,7 +69,7 @@ class Digitiser:
             rng: source of the noise.
 
         Returns:
-            What the driver delivers [SI unit], same shape.
+            Output of the driver [SI unit], same shape.
         """
         return self.round(values + self.noise * rng.standard_normal(values.shape))
 
@@ -91,7 +91,7 @@ def decimate(chunks: Iterable[FloatArray], filter_: AntiAlias) -> Iterator[Float
         filter_: filter and oversampling.
 
     Yields:
-        Samples, shape (n_channels, n); the cut into chunks does not change them.
+        Samples, shape (n_channels, n); they do not depend on the chunks.
     """
     taps, half, every = filter_.taps(), filter_.half_length, filter_.oversampling
     waiting: FloatArray | None = None
@@ -129,5 +129,5 @@ def recut(
             yield np.ascontiguousarray(waiting[:, :size])
             waiting = waiting[:, size:]
             left -= size
-        if left <= 0:  # the stream before it may be endless
+        if left <= 0:  # the input stream may be endless
             return

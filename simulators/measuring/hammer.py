@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A hand with a hammer: pulses that scatter, bounce and are now and then too strong."""
+"""A simulated hammer: pulses that scatter, bounce and are sometimes too strong."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,8 +16,8 @@ class Pulse:
     """One contact between hammer tip and structure.
 
     Attributes:
-        start: when the tip touches [s].
-        width: how long it touches [s].
+        start: of the contact [s].
+        width: duration of the contact [s].
         peak: largest force [N].
         exponent: 1 is a half sine; more rounds the foot of the pulse [-].
         skew: 0 is symmetric, a positive one rises slower than it falls [-].
@@ -32,7 +32,7 @@ class Pulse:
 
 @dataclass(frozen=True, slots=True)
 class Hammer:
-    """Habits of the hand that swings the hammer.
+    """Parameters of the simulated hammer hits.
 
     Attributes:
         level: usual peak force [N].
@@ -42,10 +42,10 @@ class Hammer:
         interval: usual time between hits [s].
         interval_scatter: relative standard deviation of that time [-].
         point_scatter: relative standard deviation of the force that acts along the
-            measured direction, the hand missing point and direction a little [-].
+            measured direction, because point and direction vary a little [-].
         double_rate: share of hits in which the hammer bounces [-].
         overload_rate: share of hits that are too strong for the force channel [-].
-        overload_level: force the channel can carry [N].
+        overload_level: full scale of the force channel [N].
     """
 
     level: float = 300.0
@@ -68,7 +68,7 @@ class Hammer:
         for name in ("double_rate", "overload_rate"):
             value = getattr(self, name)
             if not 0 <= value <= 1:
-                raise UsageError(f"hammer {name} is {value!r}, it must lie in 0..1")
+                raise UsageError(f"hammer {name} is {value!r}, it must be in 0..1")
         if self.double_rate + self.overload_rate > 1:
             raise UsageError(
                 "double_rate and overload_rate together exceed 1; lower one of them"
@@ -77,12 +77,12 @@ class Hammer:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedHit:
-    """One swing of the hammer, and what was wrong with it.
+    """One hammer hit, with its verdict.
 
     Attributes:
         pulses: the first contact, then the bounces.
-        effectiveness: force that acts on the body over force measured [-].
-        verdict: `OK`, `DOUBLE` or `OVERLOAD`, as a perfect judge would call it.
+        effectiveness: acting over measured force [-].
+        verdict: `OK`, `DOUBLE` or `OVERLOAD`, by the truth.
     """
 
     pulses: tuple[Pulse, ...]
@@ -91,7 +91,7 @@ class SimulatedHit:
 
     @property
     def start(self) -> float:
-        """When the tip first touches [s]."""
+        """First contact [s]."""
         return self.pulses[0].start
 
     @property
@@ -101,11 +101,11 @@ class SimulatedHit:
 
 
 def swing(hammer: Hammer, *, hits: int, seed: int) -> tuple[SimulatedHit, ...]:
-    """Strike `hits` times as the hand would.
+    """Simulate a number of hits.
 
     Args:
-        hammer: habits of the hand.
-        hits: how often to strike.
+        hammer: parameters of the hits.
+        hits: number of hits.
         seed: of the scatter; the first n hits do not depend on `hits`.
 
     Returns:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The hand at the simulated bench: it strikes where and when it is told, or by itself.
+"""The operator of the simulated bench, who strikes on request or unrequested.
 
-Every stroke draws from its own number, so that the same requests give the same strokes.
+Every stroke has its own random stream, so that the same requests give the same strokes.
 """
 
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from jointbench.simulators.measuring.hammer import Pulse
 
 
 class Fate(StrEnum):
-    """What becomes of a stroke."""
+    """Outcome of a stroke."""
 
     GOOD = "good"
     DOUBLE = "double"
@@ -24,18 +24,18 @@ class Fate(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulatedOperator:
-    """Habits of the hand.
+    """Parameters of the simulated operator.
 
     Attributes:
         seed: of the scatter.
         width: contact time [s].
-        level: peak force unless told otherwise [N].
+        level: default peak force [N].
         level_scatter: relative scatter of the peak force [-].
-        reaction: from a request to the stroke [s].
-        interval: between strokes of its own accord [s]; None waits to be told.
+        reaction: time from a request to the stroke [s].
+        interval: between unrequested strokes [s]; None waits for requests.
         overload_force: peak force of a stroke that is too strong [N].
-        weak_share: peak force of a weak stroke over that asked for [-].
-        fates: of the strokes in turn, from the first again when they are used up.
+        weak_share: peak force of a weak stroke over the requested one [-].
+        fates: of the strokes in turn, repeated from the first.
     """
 
     seed: int = 1
@@ -49,7 +49,7 @@ class SimulatedOperator:
     fates: tuple[Fate, ...] = field(default=(Fate.GOOD,))
 
     def __post_init__(self) -> None:
-        """Refuse habits that no hand has."""
+        """Refuse parameters out of range."""
         for name in ("width", "level", "reaction", "overload_force"):
             value = getattr(self, name)
             if not (np.isfinite(value) and value > 0):
@@ -58,35 +58,39 @@ class SimulatedOperator:
             raise UsageError(f"interval is {self.interval!r} s; give one above zero")
         if not self.fates:
             raise UsageError(
-                "fates is empty; leave it out, or name one stroke at least"
+                "fates is empty; leave it out, or name at least one stroke"
             )
 
 
 def swing_once(
-    hand: SimulatedOperator, *, number: int, after: float, level: float | None = None
+    operator: SimulatedOperator,
+    *,
+    number: int,
+    after: float,
+    level: float | None = None,
 ) -> tuple[tuple[Pulse, ...], Fate]:
     """Return the pulses of one stroke.
 
     Args:
-        hand: habits.
+        operator: its parameters.
         number: of the stroke since the bench was set up, from 0.
-        after: when the hand is asked or free again [s].
-        level: peak force asked for [N]; None for the usual one.
+        after: time of the request, or when the operator is free again [s].
+        level: requested peak force [N]; None for the default.
 
     Returns:
-        Its pulses, and what became of it.
+        Its pulses and its outcome.
     """
-    rng = np.random.default_rng([hand.seed, 11, number])
+    rng = np.random.default_rng([operator.seed, 11, number])
     draws, uniform = np.clip(rng.standard_normal(2), -2.5, 2.5), rng.uniform(size=5)
-    fate = hand.fates[number % len(hand.fates)]
-    peak = (level or hand.level) * float(np.exp(hand.level_scatter * draws[0]))
+    fate = operator.fates[number % len(operator.fates)]
+    peak = (level or operator.level) * float(np.exp(operator.level_scatter * draws[0]))
     if fate is Fate.OVERLOAD:
-        peak = hand.overload_force * (1 + 0.5 * float(uniform[0]))
+        peak = operator.overload_force * (1 + 0.5 * float(uniform[0]))
     elif fate is Fate.WEAK:
-        peak *= hand.weak_share
+        peak *= operator.weak_share
     first = Pulse(
-        start=after + hand.reaction * (1 + 0.4 * float(uniform[1])),
-        width=hand.width * float(np.exp(0.05 * draws[1])),
+        start=after + operator.reaction * (1 + 0.4 * float(uniform[1])),
+        width=operator.width * float(np.exp(0.05 * draws[1])),
         peak=peak,
         exponent=1.8 + 0.4 * float(uniform[2]),
     )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Forces between two bodies beyond the linear spring and damper, in continuous time.
 
-With r = x_second - x_first the law's force pulls the bodies together; the elongation
-rate is v. Laws with memory own one state each, or a bank of sliders.
+With r = x_second - x_first a positive force of the law attracts the bodies; the
+elongation rate is v. A law with memory has one state, or a bank of sliders.
 """
 
 from collections.abc import Sequence
@@ -60,7 +60,7 @@ class JointLaw:
 
 
 class LawArrays(NamedTuple):
-    """Laws as arrays, as the stepper wants them; slider columns follow one another."""
+    """Laws as arrays for the stepper; slider columns are consecutive."""
 
     kind: IntArray  # (n_laws,)
     ends: IntArray  # (n_laws, 2) first and second body
@@ -72,7 +72,7 @@ class LawArrays(NamedTuple):
 
 
 def pack_laws(laws: Sequence[JointLaw]) -> LawArrays:
-    """Turn laws into the arrays of the stepper."""
+    """Convert laws to the arrays of the stepper."""
     count = len(laws)
     parameters = np.zeros((count, 5))
     table, table_step = np.zeros((count, TABLE_POINTS, 2)), np.ones(count)

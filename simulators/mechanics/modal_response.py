@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a linear specimen answers a force, by its poles."""
+"""Response of a linear specimen to a force, by its poles."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freez
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Poles:
-    """How the specimen answers a force at one point; complex conjugates left out.
+    """Poles and gains for a force at one point; complex conjugates left out.
 
     Attributes:
         poles: [1/s], shape (n_modes,), the imaginary part positive.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Lumped bodies on links, and their modes: the specimen behind every bench.
+"""Lumped bodies on links, and their modes: the specimen of every bench.
 
-The simulators own their physics: nothing here is shared with the analysis that is
-judged on it. The modes are those of the linear links alone.
+The simulators have separate physics: nothing here is shared with the analysis that is
+    tested on it. The modes are those of the linear links alone.
 """
 
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class Plant:
     laws: tuple[JointLaw, ...] = ()
 
     def __post_init__(self) -> None:
-        """Refuse masses that are not positive and links that lead nowhere."""
+        """Refuse masses that are not positive and links without a body."""
         if not all(mass > 0 for mass in self.masses):
             raise UsageError(f"masses must be positive, got {self.masses} kg")
         ends = [(part.first, part.second) for part in self.links]

@@ -16,7 +16,7 @@ from numpy.polynomial import legendre
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 
 SHEAR_FACTOR = 5 / 6  # [-], of a rectangular section
-_TERMS = 10  # polynomials each way: the tenth mode is converged to 1e-4
+_TERMS = 10  # polynomials in each direction: the tenth mode is converged to 1e-4
 RIGID_MODES = 3  # heave, roll, pitch
 
 
@@ -66,21 +66,21 @@ def plate_modes(design: PlateDesign, *, elastic: int) -> PlateModes:
 
     Args:
         design: the plate.
-        elastic: how many elastic modes.
+        elastic: number of elastic modes.
     """
     stiffness, mass = _matrices(design)
     last = RIGID_MODES + elastic - 1
     values, vectors = scipy.linalg.eigh(stiffness, mass, subset_by_index=[0, last])
     omega = np.sqrt(np.abs(values))
     omega[:RIGID_MODES] = 0.0
-    # The sign of a mode is free: the corner at (0, 0) moves up.
+    # The sign of a mode is arbitrary: the corner at (0, 0) moves up.
     modes = PlateModes(design, omega, vectors.reshape(3, _TERMS**2, -1))
     corner = deflection(modes, 0.0, 0.0)
     return PlateModes(design, omega, modes.shapes * np.where(corner < 0, -1.0, 1.0))
 
 
 def deflection(modes: PlateModes, x: float, y: float) -> FloatArray:
-    """Return what each mode deflects at a place, seen from a corner [1/kg^0.5].
+    """Return the deflection of each mode at a place, from a corner [1/kg^0.5].
 
     Args:
         modes: of the plate.
@@ -94,7 +94,7 @@ def deflection(modes: PlateModes, x: float, y: float) -> FloatArray:
 
 
 def slope(modes: PlateModes, x: float, y: float) -> FloatArray:
-    """Return how each mode turns the normal about y and x [1/(m kg^0.5)].
+    """Return the rotation of the normal about y and x by each mode [1/(m kg^0.5)].
 
     Returns:
         Shape (2, n_modes): in the x-z plane, then in the y-z plane.

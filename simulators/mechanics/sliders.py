@@ -17,7 +17,7 @@ from jointbench.acquisition.basics.compiled import compiled
 from jointbench.acquisition.basics.errors import UsageError
 
 TABLE_POINTS = 2048
-UNKNOWN = -1.0  # a slider that left the loading curve has no place on it yet
+UNKNOWN = -1.0  # place of a slider that has left the loading curve
 
 
 @dataclass(frozen=True, slots=True, eq=False)

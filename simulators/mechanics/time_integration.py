@@ -17,7 +17,7 @@ from jointbench.simulators.mechanics.sliders import move_slider
 
 
 class LinearPart(NamedTuple):
-    """Bodies and links as the stepper wants them."""
+    """Bodies and links for the stepper."""
 
     inverse_mass: FloatArray  # (n_bodies,)
     stiffness: FloatArray  # (n_bodies, n_bodies)
@@ -25,7 +25,7 @@ class LinearPart(NamedTuple):
 
 
 @compiled(error_model="numpy")
-def march(
+def integrate(
     linear: LinearPart,
     laws: LawArrays,
     force: FloatArray,
@@ -34,7 +34,7 @@ def march(
     state: FloatArray,
     memory: FloatArray,
 ) -> FloatArray:
-    """March through all half-step forces; state and slider memory change in place.
+    """Integrate over all half-step forces; state and slider memory change in place.
 
     Args:
         linear: bodies and links.
@@ -67,15 +67,15 @@ def march(
                 w = trial[2 * size + i]
                 if kinds[i] == LawKind.SLIDERS:
                     moved = r - _difference(state, first, second)
-                    pull = _bank_force(
+                    attraction = _bank_force(
                         moved, banks[i], sliders, memory, tables[i], table_step[i]
                     )
                 else:
                     now = begin + n * step + ahead
-                    pull = law_force(kinds[i], numbers[i], r, v, w, now)
-                rate[size + second] -= pull * inverse_mass[second]
+                    attraction = law_force(kinds[i], numbers[i], r, v, w, now)
+                rate[size + second] -= attraction * inverse_mass[second]
                 if first >= 0:
-                    rate[size + first] += pull * inverse_mass[first]
+                    rate[size + first] += attraction * inverse_mass[first]
                 rate[2 * size + i] = state_rate(kinds[i], numbers[i], v, w)
         for i in range(size):
             acceleration[i, n] = slopes[1, size + i]
@@ -90,7 +90,7 @@ def march(
 def _advance(
     step: float, slopes: FloatArray, state: FloatArray, change: FloatArray
 ) -> None:
-    """Move the state by one step of the classical rule and keep the change."""
+    """Advance the state by one step of the classical rule and keep the change."""
     for i in range(state.size):
         mean = slopes[1, i] + 2 * slopes[2, i] + 2 * slopes[3, i] + slopes[4, i]
         change[i] = step / 6 * mean
@@ -119,7 +119,7 @@ def _linear_rate(
 
 @compiled(error_model="numpy")
 def _difference(values: FloatArray, first: int, second: int) -> float:
-    """Return how much further body `second` is than body `first`, or the ground."""
+    """Return the displacement of body `second` relative to `first` or the ground."""
     if first < 0:
         return float(values[second])
     return float(values[second] - values[first])
@@ -153,7 +153,7 @@ def _move_bank(
     table: FloatArray,
     table_step: float,
 ) -> None:
-    """Let the sliders of a bank remember the displacement of a whole step."""
+    """Update the sliders of a bank by the displacement of a whole step."""
     for k in range(bank[0], bank[1]):
         memory[0, k], memory[1, k] = move_slider(
             memory[0, k], memory[1, k], moved * sliders[1, k], table, table_step

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A rigid mass on soft slings: what hammers and accelerometers are compared on."""
+"""A rigid mass on soft slings, to compare hammers and accelerometers."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -15,9 +15,9 @@ class CalibrationMass:
     """A mass that is struck on one side, with accelerometers on the other.
 
     Attributes:
-        mass: of everything that moves [kg].
-        sling_frequency: at which it swings [Hz].
-        sling_damping: damping ratio of the swing [-].
+        mass: total moving mass [kg].
+        sling_frequency: natural frequency on the slings [Hz].
+        sling_damping: damping ratio on the slings [-].
     """
 
     mass: float = 4.5
@@ -25,18 +25,18 @@ class CalibrationMass:
     sling_damping: float = 0.02
 
     def __post_init__(self) -> None:
-        """Refuse what no mass can be."""
+        """Refuse a mass that is not positive."""
         if not (np.isfinite(self.mass) and self.mass > 0):
             raise UsageError(f"mass is {self.mass!r} kg; give one above zero")
 
 
 @lru_cache(maxsize=8)
 def mass_poles(design: CalibrationMass, *, outputs: int) -> Poles:
-    """Return how the mass answers a force; every accelerometer moves alike.
+    """Return the poles of the mass; every accelerometer moves alike.
 
     Args:
         design: the mass.
-        outputs: how many accelerometers.
+        outputs: number of accelerometers.
     """
     omega, ratio = 2 * np.pi * design.sling_frequency, design.sling_damping
     pole = omega * (-ratio + 1j * np.sqrt(1 - ratio**2))

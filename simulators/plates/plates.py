@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Two marble plates on a bolted joint: the specimen behind the simulated chassis.
+"""Two marble plates on a bolted joint: the specimen of the simulated chassis.
 
-Each plate bends in ten elastic modes and moves in three rigid ones; four bolts join
-the faces with springs and dampers, normal and tangential, that depend on the torque;
-the lower plate lies on foam.
+Each plate bends in ten elastic modes and moves in three rigid ones; four bolts join the
+contact surfaces with springs and dampers, normal and tangential, that depend on the
+torque; the lower plate is supported by foam.
 """
 
 from dataclasses import dataclass, field
@@ -43,7 +43,7 @@ _FEET = ((0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9))
 
 @dataclass(frozen=True, slots=True)
 class PlatesDesign:
-    """What the specimen is made of.
+    """Parameters of the specimen.
 
     Attributes:
         plate: of both plates.
@@ -73,7 +73,7 @@ def free_plate(design: PlateDesign) -> PlateModes:
 
 
 def natural_frequencies(design: PlatesDesign, torque: float) -> FloatArray:
-    """Return the specimen's own natural frequencies at a torque [Hz], ascending."""
+    """Return the natural frequencies of the specimen at a torque [Hz], ascending."""
     values = np.linalg.eigvals(_state_matrix(design, torque))
     upper = values[values.imag > 0]
     return np.sort(np.abs(upper)) / (2 * np.pi)
@@ -83,7 +83,7 @@ def natural_frequencies(design: PlatesDesign, torque: float) -> FloatArray:
 def plates_poles(
     design: PlatesDesign, torque: float, *, struck: str, outputs: tuple[str, ...]
 ) -> Poles:
-    """Return how the specimen answers a force out of plane.
+    """Return the poles of the specimen for a force out of plane.
 
     Args:
         design: the specimen.
@@ -144,10 +144,10 @@ def _state_matrix(design: PlatesDesign, torque: float) -> FloatArray:
 def _relative(
     design: PlatesDesign, along: float, across: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return opening, shape (n,), and slip along x and y, shape (2, n), of the faces.
+    """Return opening, shape (n,), and slip along x and y, shape (2, n).
 
-    The faces that meet lie half a thickness off the middle of their plates, so that a
-    plate that turns slides with them.
+    The contact surfaces are half a thickness from the mid-planes of their plates, so
+    that rotation of a plate causes slip.
     """
     own, turn = _at(design, along, across)
     half = design.plate.thickness / 2

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The plates with a hand, a hammer and sensors: volts at the inputs of the chassis.
+"""The plates with operator, hammer and sensors: volts at the inputs of the chassis.
 
-Which sensor is plugged where never changes; what the measuring program believes of them
-is its own affair, as at a real bench.
+The assignment of sensors to inputs is fixed; the settings of the measuring program are
+independent of it, as at a real bench.
 """
 
 import threading
@@ -20,8 +20,8 @@ from jointbench.simulators.plates.plates import POINTS, PlatesDesign, plates_pol
 from jointbench.simulators.plates.plates_strike import Stroke, signal_piece, stroke
 
 STANDARD_GRAVITY = 9.80665  # [m/s^2]
-# Samples made together, so that sample k is the same number however reads are cut. A
-# piece lasts less than the hand's reaction: no stroke comes to one that is made.
+# Samples generated together, so that sample k does not depend on the reads. A piece is
+# shorter than the operator's reaction: no stroke falls into an existing one.
 _PIECE = 1024
 _KEPT = 64  # pieces
 
@@ -31,7 +31,7 @@ class PluggedSensor:
     """A sensor in an input of the chassis; the first is the hammer.
 
     Attributes:
-        point: where it sits, empty for the hammer.
+        point: its position, empty for the hammer.
         sensitivity: true one [V per newton, or per m/s^2].
         noise: standard deviation [V].
         serial: number in its TEDS.
@@ -57,17 +57,17 @@ SENSORS = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlatesBench:
-    """How the simulated bench is set up.
+    """Set-up of the simulated bench.
 
     Attributes:
         design: the specimen.
-        hand: its habits.
-        sensors: by input; inputs beyond them are open and carry noise.
+        operator: its parameters.
+        sensors: by input; further inputs are open and contain noise.
         seed: of the noise.
     """
 
     design: PlatesDesign | CalibrationMass = field(default_factory=PlatesDesign)
-    hand: SimulatedOperator = field(default_factory=SimulatedOperator)
+    operator: SimulatedOperator = field(default_factory=SimulatedOperator)
     sensors: tuple[PluggedSensor, ...] = SENSORS
     seed: int = 1
 
@@ -82,8 +82,8 @@ class PlannedStroke:
         point: struck.
         torque: on each bolt [N m].
         peak_force: [N].
-        fate: what was wrong with it.
-        stream: number of the stream in which it fell.
+        fate: its outcome.
+        stream: number of its stream.
     """
 
     number: int
@@ -96,10 +96,10 @@ class PlannedStroke:
 
 
 class LivePlates:
-    """The bench while it runs: where the hammer is, and what was struck in a stream.
+    """The running bench: position of the hammer, and strokes of a stream.
 
     A stream begins with each start of a task; its samples depend on their indices, the
-    seed, the number of the stream and the strokes asked for, on nothing else.
+    seed, the number of the stream and the requested strokes only.
     """
 
     def __init__(self, bench: PlatesBench) -> None:
@@ -115,7 +115,7 @@ class LivePlates:
 
     @property
     def sensors(self) -> tuple[PluggedSensor, ...]:
-        """What is plugged in, by input."""
+        """Sensors by input."""
         return self._bench.sensors
 
     def begin(self, sample_rate: float) -> None:
@@ -133,7 +133,7 @@ class LivePlates:
         torque: float | None = None,
         level: float | None = None,
     ) -> None:
-        """Move the hammer, tighten the bolts, ask for another level [N].
+        """Move the hammer, tighten the bolts, or set the level [N].
 
         Raises:
             UsageError: there is no such point, or a number is not above zero.
@@ -151,10 +151,9 @@ class LivePlates:
             self._level = self._level if level is None else level
 
     def strike(self, *, position: int) -> PlannedStroke:
-        """Let the hand strike once, soon after sample `position` of the stream.
+        """Strike once, soon after sample `position` of the stream.
 
-        A stroke that was asked for before and has not begun is not struck: a hand that
-        is told to go elsewhere goes there.
+        An earlier requested stroke that has not begun is cancelled.
         """
         with self._lock:
             self._recall(position)
@@ -179,7 +178,7 @@ class LivePlates:
         )
 
     def _recall(self, position: int) -> None:
-        if self._bench.hand.interval is not None or not self._strokes:
+        if self._bench.operator.interval is not None or not self._strokes:
             return
         first, made = self._strokes[-1].first, max(self._made, default=-1)
         if first > position and first >= (made + 1) * _PIECE:
@@ -188,18 +187,18 @@ class LivePlates:
             self._free_at = self._free_before
 
     def _keep_striking(self, past: int) -> None:
-        interval = self._bench.hand.interval
+        interval = self._bench.operator.interval
         while interval is not None and self._free_at * self._rate < past:
             self._plan(self._free_at)
 
     def _plan(self, after: float) -> PlannedStroke:
         bench, number = self._bench, len(self.history)
         pulses, fate = swing_once(
-            bench.hand, number=number, after=after, level=self._level
+            bench.operator, number=number, after=after, level=self._level
         )
         new = stroke(self._poles(), pulses, sample_rate=self._rate)
         self._strokes.append(new)
-        rest = bench.hand.interval or 4 * bench.hand.reaction
+        rest = bench.operator.interval or 4 * bench.operator.reaction
         self._free_before = self._free_at
         self._free_at = pulses[-1].start + rest
         planned = PlannedStroke(
@@ -215,7 +214,7 @@ class LivePlates:
         return planned
 
     def _poles(self) -> Poles:
-        """Return how the specimen answers a stroke as things stand."""
+        """Return the poles for the current hammer position and torque."""
         design = self._bench.design
         outputs = tuple(sensor.point for sensor in self._bench.sensors[1:])
         if isinstance(design, CalibrationMass):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What one hammer stroke makes of force and accelerations, at any sample asked for.
+"""Force and accelerations of one hammer stroke, at any sample.
 
 The specimen is linear: after the pulse it rings in its poles, which can be evaluated at
-any sample on its own. So a stretch of signal depends on its sample indices alone, never
-on how the stream was cut into blocks.
+    any sample separately. So the signal depends on its sample indices alone, not on the
+    blocks of the stream.
 """
 
 from collections.abc import Sequence
@@ -17,8 +17,8 @@ from jointbench.simulators.measuring.hammer import Pulse, pulse_force
 from jointbench.simulators.mechanics.modal_response import Poles
 
 _FINE = 64  # steps per sample in which a pulse is integrated
-_RINGING = 4.0  # [s] after which nothing is heard of a stroke
-_PASS_BAND = 0.45  # of the sample rate: the converter's filter takes off what is above
+_RINGING = 4.0  # [s] after which a stroke has decayed
+_PASS_BAND = 0.45  # of the sample rate: cut-off of the converter's filter
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,12 +26,12 @@ class Stroke:
     """One stroke, ready to be sampled.
 
     Attributes:
-        first: index of the first sample that it touches.
+        first: index of its first sample.
         head: force, then accelerations, while the pulse lasts, shape (1 + n_out, n).
         poles: [1/s], shape (n_modes,).
         tail: accelerations after the pulse, each mode at its first sample [m/s^2],
             shape (n_modes, n_out).
-        last: index one past the last sample at which it is heard.
+        last: index one past its last sample.
     """
 
     first: int
@@ -46,10 +46,10 @@ class Stroke:
 
 
 def stroke(poles: Poles, pulses: Sequence[Pulse], *, sample_rate: float) -> Stroke:
-    """Work out a stroke of one or more pulses.
+    """Prepare a stroke of one or more pulses.
 
     Args:
-        poles: of the specimen, for the point that is struck.
+        poles: of the specimen, for the struck point.
         pulses: in order of time; a gap between them is part of the head.
         sample_rate: [Hz].
     """
@@ -77,7 +77,7 @@ def stroke(poles: Poles, pulses: Sequence[Pulse], *, sample_rate: float) -> Stro
 def signal_piece(
     strokes: Sequence[Stroke], *, first: int, count: int, outputs: int, rate: float
 ) -> FloatArray:
-    """Return force and accelerations of some strokes over a stretch of samples.
+    """Return force and accelerations of strokes over a range of samples.
 
     Args:
         strokes: in any order.
@@ -102,7 +102,7 @@ def signal_piece(
         if low < high:
             start = each.tail * np.exp(each.poles * (low - stop) / rate)[:, None]
             if (low, high) == (first, past):
-                # All that ring in the same poles ring on as one.
+                # All responses of the same poles are added.
                 sums = ringing.setdefault(id(each.poles), (each.poles, 0 * start))
                 ringing[id(each.poles)] = (each.poles, sums[1] + start)
             else:
@@ -116,13 +116,13 @@ def signal_piece(
 def _ring(
     poles: ComplexArray, start: ComplexArray, count: int, rate: float
 ) -> FloatArray:
-    """Return what modes of a given start ring on to, shape (n_out, count)."""
+    """Return the free response of modes from a start, shape (n_out, count)."""
     return np.asarray(2 * (start.T @ _rise(poles.tobytes(), count, rate)).real)
 
 
 @lru_cache(maxsize=16)
 def _rise(poles: bytes, count: int, rate: float) -> ComplexArray:
-    """Return how modes of given poles, as bytes, go on from one, (n_modes, count)."""
+    """Return the free response of poles, as bytes, from one, shape (n_modes, count)."""
     step = np.exp(np.frombuffer(poles, dtype=np.complex128) / rate)
     rise = np.empty((step.size, count), dtype=np.complex128)
     rise[:, 0] = 1.0

@@ -13,7 +13,7 @@ def brownian_lines(
     """Draw independent fractional Brownian lines.
 
     Args:
-        rows: how many lines.
+        rows: number of lines.
         points: on each.
         hurst: Hurst exponent [-], 0 < H < 1.
         rng: source of randomness.
@@ -101,7 +101,7 @@ def torus_covariance(diagonal: float, hurst: float) -> FloatArray:
 
 
 def plane_variance(hurst: float) -> float:
-    """Return the weight of h^2 that the random plane gives back [-]."""
+    """Return the weight of h^2 added by the random plane [-]."""
     return _stein_constants(2 * hurst)[2]
 
 

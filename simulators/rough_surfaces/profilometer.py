@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A simulated profilometer: measures a surface and exports it as instruments do."""
+"""A simulated profilometer that measures and exports a surface."""
 
 from dataclasses import dataclass, replace
 
@@ -20,9 +20,8 @@ class Profilometer:
         noise: standard deviation of one height [m].
         spot: standard deviation of its Gaussian point spread [m]; 0 for none.
         tip: radius of its round stylus tip [m]; 0 for none.
-        drift: rise and fall of the base over the time of the scan [m], half a wave
-            of random phase.
-        missing: share of points without an answer [-].
+        drift: drift of the base during the scan [m], half a wave of random phase.
+        missing: share of points without a height [-].
         resolution: step of the exported heights [m].
     """
 
@@ -36,7 +35,7 @@ class Profilometer:
     def __post_init__(self) -> None:
         """Refuse shares outside 0..1 and negative sizes."""
         if not 0 <= self.missing < 1:
-            raise UsageError(f"missing is {self.missing!r}, it must lie in 0..1")
+            raise UsageError(f"missing is {self.missing!r}, it must be in 0..1")
         lengths = (self.noise, self.spot, self.tip, self.drift)
         if min(lengths) < 0 or self.resolution <= 0:
             raise UsageError(
@@ -51,12 +50,12 @@ def measure_profile(
     """Measure a profile with tip, noise, point spread, drift and drop-outs.
 
     Args:
-        profile: the surface as it is.
-        instrument: what measures it.
+        profile: the true surface.
+        instrument: its parameters.
         seed: of noise, drift and drop-outs.
 
     Returns:
-        The profile as exported; heights 0 where not valid.
+        The exported profile; heights 0 where not valid.
     """
     heights = traced(profile.heights, (profile.spacing,), instrument.tip)
     if instrument.spot > 0:
@@ -76,12 +75,12 @@ def measure_areal(areal: Areal, instrument: Profilometer, *, seed: int) -> Areal
     """Measure a map with tip, noise, point spread, drift and drop-outs.
 
     Args:
-        areal: the surface as it is.
-        instrument: what measures it.
+        areal: the true surface.
+        instrument: its parameters.
         seed: of noise, drift and drop-outs.
 
     Returns:
-        The map as exported; heights 0 where not valid.
+        The exported map; heights 0 where not valid.
     """
     heights = traced(areal.heights, areal.spacing, instrument.tip)
     if instrument.spot > 0:
@@ -111,13 +110,12 @@ def traced(
         Heights of the tip [m], same shape.
 
     Source:
-        ISO 16610-41: the tip touches where it is highest, which is the dilation of the
-        heights by the tip.
+        ISO 16610-41: the path of the tip is the dilation of the heights by the tip.
     """
     relief = float(np.ptp(heights))
     if radius == 0 or relief == 0:
         return heights
-    # Farther out the tip stands higher above its lowest point than all relief.
+    # Further out the tip is higher above its lowest point than all relief.
     reach = radius if relief >= radius else np.sqrt(relief * (2 * radius - relief))
     lines = [np.arange(-int(reach / s), int(reach / s) + 1) * s for s in spacing]
     square = sum(np.square(line) for line in np.meshgrid(*lines, indexing="ij"))
@@ -131,7 +129,7 @@ def traced(
 def _read(
     heights: FloatArray, instrument: Profilometer, seed: int
 ) -> tuple[FloatArray, BoolArray]:
-    """Return what the instrument answers at every point, and whether it does."""
+    """Return the reading at every point, and whether it is valid."""
     rng = np.random.default_rng([seed, 6])
     noisy = heights + instrument.noise * rng.standard_normal(heights.shape)
     valid = rng.uniform(size=heights.shape) >= instrument.missing

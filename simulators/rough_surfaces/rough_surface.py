@@ -2,8 +2,8 @@
 """Self-affine surfaces of known fractal dimension and roughness, exact at every lag.
 
 Profiles are fractional Brownian motion by circulant embedding; maps are fractional
-Brownian fields by Stein's embedding. Neither approximates: the structure function
-along any line of the surface is the stated power law, from the first lag on.
+Brownian fields by Stein's embedding. Both are exact: the structure function along any
+line of the surface is the stated power law at all lags.
 """
 
 import numpy as np
@@ -59,7 +59,7 @@ def structure_of_line(
 def rough_profile(
     points: int, *, spacing: float, dimension: float, roughness: float, seed: int
 ) -> Profile:
-    """Make a self-affine profile.
+    """Simulate a self-affine profile.
 
     Args:
         points: number of heights.
@@ -97,7 +97,7 @@ def rough_rows(
     roughness: float,
     seed: int,
 ) -> Areal:
-    """Make a map whose rows are independent self-affine profiles.
+    """Simulate a map whose rows are independent self-affine profiles.
 
     Args:
         rows: number of profiles.
@@ -133,7 +133,7 @@ def rough_map(
     roughness: float,
     seed: int,
 ) -> Areal:
-    """Make an isotropic self-affine map.
+    """Simulate an isotropic self-affine map.
 
     Args:
         rows: heights along y.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Writes simulated surfaces as the files that instruments export, quirks included."""
+"""Write simulated surfaces in the file formats of instruments, quirks included."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from jointbench.acquisition.formats.heights.keyence_labels import LANGUAGES, MAR
 from jointbench.acquisition.records.surfaces import Areal, Profile
 
 DATE = "2025-03-21 11:43:55"
-"""That simulated maps were measured at, unless told otherwise."""
+"""Default date of simulated maps."""
 ENCODINGS = {
     "English": "utf-8-sig",
     "German": "cp1252",
@@ -41,8 +41,8 @@ def write_keyence_csv(
 ) -> None:
     """Write a map as the height CSV of Keyence's MultiFileAnalyzer.
 
-    The quirks are the point: every cell quoted, CRLF, the encoding of the language (a
-    byte-order mark in English, where a line break stands in the cell "Data type"),
+    The quirks are essential: every cell quoted, CRLF, the encoding of the language (in
+        English a byte-order mark, and a line break in the cell "Data type"),
     heights in um, missing points as empty cells.
 
     Args:
@@ -72,7 +72,7 @@ def write_keyence_csv(
 
 
 def _keyence_header(areal: Areal, date: str, language: str) -> list[tuple[str, ...]]:
-    """Return the header down to the row that reads "Height"."""
+    """Return the header down to the row "Height"."""
     spoken = next(one for one in LANGUAGES if one.name == language)
     word = {meaning: words[0] for meaning, words in spoken.words.items()}
     kind, version, reference = _FIXED[language]
@@ -110,7 +110,7 @@ def _keyence_rows(areal: Areal) -> list[tuple[str, ...]]:
 
 
 def write_surfcom(profile: Profile, path: Path) -> None:
-    """Write a profile as Surfcom text: length [mm], points, one height [um] a line.
+    """Write a profile as Surfcom text: length [mm], points, one height [um] per line.
 
     Args:
         profile: without gaps; the format has no code for them.
@@ -146,7 +146,7 @@ def write_dektak(profile: Profile, path: Path, *, stylus_radius: float) -> None:
 
 
 def write_wyko(areal: Areal, path: Path) -> None:
-    """Write a map as Wyko ASCII in nanometres; missing points read "Bad".
+    """Write a map as Wyko ASCII in nanometres; missing points are "Bad".
 
     Args:
         areal: the map.

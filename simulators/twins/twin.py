@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A serial instrument without hardware: on a pseudo-terminal or a socket.
 
-`unplug_after` breaks the line in the middle of what it sends, as a pulled plug does.
+`unplug_after` breaks the line in the middle of a message, as a disconnected plug does.
 """
 
 import os
@@ -22,7 +22,7 @@ _LONGEST_DRAIN = 2.0  # [s]
 
 
 class Twin:
-    """An instrument on a line of its own; `name` is what pyserial opens."""
+    """An instrument on a separate line; pyserial opens `name`."""
 
     def __init__(
         self,
@@ -32,13 +32,13 @@ class Twin:
         unplug_after: int | None = None,
         comes_back: bool = False,
     ) -> None:
-        """Plug the instrument in.
+        """Connect the instrument.
 
         Args:
             answer: of the instrument.
             over_socket: a socket instead of a pseudo-terminal; always so on Windows.
             unplug_after: bytes sent after which the line breaks, None for never.
-            comes_back: whether a socket that broke takes a new caller.
+            comes_back: whether a broken socket accepts a new client.
         """
         self._answer, self._left = answer, unplug_after
         self._comes_back = comes_back
@@ -51,7 +51,7 @@ class Twin:
         self._thread.start()
 
     def __enter__(self) -> "Twin":
-        """Return the twin."""
+        """Return the instrument."""
         return self
 
     def __exit__(
@@ -97,7 +97,7 @@ class _Socket:
         self.name = f"socket://127.0.0.1:{self._listener.getsockname()[1]}"
 
     def receive(self) -> bytes | None:
-        """Return what came, None where nothing did."""
+        """Return the received bytes, or None."""
         try:
             if self._peer is None:
                 self._peer = self._listener.accept()[0]
@@ -112,10 +112,10 @@ class _Socket:
         return received or None
 
     def drain(self) -> None:
-        """Do nothing: what a socket took, its reader gets."""
+        """Do nothing: a socket delivers all it accepted."""
 
     def hang_up(self) -> None:
-        """Let go of the caller; another may call."""
+        """Disconnect the client; another may connect."""
         if self._peer is not None:
             self._peer.close()
             self._peer = None
@@ -127,7 +127,7 @@ class _Socket:
                 self._peer.sendall(data)
 
     def close(self) -> None:
-        """Hang up."""
+        """Close the connection."""
         self.hang_up()
         self._listener.close()
 
@@ -144,7 +144,7 @@ class _Terminal:
         self.name = os.ttyname(self._far)
 
     def receive(self) -> bytes | None:
-        """Return what came, None where nothing did."""
+        """Return the received bytes, or None."""
         if not select.select([self._near], [], [], _POLL)[0]:
             return None
         try:
@@ -159,17 +159,17 @@ class _Terminal:
                 data = data[os.write(self._near, data) :]
 
     def drain(self) -> None:
-        """Wait until the reader has taken all: a hang-up throws away what waits."""
+        """Wait until the reader has taken all: a hang-up discards unread bytes."""
         until = time.monotonic() + _LONGEST_DRAIN
         while select.select([self._far], [], [], 0)[0] and time.monotonic() < until:
             self._closing.wait(_POLL / 10)
 
     def hang_up(self) -> None:
-        """Pull the plug: a terminal that was closed has no name to come back under."""
+        """Disconnect for good: a closed terminal cannot be reopened by name."""
         self.close()
 
     def close(self) -> None:
-        """Pull the plug."""
+        """Disconnect."""
         for handle in (self._near, self._far):
             with suppress(OSError):
                 os.close(handle)

@@ -22,12 +22,12 @@ INSTRUMENTS = ("diavite", "mitutoyo", "mark10")
 _WRENCH_ERROR = 0.02  # relative standard deviation of a good wrench
 _COUNTS_PER_METRE = 128e6  # of a DH-8
 _TRAVERSE = 4.8e-3  # [m]
-_DIMENSION, _ROUGHNESS = 1.45, 5e-11  # [-], [m] of the ground face that was traced
+_DIMENSION, _ROUGHNESS = 1.45, 5e-11  # [-], [m] of the measured ground surface
 _KEYS = "seed, torques, bolts, points, unplug"
 
 
 def twin_from_url(url: str) -> Twin:
-    """Plug in the instrument that a URL names.
+    """Connect the instrument of a URL.
 
     Args:
         url: ``sim:diavite``, ``sim:mitutoyo`` or ``sim:mark10`` and, as a query, any
@@ -36,7 +36,7 @@ def twin_from_url(url: str) -> Twin:
             line breaks. Or an instrument of a package, with keys of its own.
 
     Raises:
-        UsageError: an unknown instrument or key, or a value that does not read so.
+        UsageError: an unknown instrument or key, or an invalid value.
     """
     parts = urlsplit(url)
     values = dict(parse_qsl(parts.query, keep_blank_values=True))
@@ -61,7 +61,8 @@ def _built_in(url: str, instrument: str, values: dict[str, str]) -> Twin:
         )
     if points < 16 or bolts < 1 or not torques:
         raise UsageError(
-            f"{url!r} makes no instrument; give 16 points or more, a bolt and a torque"
+            f"{url!r} is no valid instrument; give 16 points or more, a bolt and a "
+            "torque"
         )
     made: dict[str, Callable[[], Answer]] = {
         "diavite": lambda: _diavite(seed, points),
@@ -97,7 +98,7 @@ def _numbers(url: str, key: str, text: str) -> tuple[float, ...]:
 
 
 def _heights(seed: int, points: int) -> FloatArray:
-    """Return the heights of a ground face along a traverse [m]."""
+    """Return the heights of a ground surface along a traverse [m]."""
     face = rough_profile(
         points,
         spacing=_TRAVERSE / points,

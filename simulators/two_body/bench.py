@@ -23,11 +23,11 @@ from jointbench.simulators.measuring.hammer import (
     swing,
 )
 from jointbench.simulators.mechanics.plant import Plant, plant_modes, two_bodies
-from jointbench.simulators.mechanics.plant_march import rest_state, step_plant
+from jointbench.simulators.mechanics.plant_integration import rest_state, step_plant
 from jointbench.simulators.two_body.bolts import bolt_preload, bolt_torque
 
-# Samples made at a time: the noise is seeded for each such piece, so that sample k
-# is the same number whatever the block size.
+# Samples per piece: the noise is seeded for each piece, so that sample k does not
+# depend on the block size.
 _PIECE = 8192
 _STANDSTILL = 0.9  # [s] recorded after the last hit
 
@@ -55,7 +55,7 @@ class BenchHit:
 
 @dataclass(frozen=True, slots=True)
 class BenchTruth:
-    """What the bench is made of; `kj` is the value at the preload of this bench.
+    """True parameters of the bench; `kj` is the value at its preload.
 
     Attributes:
         m1: mass of the base [kg].
@@ -66,7 +66,7 @@ class BenchTruth:
         cj: damping coefficient of the joint [N s/m].
         natural_frequency: of the modes, ascending [Hz].
         damping_ratio: of the modes [-].
-        hits: what the hammer did, in order of time.
+        hits: in order of time.
         preload: on the joint [N].
         torque: on each bolt [N m].
     """
@@ -90,17 +90,17 @@ class TwoBodyBench:
 
     Attributes:
         seed: of hammer and noise; the structure does not depend on it.
-        hits: how often the hammer strikes.
-        point: what it strikes, ``"1"`` the base or ``"2"`` the top.
+        hits: number of hits.
+        point: struck body, ``"1"`` the base or ``"2"`` the top.
         m1: mass of the base [kg].
         m2: mass of the top [kg].
         k0: stiffness between ground and base [N/m].
         c0: damping coefficient between ground and base [N s/m].
         kj: stiffness of the joint at `reference_preload` [N/m].
         cj: damping coefficient of the joint [N s/m].
-        preload: on the joint [N]; None for what `torque` makes, else the reference.
+        preload: on the joint [N]; None for that of `torque`, else the reference.
         torque: on each of four M16 bolts [N m]; give it or `preload`, not both.
-        reference_preload: preload to which `kj` belongs [N].
+        reference_preload: preload at which `kj` is given [N].
         preload_exponent: kj grows as preload to this power [-].
         level: usual peak force [N].
         level_scatter: relative scatter of the peak force [-].
@@ -149,7 +149,7 @@ class TwoBodyBench:
     block: int = 2560
 
     def __post_init__(self) -> None:
-        """Refuse what no bench can be."""
+        """Refuse values out of range."""
         if self.point not in {"1", "2"}:
             raise UsageError(
                 f"point is {self.point!r}; strike the base with point=1, the top with 2"
@@ -165,7 +165,7 @@ class TwoBodyBench:
 
     @property
     def name(self) -> str:
-        """The URL that opens this bench again: all that differs from the default."""
+        """The URL of this bench, with all non-default values."""
         changed = {
             field.name: getattr(self, field.name)
             for field in fields(self)
@@ -175,7 +175,7 @@ class TwoBodyBench:
 
     @property
     def simulated(self) -> bool:
-        """True: there is no hardware behind it."""
+        """True: no hardware is used."""
         return True
 
     @property
@@ -207,7 +207,7 @@ class TwoBodyBench:
 
     @property
     def truth(self) -> BenchTruth:
-        """What an identification should find."""
+        """True values for an identification."""
         return _truth(self)
 
     @property

@@ -18,18 +18,18 @@ SPECIMENS: dict[str, Specimen] = {
 
 
 def specimen_from_url(url: str) -> TwoBodyBench | CampaignBench:
-    """Make the simulated bench that a URL describes, whatever its kind.
+    """Return the simulated bench of a URL, of any kind.
 
     Args:
         url: ``sim:two-body`` with any attribute of `TwoBodyBench` as a query, or
             ``sim:two-body-campaign`` with any of `CampaignBench`.
 
     Returns:
-        The bench; nothing runs before its samples are asked for.
+        The bench; nothing is simulated before its samples are requested.
 
     Raises:
-        UsageError: another scheme or specimen, an unknown key, or a value that is
-            no number.
+        UsageError: another scheme or specimen, an unknown key, or a value that is not a
+            number.
     """
     parts = urlsplit(url)
     if parts.scheme != "sim":
@@ -49,22 +49,23 @@ def specimen_from_url(url: str) -> TwoBodyBench | CampaignBench:
 
 
 def bench_from_url(url: str) -> TwoBodyBench:
-    """Make the bench of one stream that a URL describes.
+    """Return the bench of one stream of a URL.
 
     Args:
         url: ``sim:two-body`` and any attribute of `TwoBodyBench` as a query.
 
     Returns:
-        The bench; nothing runs before its blocks are asked for.
+        The bench; nothing is simulated before its blocks are requested.
 
     Raises:
-        UsageError: another scheme or specimen, an unknown key, or a value that is
-            no number.
+        UsageError: another scheme or specimen, an unknown key, or a value that is not a
+            number.
     """
     bench = specimen_from_url(url)
     if not isinstance(bench, TwoBodyBench):
         raise UsageError(
-            f"{url!r} is a visit of many runs, no single stream; for one stream type "
+            f"{url!r} is a campaign of many runs, no single stream; for one stream "
+            "type "
             "sim:two-body?seed=1"
         )
     return bench

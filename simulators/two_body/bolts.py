@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a torque wrench makes of the preload of the simulated joint."""
+"""Preload of the simulated joint from the bolt torque."""
 
 BOLTS = 4
 BOLT_DIAMETER = 0.016  # [m], M16
@@ -16,5 +16,5 @@ def bolt_preload(torque: float) -> float:
 
 
 def bolt_torque(preload: float) -> float:
-    """Return the torque on each bolt [N m] that makes a preload [N] together."""
+    """Return the torque on each bolt [N m] for a total preload [N]."""
     return preload * NUT_FACTOR * BOLT_DIAMETER / BOLTS

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A visit to the two-body bench by plan: points x levels x preloads, each repeated.
+"""A planned campaign on the two-body bench: points x levels x preloads, repeated.
 
-What a session needs for the question which effect a model misses; one or more effects
-may be hidden. Every run is one hit, recorded from before the trigger.
+Its session serves to find the effects that a model lacks; one or more may be hidden.
+Every run is one hit, recorded with a pre-trigger.
 """
 
 from collections.abc import Iterator
@@ -22,19 +22,19 @@ from jointbench.simulators.hidden.campaign_design import GRIDS
 from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
-_BETWEEN_RUNS = 20.0  # [s] a hand needs from hit to hit
+_BETWEEN_RUNS = 20.0  # [s] from hit to hit of an operator
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CampaignRun:
-    """One hit of the visit: a `Source` of one block, under a preload of its own.
+    """One hit of the campaign: a `Source` of one block, with its preload.
 
     Attributes:
         name: of the run.
         samples: force and the accelerations of base and top, shape (3, n).
-        point: what was struck, ``"1"`` the base or ``"2"`` the top.
+        point: struck body, ``"1"`` the base or ``"2"`` the top.
         preload: on the joint [N].
-        start_time: since the visit began [s].
+        start_time: since the start of the campaign [s].
     """
 
     name: str
@@ -45,7 +45,7 @@ class CampaignRun:
 
     @property
     def simulated(self) -> bool:
-        """True: there is no hardware behind it."""
+        """True: no hardware is used."""
         return True
 
     @property
@@ -70,10 +70,10 @@ class CampaignRun:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CampaignBench:
-    """A planned visit to the bench of `simulators.campaign`.
+    """A planned campaign of `simulators.campaigns`.
 
     Attributes:
-        seed: of specimen, sheet, hits, noise and the parameters of what is hidden.
+        seed: of specimen, nominal parameters, hits, noise and hidden effects.
         hide: names of hidden effects, joined by commas; empty for none.
         grid: of hits, one of `GRIDS`; ``"crossed"`` has every condition twice.
         noise: of each accelerometer, standard deviation [m/s^2].
@@ -89,15 +89,15 @@ class CampaignBench:
     size: float = 0.02
 
     def __post_init__(self) -> None:
-        """Refuse what no visit can be, before anything is simulated."""
+        """Refuse values out of range, before anything is simulated."""
         if not (np.isfinite(self.noise) and self.noise > 0):
             raise UsageError(f"noise is {self.noise!r}, it must be finite and positive")
         if not 0 < self.size <= 1:
             raise UsageError(f"size is {self.size!r}; give a share above 0, up to 1")
         if not 0 <= self.hit_scatter <= 0.1:
             raise UsageError(
-                f"hit_scatter is {self.hit_scatter!r}; give 0 to 0.1, a good hand has "
-                "0.001"
+                f"hit_scatter is {self.hit_scatter!r}; give 0 to 0.1, a good operator "
+                "has 0.001"
             )
         if self.seed < 0:
             raise UsageError(f"seed is {self.seed}; give 0 or more")
@@ -110,7 +110,7 @@ class CampaignBench:
 
     @property
     def name(self) -> str:
-        """The URL that opens this visit again: all that differs from the default."""
+        """The URL of this campaign, with all non-default values."""
         changed = {
             field.name: getattr(self, field.name)
             for field in fields(self)
@@ -120,7 +120,7 @@ class CampaignBench:
 
     @property
     def simulated(self) -> bool:
-        """True: there is no hardware behind it."""
+        """True: no hardware is used."""
         return True
 
     @property
@@ -129,7 +129,7 @@ class CampaignBench:
         return tuple(word.strip() for word in self.hide.split(",") if word.strip())
 
     def simulate(self) -> SimulatedCampaign:
-        """Run the whole visit: its records, its sheet, and the truth about both."""
+        """Simulate the campaign: its records, nominal parameters and truth."""
         return quick_campaign(
             self.seed,
             effects=self.hidden,
@@ -141,7 +141,7 @@ class CampaignBench:
 
 
 def campaign_runs(campaign: SimulatedCampaign) -> tuple[CampaignRun, ...]:
-    """Return the hits of a campaign as a bench delivers them, in their order."""
+    """Return the hits of a campaign as a bench delivers them, in order."""
     pairs = zip(
         campaign.design.conditions, campaign.force, campaign.acceleration, strict=True
     )

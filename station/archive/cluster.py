@@ -106,7 +106,7 @@ def run_cluster(
     """Process files on a cluster; yield what became of each.
 
     All machines must see the files under the same names. A worker that dies costs the
-    batch in its hands, which another one takes over; of a batch that fails as often as
+    batch in progress, which another one takes over; of a batch that fails as often as
     it may be tried, every file is given up.
 
     Args:
@@ -224,7 +224,7 @@ class _Cluster:
     def _lost(self, what: str, way_out: str) -> InstrumentError:
         return InstrumentError(
             f"scheduler {self.settings.scheduler!r} {what}; results until then are "
-            f"whole: {way_out}, then type the same command to go on"
+            f"whole: {way_out}, then repeat the same command to continue"
         )
 
 

@@ -68,7 +68,7 @@ def _lines(screen: Console, total: int) -> Tell:
 
 
 def progress_line(counts: Counts, total: int, seconds: float) -> str:
-    """Return one line that says how far a run has come.
+    """Return one line with the progress of a run.
 
     Args:
         counts: files by what became of them.

@@ -45,7 +45,7 @@ class Checked:
     Attributes:
         path: of the file.
         kind: session, results, table or ledger.
-        state: whole, unsigned, rotten or damaged, as in JSON.
+        state: as in JSON, one of `whole`, `unsigned`, `rotten`, `damaged`.
         problems: one line each; empty for a file without fault.
     """
 

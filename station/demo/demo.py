@@ -104,16 +104,16 @@ def run_demo(out: Path, *, seed: int, json_target: str | None) -> int:
     out.mkdir(parents=True, exist_ok=True)
     screen = console(json_target)
     with working("measuring two surfaces and twelve hits on the simulated bench"):
-        visit = record_demo_session(out, seed=seed)
+        recorded = record_demo_session(out, seed=seed)
     session_file = out / "session.h5"
-    write_session(visit.session, session_file, overwrite=True)
-    model_file = _write_model(out / "bench.toml", visit)
+    write_session(recorded.session, session_file, overwrite=True)
+    model_file = _write_model(out / "bench.toml", recorded)
     # From here on everything comes from the files, as it would for any user's own.
     bench = read_toml(model_file, BenchModel)
     analysis = analyse_session(read_session(session_file), bench)
     with working("second session: diagnosing the gap between model and measurement"):
         gap = session_for_gap(out, seed=seed)
-    comparisons = (*compare_with_truth(visit.truth, analysis), *gap.comparisons)
+    comparisons = (*compare_with_truth(recorded.truth, analysis), *gap.comparisons)
     _show(analysis, bench, json_target)
     show_gap(gap, json_target)
     content = truth_table(comparisons)
@@ -141,13 +141,13 @@ def require_demo(out: Path) -> None:
             raise UsageError(f"'{path}' was made by no demo; name another folder")
 
 
-def _write_model(path: Path, visit: DemoSession) -> Path:
+def _write_model(path: Path, recorded: DemoSession) -> Path:
     text = MODEL_FILE.format(
-        base=visit.masses["base"],
-        top=visit.masses["top"],
-        base_sd=visit.mass_sds["base"],
-        top_sd=visit.mass_sds["top"],
-        preload=visit.truth.bench.preload,
+        base=recorded.masses["base"],
+        top=recorded.masses["top"],
+        base_sd=recorded.mass_sds["base"],
+        top_sd=recorded.mass_sds["top"],
+        preload=recorded.truth.bench.preload,
     )
     write_text(path, text)
     return path

@@ -137,7 +137,7 @@ def _named(
     if missing:
         raise BadData(
             f"{missing[0]!r} of the session is not among [{kind}.*] of the model, "
-            f"which are {list(places)}; say where it sits"
+            f"which are {list(places)}; add its position"
         )
     return [places[name] for name in names]
 

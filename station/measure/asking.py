@@ -32,7 +32,7 @@ class Asker:
         self._silent = self._asked = 0
         condition, done = self.route.condition, self.route.done
         self.bench.watcher.ask(condition, done, self.route.planned)
-        self.bench.hand.ask(condition)
+        self.bench.operator.ask(condition)
 
     def wait(self, count: int) -> None:
         """Take note of samples without a hit; ask again when they are many.
@@ -49,4 +49,4 @@ class Asker:
             )
         if self._silent - self._asked > ASK_AGAIN * rate + self.trigger.after:
             self._asked = self._silent
-            self.bench.hand.ask(self.route.condition)
+            self.bench.operator.ask(self.route.condition)

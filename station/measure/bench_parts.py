@@ -20,7 +20,7 @@ class BenchParts:
         stream: of samples, started.
         live: the file that everything goes into.
         channels: of the stream.
-        hand: the operator.
+        operator: whoever strikes and tightens.
         watcher: whoever looks on.
         bolts: reads the torque of every bolt; None where the plan names no tester.
         hardware_trigger: whether the device itself looks for hits after the trials.
@@ -30,7 +30,7 @@ class BenchParts:
     stream: NiStream
     live: LiveSession
     channels: tuple[Channel, ...]
-    hand: Operator
+    operator: Operator
     watcher: Watcher
     bolts: BoltWatch | None = None
     hardware_trigger: bool = False

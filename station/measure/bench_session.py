@@ -201,7 +201,7 @@ def _record(
                 stream=stream,
                 live=live,
                 channels=channels,
-                hand=opened.hand,
+                operator=opened.operator,
                 watcher=watcher,
                 bolts=bolts,
                 hardware_trigger=by_device(plan, opened.chassis),

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.acquisition.ni.driver import Chassis
 from jointbench.acquisition.ni.driver_answers import ConnectionLost
-from jointbench.station.measure.observer import Operator, OwnHand
+from jointbench.station.measure.observer import BenchOperator, Operator
 from jointbench.station.measure.plan import Condition
 
 REMOTE = "ni+grpc://"
@@ -23,17 +23,17 @@ class OpenChassis:
         chassis: the driver.
         name: URL that opens it again.
         simulated: True for a simulation, False for hardware.
-        hand: the operator.
+        operator: whoever strikes and tightens.
     """
 
     chassis: Chassis
     name: str
     simulated: bool
-    hand: Operator
+    operator: Operator
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SimulatedHand:
+class OperatorOfSimulation:
     """The operator of a simulated bench, who strikes and tightens on request."""
 
     chassis: Chassis
@@ -45,7 +45,7 @@ class SimulatedHand:
         optional = {"torque": torque, "level": condition.level}
         request |= {k: v for k, v in optional.items() if v is not None}  # type: ignore[misc]
         try:
-            self.chassis.hand(json.dumps(request).encode())
+            self.chassis.strike(json.dumps(request).encode())
         except ConnectionLost:
             return
 
@@ -94,8 +94,10 @@ def _driver(address: str | None, name: str) -> Iterator[OpenChassis]:
         modules = chassis.modules()
         simulated = bool(modules) and all(module.simulated for module in modules)
         # NI's own simulated devices cannot strike; the first request shows that.
-        hand: Operator = SimulatedHand(chassis) if simulated else OwnHand()
-        yield OpenChassis(chassis, name, simulated, hand)
+        operator: Operator = (
+            OperatorOfSimulation(chassis) if simulated else BenchOperator()
+        )
+        yield OpenChassis(chassis, name, simulated, operator)
     finally:
         chassis.close()
 

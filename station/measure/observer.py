@@ -84,7 +84,7 @@ class Operator(Protocol):
         ...
 
 
-class OwnHand:
+class BenchOperator:
     """A person."""
 
     def ask(self, condition: Condition) -> None:

@@ -12,9 +12,9 @@ from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_spectra import hit_spectra
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.data_limits import (
-    asked_words,
     block_words,
     mode_words,
+    requested_band_words,
     time_scale_words,
 )
 from jointbench.station.pipeline.chain import ModalChain
@@ -71,7 +71,7 @@ def limit_words(chain: ModalChain) -> tuple[str, ...]:
     alone = "single hit: a glancing hit cannot be recognised"
     return (
         *time_scale_words(judged),
-        *asked_words(judged, chain.result.settings.band),
+        *requested_band_words(judged, chain.result.settings.band),
         *block_words(judged, lines),
         *mode_words(judged, chain.result.model),
         *([alone] if hits == 1 else []),

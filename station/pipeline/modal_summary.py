@@ -35,7 +35,7 @@ def modal_json(chain: ModalChain, notes: ModalNotes) -> dict[str, object]:
             "damping_ratio_sd": float(model.damping_ratio_sd[i]),
             "stable_orders": int(model.stable_orders[i]),
             "chosen_by": "hand" if model.by_hand[i] else "automatic",
-            "misfit_over_noise": float(model.misfit[i]),
+            "misfit_over_noise": float(model.residual_ratio[i]),
             "systematic": bool(model.systematic[i]),
             "frequency_systematic_hz": float(rated.frequency_error[i]),
             "damping_ratio_systematic": float(rated.damping_error[i]),

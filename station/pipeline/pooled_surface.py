@@ -47,7 +47,7 @@ def pooled_beside(
         f"{len(known)} of {len(dimensions)} profiles have a D of their own"
         f"{'' if spread is None else f', which scatters by {spread:.2g}'}"
     )
-    strips = estimate.faces[0].blocks
+    strips = estimate.samplings[0].blocks
     error = None
     if len(strips):
         error = (np.std(strips, axis=0, ddof=1) / np.sqrt(len(strips))).tolist()

@@ -143,7 +143,7 @@ def _direction(estimate: StructureFunction) -> Beside:
     asked, met = (
         float(np.degrees(float(detail[key]))) for key in ("asked_rad", "met_rad")
     )
-    face = estimate.faces[0]
+    face = estimate.samplings[0]
     line = (
         f"along {met:.1f} degrees from the rows ({asked:g} asked): {face.profiles} "
         f"lines of {face.points} points, {engineering(face.spacing, 'm')} apart"
@@ -184,7 +184,7 @@ def _weierstrass(surface: Surface, gamma: float) -> Beside:
         f"Weierstrass-Mandelbrot profile of ratio {gamma:g}: "
         f"D = {with_sd(found.dimension, found.dimension_sd)}, "
         f"G = {engineering(found.roughness, 'm')} ({low} to {high}), waves of {waves}, "
-        f"ln S within {found.misfit:.2g} (rms)"
+        f"ln S within {found.residual_rms:.2g} (rms)"
     )
     if at_the_end:
         line += "; D is at the end of its range: it is no such profile"
@@ -196,6 +196,6 @@ def _weierstrass(surface: Surface, gamma: float) -> Beside:
         "roughness_m": found.roughness,
         "roughness_interval_m": found.roughness_interval,
         "band_per_m": found.band,
-        "misfit": found.misfit,
+        "misfit": found.residual_rms,
     }
     return Beside((line,), (("weierstrass", keys),))

@@ -96,7 +96,7 @@ def record_estimate_figure(
     """Return joint stiffness and damping estimated from each record separately.
 
     Args:
-        estimates: estimates of the records.
+        estimates: of the records.
         against: `level` or `preload`.
         tried: legend of the model with the effects; empty where there is none.
         unit: of level and preload.

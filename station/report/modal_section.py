@@ -241,7 +241,7 @@ def _window(chain: ModalChain) -> str:
 
 def _systematic(chain: ModalChain) -> str:
     """Name systematic intervals; results of earlier versions do not hold this."""
-    if np.isnan(chain.result.model.misfit).all():
+    if np.isnan(chain.result.model.residual_ratio).all():
         return "The results file does not hold the systematic part of the intervals."
     return systematic_words(chain)
 

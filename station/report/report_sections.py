@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Sections of a session's report as records, so that other packages can add some.
 
-A section is data: texts, tables and plots, never markup. The page escapes every text
+A section is data: texts, tables and plots, never markup. The report escapes every text
 and shows every character of it (`visible`); it runs no script but its own.
 """
 
@@ -89,10 +89,10 @@ def made_sections(
 
 
 def _checked(name: str, sections: Sequence[Section]) -> tuple[Section, ...]:
-    """Return sections of another package as the page can draw them.
+    """Return sections of another package in the form that the report draws.
 
     Anchors and identifiers begin with the name of the entry, so that none meets one of
-    the page or of another package.
+    the station or of another package.
 
     Raises:
         TypeError: something is no section, item or text, or a figure no plain data.

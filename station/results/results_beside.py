@@ -59,7 +59,7 @@ def stored_results(
         if digest not in run.inputs:
             raise UsageError(
                 f"{named(given)} was not made of {named(session)} as it is now; make "
-                "results anew, or leave --results out"
+                "the results again, or leave --results out"
             )
         found = list(_placed(run, preloads, None))
     else:
@@ -128,7 +128,7 @@ def _placed(
 def _stale(path: Path) -> str:
     return (
         f"{visible(path.name)} is not shown: it was made from another state of the "
-        "session; make it anew"
+        "session; make it again"
     )
 
 

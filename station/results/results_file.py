@@ -175,7 +175,7 @@ def _write_evidence(group: h5py.Group, result: ModalResult) -> None:
         group,
         "mode",
         ("significance", model.significance, "1"),
-        ("misfit", model.misfit, "1"),
+        ("misfit", model.residual_ratio, "1"),
         ("stable_orders", model.stable_orders, "1"),
     )
     dims = ("mode", "output", "input")

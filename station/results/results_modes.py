@@ -192,7 +192,7 @@ def _model(group: h5py.Group, frf: Frf, steps: Provenance) -> ModalModel:
     count = residues.shape[0]
     unknown = np.full(count, np.nan)
     orders = group.get("stable_orders")
-    significance, misfit = (
+    significance, residual = (
         _optional(group, name) for name in ("significance", "misfit")
     )
     return ModalModel(
@@ -206,7 +206,7 @@ def _model(group: h5py.Group, frf: Frf, steps: Provenance) -> ModalModel:
         shapes_sd=_complex_or_nan(group, "shape_sd", shapes.shape),
         participation=participation,
         significance=unknown if significance is None else significance,
-        misfit=unknown if misfit is None else misfit,
+        residual_ratio=unknown if residual is None else residual,
         stable_orders=np.zeros(count, np.int64)
         if orders is None
         else read_integers(orders),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The page of ``--help``: commands by group, options with values, units and examples.
+"""The text of ``--help``: commands by group, options with values, units and examples.
 
 The layout of the library cuts the summaries of commands and writes types of Python
 where a user expects the name of a value.
@@ -38,7 +38,7 @@ class HelpCommand(TyperCommand):
     """A command whose help has a description, the options and examples."""
 
     def get_help(self, ctx: Any) -> str:
-        """Return the page; it is complete at any width.
+        """Return the text; it is complete at any width.
 
         Args:
             ctx: context of the call, as the library gives it.
@@ -57,7 +57,7 @@ class HelpGroup(TyperGroup):
     """The command line itself: its commands by group."""
 
     def get_help(self, ctx: Any) -> str:
-        """Return the page: every command with its whole summary.
+        """Return the text: every command with its whole summary.
 
         Args:
             ctx: context of the call, as the library gives it.

@@ -63,7 +63,7 @@ def names_width(names: Iterable[str], width: int) -> int:
     """Return the width of the column of names; longer names take a line of their own.
 
     Args:
-        names: of the page.
+        names: of the commands.
         width: of the lines [columns].
     """
     limit = min(_WIDEST_NAMES, int(width * _NAMES_SHARE))

@@ -46,7 +46,7 @@ def placed_sections(sections: Sequence[Section], at: str) -> list[Section]:
 
 
 def render(report: Report) -> str:
-    """Return `report` as one self-contained HTML page."""
+    """Return `report` as one self-contained HTML document."""
     from jinja2 import Environment
     from plotly.offline import get_plotlyjs
 
@@ -68,7 +68,7 @@ def render(report: Report) -> str:
 
 
 def write_report(report: Report, path: Path) -> None:
-    """Write the rendered page to `path`."""
+    """Write the rendered report to `path`."""
     write_text(path, render(report))
 
 

@@ -38,7 +38,7 @@ class ProfileRequest:
     Attributes:
         instrument: name of a roughness tester, ``"diavite"``, ``"mitutoyo"`` or one
             that a package adds.
-        line: name of its serial line, or of a twin.
+        line: name of its serial line, or of a simulator.
         name: of the profile.
         traverse: length that was traced, with its unit, as text; a DH-8 needs it.
         baud: bits per second, None for what is usual.
@@ -151,7 +151,7 @@ def _check_places(
     json_target: str | None,
 ) -> None:
     if out is None and session is None:
-        raise UsageError("nowhere to put the profile; add --out face.csv or --session")
+        raise UsageError("no output for the profile; add --out trace.csv or --session")
     _traverse(wanted)
     if out is not None:
         if out.suffix.lower() != ".csv":

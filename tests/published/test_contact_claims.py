@@ -58,7 +58,7 @@ def test_a_plausible_damping_lets_the_mode_be_seen(scripts):
     assert 0.005 < rows["kogut-etsion, per-radian"] < 0.2
 
 
-def test_what_the_printed_errors_ask_for_is_told_for_either_sign(scripts):
+def test_the_effect_of_printed_errors_is_reported_for_either_sign(scripts):
     """Fig. 9 of 2025 prints no sign; on the high side 3D/2D agrees within 3 %."""
     asked = scripts[3].asked("3D", "2D")
     assert asked["low", "low"] == pytest.approx(0.7479 / 0.37034)

@@ -24,7 +24,7 @@ def test_the_five_lines_give_the_printed_dimension_and_roughness() -> None:
 
 
 def test_one_profile_supplies_most_of_the_printed_mean() -> None:
-    """The five G span a factor above 100: an arithmetic mean says little."""
+    """The five G span a factor above 100: an arithmetic mean is not informative."""
     found = [fractal_from_line(*line, constant="as-printed") for line in LINES]
     values = np.array([one.roughness for one in found])
     assert values.max() / values.min() > 100

@@ -9,15 +9,15 @@ from collections import Counter
 
 import pytest
 from numpy.testing import assert_allclose
-from sheet_coefficients import COEFFICIENTS
-from sheet_entries import (
+from printed_coefficients import COEFFICIENTS
+from printed_entries import (
     ENTRIES,
     known,
     symbols,
 )
-from sheet_formulas import FORMULAS
-from sheet_numbers import NUMBERS
-from sheet_reference import STATES
+from printed_formulas import FORMULAS
+from printed_numbers import NUMBERS
+from printed_reference import STATES
 
 from jointbench.analysis.contact import printed_formulas_2023 as eq
 

@@ -30,7 +30,7 @@ def heard_signals() -> Iterator[None]:
 
 
 def ringing(seed: int, *, hits: int = 2, bounce: float = 0.0) -> Recording:
-    """Hits on two modes, one a second, the first with a second pulse if told."""
+    """Hits on two modes, one a second, the first with a second pulse if reported."""
     time = np.arange(int(hits * RATE)) / RATE
     rng = np.random.default_rng(seed)
     force = rng.normal(0.0, 1e-3, time.size)

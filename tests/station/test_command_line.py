@@ -145,7 +145,7 @@ def test_inspect_shows_what_import_brought_in(tmp_path: Path) -> None:
     assert "acceleration" in shown.stdout
 
 
-def test_an_error_nobody_foresaw_is_one_line_too() -> None:
+def test_an_unexpected_error_is_one_line_too() -> None:
     """The traceback is for --debug; the operator gets a line and code one."""
     code = (
         "from jointbench.station.main import exit_code\n"

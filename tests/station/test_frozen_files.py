@@ -44,7 +44,7 @@ def test_what_was_written_comes_to_the_same_numbers(
     assert differences(name, KEPT[name], CASES[name]()) == []
 
 
-def test_a_number_that_moved_is_told_by_its_path() -> None:
+def test_a_number_that_moved_is_named_by_its_path() -> None:
     """The comparison sees a change of 2e-6, a lost mode and a lost key."""
     kept = {"a": [1.0, 2.0], "b": 3.0}
     assert differences("x", kept, {"a": [1.0, 2.000004], "b": 3.0}) == [

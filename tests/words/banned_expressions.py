@@ -110,7 +110,8 @@ BANNED = (
         "face (of a joint)",
         r"\bfaces?\b(?!-)",
         "contact surface",
-        fine=r"faces? of (an? )?(element|mesh)|(element|boundary) faces?",
+        fine=r"faces? of (an? )?(element|mesh)|(element|boundary) faces?"
+        r"|face = |(structure of|surface) face\b|face: caution",
         elsewhere=_MESHES,
     ),
     Banned(
@@ -150,7 +151,7 @@ BANNED = (
         "page (of a report, in code)",
         r"\bpages?\b",
         "report",
-        fine=r"page of the doc\w+|(docs|memory|man|web|code) pages?",
+        fine=r"page of the doc\w+|(docs|memory|man|web|code) pages?|/pages",
         only=_CODE,
     ),
     Banned(

@@ -39,7 +39,7 @@ _SLACK = 2e-3
 
 
 def is_dektak(lines: Sequence[str]) -> bool:
-    """Tell by its first line whether a text is such an export."""
+    """Recognise such an export by its first line."""
     return bool(lines) and lines[0].strip().startswith(_PARAMETERS)
 
 

@@ -11,8 +11,8 @@ from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.formats.even_steps import fit_even_steps
 from jointbench.acquisition.formats.tables import Table
 
-# A coordinate may lie this far from its grid line [step], and two readings nearer
-# than `_SAME_LINE` of a typical step are the same line.
+# Largest distance of a coordinate from its grid line [step]; readings closer than
+# `_SAME_LINE` of a typical step are the same line.
 _OFF_GRID = 0.25
 _SAME_LINE = 0.5
 
@@ -33,7 +33,7 @@ class GridAxis:
 
 
 def grid_axis(table: Table, index: int, role: str) -> GridAxis:
-    """Find the grid lines of a coordinate from all values met.
+    """Find the grid lines of a coordinate from all its values.
 
     Args:
         table: as read.
@@ -41,8 +41,8 @@ def grid_axis(table: Table, index: int, role: str) -> GridAxis:
         role: ``"x"`` or ``"y"``, for messages.
 
     Raises:
-        SamplingError: a point has no place.
-        FormatError: the values lie on no even grid.
+        SamplingError: a point has no coordinate.
+        FormatError: the values form no even grid.
     """
     values = table.values[index]
     bad = np.flatnonzero(~np.isfinite(values))
@@ -59,7 +59,7 @@ def grid_axis(table: Table, index: int, role: str) -> GridAxis:
 
 
 def _group_lines(met: FloatArray) -> IntArray:
-    """Put readings of one grid line together that differ by the encoder's noise."""
+    """Group readings of one grid line that differ by the encoder's noise."""
     gaps = np.diff(met)
     if gaps.size == 0:
         return np.zeros(met.size, dtype=np.int64)
@@ -72,7 +72,7 @@ def _group_lines(met: FloatArray) -> IntArray:
 def _number_lines(
     centres: FloatArray, table: Table, role: str
 ) -> tuple[IntArray, float]:
-    """Number the grid lines from 0; a whole line that is missing keeps its number."""
+    """Number the grid lines from 0; a missing line keeps its number."""
     if centres.size == 1:
         return np.zeros(1, dtype=np.int64), 1.0
     try:
@@ -96,7 +96,7 @@ def _number_lines(
 
 
 def require_single(table: Table, cell: IntArray) -> None:
-    """Refuse a table that holds a point of the grid twice.
+    """Refuse a table with a repeated grid point.
 
     Args:
         table: as read.

@@ -30,7 +30,7 @@ _HEADER_LINES = 4
 
 
 def is_gwyddion(lines: Sequence[str]) -> bool:
-    """Tell by four comment lines, the middle two lengths, whether it is such a map."""
+    """Recognise such a map by four comment lines, the middle two with lengths."""
     found = [_LINE.fullmatch(text.strip()) for text in lines[:_HEADER_LINES]]
     return len(found) == _HEADER_LINES and all(found)
 
@@ -99,7 +99,7 @@ def _rounding(cell: str) -> float:
 def _square_or_said(
     pixel: tuple[float, float], shape: tuple[int, int], rounding: float
 ) -> tuple[Step, ...]:
-    """Say where pixels are not square: some scans are so, and every cut file is.
+    """Return a caution for non-square pixels: some scans, and every truncated file.
 
     The header has the size of the map and no number of rows: a file that lost rows
     reads as a whole one of longer pixels.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Do the facts of a height file agree with each other, and with what can be measured?
+"""Check that the data of a height file are consistent and physically possible.
 
 A length, a number of points, a pitch and the settings of a trace determine each other
-more than once. Where they contradict each other a file is refused; where they show
-that a trace or a map is not whole, its heights are read at the pitch that holds, and
-the surface carries a caution that screens, reports and JSON repeat.
+more than once. A contradictory file is refused. If a trace or a map is incomplete, its
+heights are read at the correct pitch, and the surface has a caution that screen,
+reports and JSON repeat.
 """
 
 from dataclasses import replace
@@ -23,21 +23,21 @@ LONGEST = 1.0
 LONGEST_TABLE = 100.0
 """Tables come from other instruments too, up to a guideway's straightness [m]."""
 _FINEST = 1e-12
-"""A hundredth of an atom: no pitch is finer [m]."""
+"""Least pitch, a hundredth of an atom [m]."""
 _RANGE_SHARE = 0.98
-"""A height from this share of the stated range on lies at its limit [-]."""
-# So many equal heights at the end, at the extreme of a profile, are no roughness.
+"""Share of the stated range from which a height is at its limit [-]."""
+# Equal heights at the end and extreme of a profile from which they are no roughness.
 _FLAT_END = 8
 _CAUTION = "caution"
 
 
 def caution(text: str) -> Step:
-    """Return a step of provenance that says what to keep in mind about heights."""
+    """Return a provenance step with a caution about heights."""
     return step(_CAUTION, said=text)
 
 
 def cautions(provenance: Provenance) -> tuple[str, ...]:
-    """Return what to keep in mind about heights, in the order it was found."""
+    """Return the cautions about heights, in order."""
     return tuple(
         str(dict(one.detail).get("said", ""))
         for one in provenance
@@ -46,10 +46,10 @@ def cautions(provenance: Provenance) -> tuple[str, ...]:
 
 
 def range_caution(heights: Profile, limit: float) -> tuple[Step, ...]:
-    """Say where a trace reaches the limit of its measuring range.
+    """Return a caution if a trace reaches the limit of its measuring range.
 
     Args:
-        heights: the profile as the instrument wrote it.
+        heights: the profile from the file.
         limit: largest height the instrument reaches, to both sides of 0 [m].
 
     Returns:
@@ -73,18 +73,19 @@ def range_caution(heights: Profile, limit: float) -> tuple[Step, ...]:
 
 
 def checked(surface: Surface, path: Path | str, *, longest: float = LONGEST) -> Surface:
-    """Refuse what nobody can have measured, and note what looks wrong.
+    """Refuse impossible heights, and add cautions for implausible ones.
 
     Args:
-        surface: as a reader made it.
+        surface: from a reader.
         path: file or line that it came from, for messages.
         longest: largest length of a trace, or side of a map [m].
 
     Returns:
-        The surface, with cautions in its provenance where there are any.
+        The surface, with any cautions in its provenance.
 
     Raises:
-        FormatError: it is longer, its pitch finer or its heights greater than any.
+        FormatError: it is longer, its pitch finer or its heights larger than the
+            limits.
     """
     extents = _extents(surface)
     for length, pitch, points in extents:

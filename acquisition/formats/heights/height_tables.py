@@ -35,10 +35,10 @@ _COUNTERS = frozenset({"index", "no", "no.", "#", "n", "i"})
 _HEADER_CELL = re.compile(
     r"(?P<axis>[xyz])\s*(?:in\s+|[\[(/_]+\s*)(?P<unit>[^\])]+?)\s*[\])]?", re.I
 )
-# A value met at least twice and this far outside the range of all others [range] is
-# taken for a code that means "no point".
+# A repeated value this far outside the range of all others [range] is taken for the
+# code of a missing point.
 _FAR_OUTSIDE = 5.0
-# Codes that instruments are known to write for a missing point, in any unit.
+# Known codes of instruments for a missing point, in any unit.
 _KNOWN_CODES = (-25400.0, -25.4, -9999.0, -99999.0, -32768.0, 32767.0, 1e30, -1e30)
 
 
@@ -67,14 +67,14 @@ def surface_columns(spec: str) -> tuple[Column, ...]:
 
 
 def header_columns(table: Table) -> tuple[Column, ...] | None:
-    """Read what the columns hold from a header such as ``x in um,z in um``.
+    """Read the columns from a header such as ``x in um,z in um``.
 
     Args:
         table: as read, with the lines above its numbers.
 
     Returns:
-        The columns; of two lengths without a z, the second is the height. None where
-        any unit is missing or the words are others.
+        The columns; of two lengths without a z, the second is the height. None if a
+        unit is missing or the header has another form.
     """
     line = next((text for text in reversed(table.header) if text.strip()), "")
     cells = split_row(line.lstrip("#% "), table.delimiter)
@@ -99,11 +99,11 @@ def header_columns(table: Table) -> tuple[Column, ...] | None:
 def surface_from_table(
     table: Table, columns: Sequence[Column] | None, origin: Step, name: str
 ) -> Surface:
-    """Make a profile or an areal map of a table.
+    """Convert a table to a profile or an areal map.
 
     Args:
         table: as read.
-        columns: what its columns are; None is refused with what to type.
+        columns: its columns; None is refused with an example.
         origin: what is known of the file, put first into the provenance.
         name: of the surface.
 
@@ -149,7 +149,7 @@ def surface_from_table(
 
 
 def _given_spacing(columns: Sequence[Column]) -> float:
-    """Return the distance of heights that stand without x [m]."""
+    """Return the distance of heights without x [m]."""
     return next(c.spacing for c in columns if c.spacing is not None)
 
 
@@ -159,7 +159,7 @@ def _what_to_type(table: Table) -> str:
     rest = ", with '-' for each of the others" if count > _AREAL_COLUMNS else ""
     return (
         f"{named(table.path)} has {count} columns and {units_words(table)}; "
-        f"say what they are, for example --columns '{example}'{rest}"
+        f"describe them, for example --columns '{example}'{rest}"
     )
 
 
@@ -199,7 +199,7 @@ def _heights(table: Table, index: int, column: Column) -> tuple[FloatArray, Bool
 
 
 def _known_codes(values: FloatArray) -> BoolArray:
-    """Mark values that are a known code and stand far outside all others."""
+    """Mark values that are a known code and far outside all others."""
     code = np.isin(values, _KNOWN_CODES) | (np.abs(values) >= 1e30)
     others = values[np.isfinite(values) & ~code]
     if others.size < 2 or np.ptp(others) == 0:
@@ -210,7 +210,7 @@ def _known_codes(values: FloatArray) -> BoolArray:
 
 
 def _refuse_unsaid_code(table: Table, values: FloatArray, column: Column) -> None:
-    """Refuse a number that stands for "no point" but was not said to."""
+    """Refuse an undeclared code of a missing point."""
     finite = values[np.isfinite(values)]
     if finite.size == 0:
         return
@@ -237,7 +237,7 @@ def _profile(
     provenance: Provenance,
     name: str,
 ) -> Profile:
-    """Lay heights on an even line; rounded x are put back to length / (n - 1)."""
+    """Place heights on an even line; rounded x are corrected to length / (n - 1)."""
     x = table.values[index]
     order = slice(None, None, -1 if x[-1] < x[0] else 1)
     last = x.size - 1

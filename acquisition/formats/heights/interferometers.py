@@ -35,7 +35,7 @@ _ZYGO_INVALID = 2147483640
 
 
 def is_interferometer(lines: Sequence[str]) -> bool:
-    """Tell by its first line whether a text is such an export."""
+    """Recognise such an export by its first line."""
     return lines[0].lstrip("\ufeff").startswith((WYKO, ZYGO, ZYGO_XYZ))
 
 
@@ -156,7 +156,7 @@ def _zygo(
     scale *= number_of(optics[4], "the obliquity in line 8", path)
     marks = [i for i, text in enumerate(lines) if text.strip() == "#"]
     if len(marks) < 2:
-        raise FormatError(f"{named(path)} lacks a '#' behind its data; it is cut short")
+        raise FormatError(f"{named(path)} lacks a '#' after its data; it is cut short")
     words = " ".join(lines[marks[-2] + 1 : marks[-1]]).split()
     if len(words) != shape[0] * shape[1]:
         raise FormatError(

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Height images that Keyence VK and VR microscopes export as CSV.
 
-The layout is known from public parsers, not from the maker: quoted cells; a header of
-keys and values, in the language of the analyser, whose number of rows varies with the
-model; a row that reads "Height";
-then one row of cells for each row of the image. A key may hold a line break inside
-its quotes, so a CSV reader reads it, never a split by lines.
+The layout is known from public parsers, not from the manufacturer: quoted cells; a
+header of keys and values, in the language of the analyser, whose number of rows varies
+with the model; a row that reads "Height"; then one row of cells for each row of the
+image. A key may hold a line break inside its quotes, so a CSV reader reads it, never a
+split by lines.
 """
 
 import csv
@@ -44,7 +44,7 @@ _KEPT = ("measured", "data_name", "measurement_mode", "objective_lens_power")
 
 @dataclass(frozen=True, slots=True)
 class _Header:
-    """Keys and values as they stand, and the language that gives them a meaning."""
+    """Keys and values as read, and their language."""
 
     cells: dict[str, list[str]]
     language: Language
@@ -55,7 +55,7 @@ class _Header:
         return next((word for word in words if word in self.cells), words[0])
 
     def values(self, meaning: str) -> list[str]:
-        """Return the cells behind a key that hold anything."""
+        """Return the non-empty cells after a key."""
         return [cell for cell in self.cells.get(self.key(meaning), []) if cell]
 
     def text(self, meaning: str) -> str:
@@ -74,7 +74,7 @@ def parse_keyence(data: bytes, path: Path, origin: Step, name: str) -> Areal:
 
     Returns:
         The heights [m]; empty cells are marked as missing. The header may declare
-        more rows than the file holds: a caution and provenance tell both numbers.
+        more rows than the file holds: a caution and the provenance give both numbers.
 
     Raises:
         FormatError: no known language, not a height image, decimal commas, rows cut
@@ -103,7 +103,7 @@ def parse_keyence(data: bytes, path: Path, origin: Step, name: str) -> Areal:
 
 
 def _short_of_rows(rows: int, declared: int) -> tuple[Step, ...]:
-    """Say that rows are missing; those that are there have their pitch all the same."""
+    """Return a caution for missing rows; the pitch of the others is correct."""
     if rows == declared:
         return ()
     said = (
@@ -131,10 +131,10 @@ def _csv_rows(
 
 
 def _delimiter(text: str, language: Language) -> str:
-    """Return what stands behind the key of the calibration."""
+    """Return the separator after the key of the calibration."""
     key = language.words["calibration"][0]
-    behind = text[text.index(key) + len(key) :].lstrip('" \n')
-    return behind[0] if behind[:1] in {";", "\t"} else ","
+    rest = text[text.index(key) + len(key) :].lstrip('" \n')
+    return rest[0] if rest[:1] in {";", "\t"} else ","
 
 
 def _read_header(

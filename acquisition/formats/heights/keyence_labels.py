@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The words of Keyence's height CSV in the four languages of its analyser.
 
-Known from public parsers of such files, not from the maker. The encoding follows the
-language of the analyser and is told by which reading yields its words.
+Known from public parsers of such files, not from the manufacturer. The encoding follows
+the language of the analyser and is recognised by the decoding that yields its words.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class Language:
     Attributes:
         name: of the language, in English.
         words: the keys of the header by what they mean, several where versions differ.
-        height: what stands for heights, as kind of data and above them.
+        height: the word for heights, as kind of data and above them.
     """
 
     name: str
@@ -108,13 +108,13 @@ UNIT_WORDS = MappingProxyType({"微米": "um", "纳米": "nm", "毫米": "mm"})
 
 
 def is_keyence(data: bytes) -> bool:
-    """Tell by the content whether a file is a Keyence image CSV of any language."""
+    """Recognise a Keyence image CSV of any language by its content."""
     head = data[:HEAD_BYTES].replace(b"\x00", b"")  # UTF-16 counts too
     return MARK.encode() in head or b"XY Calibration" in head
 
 
 def decode_keyence(data: bytes, path: Path) -> tuple[str, str, Language]:
-    """Find the encoding and the language in which the header makes sense.
+    """Find the encoding and the language of the header.
 
     Args:
         data: content of the file.
@@ -124,7 +124,7 @@ def decode_keyence(data: bytes, path: Path) -> tuple[str, str, Language]:
         The text with plain line ends, its encoding and its language.
 
     Raises:
-        FormatError: no reading yields the words of any known language.
+        FormatError: no decoding yields the words of a known language.
     """
     best: tuple[int, str, str, Language] | None = None
     for encoding in _candidates(data):
@@ -158,6 +158,6 @@ def _candidates(data: bytes) -> tuple[str, ...]:
 
 
 def _known_words(head: str, language: Language) -> int:
-    """Count the words of a language that stand in the header."""
+    """Count the words of a language in the header."""
     keys = [word for words in language.words.values() for word in words]
     return sum(word in head for word in [*keys, language.height])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the readers of instrument texts share: numbers, lengths and checked grids."""
+"""Common functions of readers of instrument texts: numbers, lengths, grids."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -14,7 +14,7 @@ from jointbench.acquisition.formats.table_cells import NUMBER, parse_cell
 from jointbench.acquisition.formats.tables import MAX_CELLS
 
 HIGHEST = 1e3
-"""No profilometer measures a kilometre: beyond it stands a code [m]."""
+"""Largest height; larger ones are codes [m]."""
 
 
 def count_of(cell: str, what: str, path: Path) -> int:
@@ -37,7 +37,7 @@ def count_of(cell: str, what: str, path: Path) -> int:
 
 
 def number_of(cell: str, what: str, path: Path, *, positive: bool = True) -> float:
-    """Read a finite number of a header, above zero unless told otherwise.
+    """Read a finite number of a header, above zero by default.
 
     Raises:
         FormatError: it is none.
@@ -71,7 +71,7 @@ def length_of(cell: str, what: str, path: Path) -> float:
 def parse_cells(
     cells: Sequence[str], first_line: int, path: Path, *, each_own_line: bool = False
 ) -> FloatArray:
-    """Read cells of one line, or one a line; NaN where one says "no value".
+    """Read cells of one line, or one per line; NaN for "no value".
 
     Raises:
         FormatError: a cell is no number, or infinite.
@@ -126,10 +126,10 @@ def rows_of(
 
 
 def masked(heights: FloatArray, path: Path) -> tuple[FloatArray, BoolArray]:
-    """Return heights [m] with 0 where NaN stands, and the mask of those that are there.
+    """Return heights [m] with 0 for NaN, and the mask of valid ones.
 
     Raises:
-        FormatError: no height is there, or one is beyond what instruments measure.
+        FormatError: no height is valid, or one is above the limit.
     """
     valid = ~np.isnan(heights)
     if not valid.any():

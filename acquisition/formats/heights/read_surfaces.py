@@ -64,18 +64,18 @@ def read_surface(
             maker's own format. A Mitutoyo SJ CSV or a Mahr TXT needs `columns` too.
             Formats of other packages take precedence.
         columns: what the columns of a table hold and in which unit, for example
-            ``"x:mm,y:mm,z:um"``, or ``"z:um@0.5um"`` for heights alone; it overrules
-            what the content looks like. Formats that state their units, and tables
-            with units above their columns, do without.
+            ``"x:mm,y:mm,z:um"``, or ``"z:um@0.5um"`` for heights alone; it overrides
+            the recognised format. Formats that state their units, and tables with units
+            above their columns, do without.
         name: of the surface; the name of the file without its ending if None.
 
     Returns:
-        Heights in metres with a mask of the points that are there. Provenance tells
-        what the file was taken for and why, and holds `cautions`.
+        Heights in metres with a mask of the points that are there. The provenance holds
+        the recognised format, its reason, and `cautions`.
 
     Raises:
         BadData: the file cannot be opened, or is none of these; the subclass and the
-            message say why and what to do.
+            message give reason and remedy.
         UsageError: `columns` names something unknown, or two packages take the file.
     """
     path = Path(path)

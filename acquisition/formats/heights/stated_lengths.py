@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lengths as files print them, with the half digit by which print may err."""
+"""Printed lengths, with their rounding of half a digit."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ class StatedLength:
     half_digit: float
 
     def agrees(self, other: "StatedLength") -> bool:
-        """Tell whether two printed lengths may be the same one, rounded."""
+        """Return whether two printed lengths agree within rounding."""
         rounding = self.half_digit + other.half_digit
         return abs(self.value - other.value) <= rounding * (1 + 1e-9)
 

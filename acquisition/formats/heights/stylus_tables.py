@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Stylus profiles of which the maker documents the layout, but not the pitch.
+"""Stylus profiles whose layout the manufacturer documents, but not the pitch.
 
-Mitutoyo SJ-301, profile points as CSV (manual 99MBB091A, page 8-4): the first line is a
+Mitutoyo SJ-301, profile points as CSV (manual 99MBB091A, p. 8-4): the first line is a
 comment in quotes and the number of points, settings follow line by line, and the
 heights stand in the last column from the first line or the second on. Neither the unit
 of the heights nor their distance is in the file.
 
-Mahr MarSurf M 300, PS1 and M 400, profile as TXT (manual of the M 300, page 39): whole
-numbers that turn into micrometres by the vertical resolution behind the word RES. Their
+Mahr MarSurf M 300, PS1 and M 400, profile as TXT (manual of the M 300, p. 39): whole
+numbers, converted to micrometres by the vertical resolution after the word RES. Their
 distance is in no public document.
 
 What is missing comes from ``--columns z:um@0.5um``: heights in um, 0.5 um apart.
@@ -47,7 +47,7 @@ _EXAMPLE = "--columns 'z:um@0.5um'"
 
 
 def is_stylus_list(lines: Sequence[str]) -> bool:
-    """Tell by its first lines whether a text is one of the two."""
+    """Recognise one of the two by its first lines."""
     return _is_mitutoyo(lines) or _resolution_line(lines) is not None
 
 
@@ -80,10 +80,10 @@ def parse_stylus_list(
             f"its heights; say them as set on the instrument, for example {_EXAMPLE}"
         )
     if mitutoyo:
-        heights, told = _mitutoyo(lines, path)
+        heights, note = _mitutoyo(lines, path)
         heights = heights * column.factor
     else:
-        heights, told = _mahr(lines, path)
+        heights, note = _mahr(lines, path)
     plain, valid = masked(heights, path)
     return Profile(
         name=name,
@@ -101,7 +101,7 @@ def parse_stylus_list(
                 else "whole numbers below a resolution RES",
                 spacing=f"{column.spacing:g} m, as given",
                 missing_points=int((~valid).sum()),
-                told=told,
+                told=note,
             ),
         ),
     )
@@ -163,7 +163,7 @@ def _mahr(lines: Sequence[str], path: Path) -> tuple[FloatArray, str]:
 
 
 def _is_data(lines: Sequence[str], k: int) -> bool:
-    """Tell whether three whole numbers stand in a row from line k on."""
+    """Return whether there are three consecutive whole numbers from line k on."""
     return all(_WHOLE.fullmatch(line) is not None for line in lines[k : k + 3])
 
 

@@ -38,7 +38,7 @@ _HEADER_LINES = 2
 
 
 def is_surfcom(lines: Sequence[str], path: Path) -> bool:
-    """Tell by the ending, or by a count that fits, whether a file is such a profile."""
+    """Recognise such a profile by its suffix, or by a matching count."""
     if path.suffix.lower() in SUFFIXES:
         return True
     head = [line.strip() for line in lines[:_HEADER_LINES]]
@@ -52,14 +52,14 @@ def parse_surfcom(lines: Sequence[str], path: Path, origin: Step, name: str) -> 
 
     Args:
         lines: of the file.
-        path: the file, for messages; its ending tells what was exported.
+        path: the file, for messages; its suffix gives the kind of profile.
         origin: what is known of the file, put first into the provenance.
         name: of the profile.
 
     Returns:
         The heights [m] at a spacing of length / (points - 1) [m]; of the nominal
         length, or of the evaluated one where the TX3 file shows that the trace ended
-        early. A caution says so, and where heights lie at the limit of the range.
+        early. A caution reports this, and heights at the limit of the range.
 
     Raises:
         FormatError: the header is none, the number of heights is not the declared, or

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Settings of a Surfcom trace: the TX3 file that the instrument writes beside it.
 
-One key and value a line, in the language of the instrument, with a tab between them.
+One key and value per line, in the language of the instrument, with a tab between them.
 """
 
 from dataclasses import dataclass
@@ -112,7 +112,7 @@ def _cutoffs(pairs: list[tuple[str, str]]) -> dict[str, float]:
 
 
 def _first(pairs: list[tuple[str, str]], words: tuple[str, ...]) -> StatedLength | None:
-    """Return the first length above zero behind one of the keys."""
+    """Return the first length above zero after one of the keys."""
     for key, cell in pairs:
         if not key.startswith(words):
             continue

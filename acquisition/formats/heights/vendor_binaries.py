@@ -42,7 +42,7 @@ SUFFIXES = frozenset(
 
 
 def is_vendor_name(path: Path) -> bool:
-    """Tell by its ending whether a file may be one of a maker's formats."""
+    """Recognise by its suffix a file that may have a vendor's format."""
     return path.suffix.lower() in SUFFIXES
 
 
@@ -121,7 +121,7 @@ def _require_sane_container(path: Path) -> None:
         with zipfile.ZipFile(path) as container:
             entries = container.infolist()
     except (zipfile.BadZipFile, ValueError, NotImplementedError, EOFError, OSError):
-        return  # no container, or one whose damage the reader will tell
+        return  # no container, or one whose damage the reader reports
     # A parsed XML takes some thirty times its length.
     xml = sum(e.file_size for e in entries if e.filename.lower().endswith(_XML))
     require_room(path, 3 * sum(entry.file_size for entry in entries) + 30 * xml)

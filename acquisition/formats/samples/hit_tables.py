@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Hits from plain tables: one row a time stamp, one column a channel."""
+"""Hits from plain tables: one row per time stamp, one column per channel."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -48,8 +48,8 @@ def read_recording(
 
     Args:
         path: delimited text or a .npy file.
-        columns: what each column holds and in which unit; see `parse_columns`. None
-            where the header of the table says it.
+        columns: what each column holds and in which unit; see `parse_columns`. None if
+            the header of the table states it.
         name: of the recording; the name of the file without its ending if None.
         point: where the hammer struck.
 
@@ -94,7 +94,7 @@ def read_recording(
 
 
 def _origin(table: Table, columns: str, steps: EvenSteps, second: float) -> Step:
-    """Tell what the recording was made of; `second` is the unit of its time [s]."""
+    """Return the origin of the recording; `second` is the unit of its time [s]."""
     return step(
         "import",
         file=table.path.name,
@@ -129,7 +129,7 @@ def _what_to_type(table: Table) -> str:
     items = first[: max(2, count)] + [first[-1]] * (count - len(first))
     return (
         f"{named(table.path)} has {count} columns and {units_words(table)}; "
-        f"say what they are, for example --columns '{','.join(items)}'"
+        f"describe them, for example --columns '{','.join(items)}'"
     )
 
 

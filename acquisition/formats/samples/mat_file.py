@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""MATLAB files from strangers: named rows of real numbers, and nothing else.
+"""Read foreign MATLAB files: named rows of real numbers only.
 
-A MAT file may hold objects, functions and nested structures, and says in a few bytes
-that it holds gigabytes. So the list of variables is read first, without their values;
-only the ones asked for are read, and only if they are plain numbers of a sane size.
+A MAT file may hold objects, functions and nested structures, and claim gigabytes in a
+few bytes. So the list of variables is read first, without their values; only the
+requested ones are read, and only if they are plain numbers of a plausible size.
 """
 
 import math
@@ -41,13 +41,13 @@ def read_mat_rows(path: Path | str, names: Sequence[str]) -> tuple[FloatArray, .
         names: of the variables.
 
     Returns:
-        One array a name, shape (n,), finite, in the order of `names`.
+        One array per name, shape (n,), finite, in the order of `names`.
 
     Raises:
         BadData: it cannot be opened, or a value is not finite.
-        FormatError: it is no such file, lacks a variable, or holds something else
-            than a row of numbers in it.
-        HostileFile: it claims more than a measurement would hold.
+        FormatError: it is no such file, lacks a variable, or holds something other than
+            a row of numbers.
+        HostileFile: it claims more than a measurement can hold.
     """
     path = Path(path)
     _require_mat(path)
@@ -92,7 +92,7 @@ def _require_mat(path: Path) -> None:
 
 
 def _require_sane_unpacked(path: Path) -> None:
-    """Walk over the variables: none may be cut short, or unfold into gigabytes."""
+    """Check that no variable is truncated, or unpacks to gigabytes."""
     with path.open("rb") as file:
         order = {b"IM": "<", b"MI": ">"}.get(file.read(_HEADER)[126:128])
         total = count = 0
@@ -121,14 +121,14 @@ def _require_sane_unpacked(path: Path) -> None:
 
 
 def _unpacked_size(packed: bytes, most: int) -> int:
-    """Return how many bytes a packed element unfolds into, or `most` if more."""
+    """Return the unpacked size of an element [bytes], or `most` if larger."""
     unpacker, total = zlib.decompressobj(), 0
     try:
         while packed and total < most:
             total += len(unpacker.decompress(packed, _PIECE))
             packed = unpacker.unconsumed_tail
     except zlib.error:
-        return total  # the reader will say what is damaged
+        return total  # the reader reports the damage
     return total
 
 
@@ -165,8 +165,8 @@ def _check(
     long = [size for size in shape if size != 1]
     if len(long) != 1 or long[0] < 1:
         raise FormatError(
-            f"{named(path)}: variable {name!r} has shape {shape}, one row is wanted; "
-            "save each channel as a variable of its own"
+            f"{named(path)}: variable {name!r} has shape {shape}, one row is needed; "
+            "save each channel as a separate variable"
         )
     if long[0] > _MOST_SAMPLES:
         raise HostileFile(
@@ -188,7 +188,7 @@ def _load(path: Path, names: Sequence[str]) -> list[object]:
 
 
 def _damage() -> tuple[type[Exception], ...]:
-    """Return what damaged content makes SciPy's reader raise."""
+    """Return the exceptions of SciPy's reader for damaged content."""
     from scipy.io.matlab import MatReadError
 
     plain = (ValueError, TypeError, KeyError, IndexError, OSError, EOFError)

@@ -41,8 +41,8 @@ def read_mat_recording(path: Path, *, columns: str | None, point: str) -> Record
     if columns is None:
         found = ", ".join(list_mat_variables(path)[:12]) or "none"
         raise UnitError(
-            f"{named(path)} holds the variables {found} and no units; say what they "
-            "are, for example --columns 'time.t:s,force.F:N,acceleration.a1:m/s^2'"
+            f"{named(path)} holds the variables {found} and no units; describe them, "
+            "for example --columns 'time.t:s,force.F:N,acceleration.a1:m/s^2'"
         )
     time, rest = _parted(columns)
     channels = parse_columns(rest)

@@ -54,7 +54,7 @@ def read_rattlesnake(
 
     Args:
         path: of the netCDF-4 file.
-        columns: what the channels hold, where its units are none of ours.
+        columns: what the channels hold, where its units are unknown.
         point: where the hammer struck.
 
     Returns:

@@ -89,8 +89,8 @@ def _require_few_segments(path: Path, size: int) -> None:
     """Walk over the segments: npTDMS takes a tenth of a millisecond for each.
 
     Raises:
-        HostileFile: there are more of them, or more is said about channels, than any
-            measurement has.
+        HostileFile: there are more of them, or longer descriptions of channels, than in
+            any measurement.
     """
     at = segments = said = 0
     with path.open("rb") as file:
@@ -98,7 +98,7 @@ def _require_few_segments(path: Path, size: int) -> None:
             file.seek(at)
             lead = file.read(_LEAD)
             if lead[:4] != b"TDSm":
-                return  # the reader will say what is damaged
+                return  # the reader reports the damage
             following, about = struct.unpack("<QQ", lead[12:])
             segments, said = segments + 1, said + min(about, size)
             if segments > _MOST_SEGMENTS or said > _MOST_SAID:

@@ -35,7 +35,7 @@ SUFFIXES = (".uff", ".unv")
 # As pyuff finds them: binary values need not end with a line.
 _EDGE = re.compile(rb"    -1(?=[\r\n]|$| {74})")
 _HEADER = 9
-"""Lines of a data set up to the one that says how many values there are."""
+"""Lines of a data set up to the one with the number of values."""
 _MOST_SETS = 10_000
 _MOST_BYTES = 2**28
 _BINARY_SET = re.compile(rb"\n {4}58b")

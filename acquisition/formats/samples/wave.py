@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Samples from WAV files: their numbers have no unit, the user says what they are."""
+"""Samples from WAV files: their numbers have no unit, which the user must give."""
 
 import math
 import struct
@@ -56,7 +56,7 @@ def read_wave(
     if columns is None:
         raise UnitError(
             f"{named(path)} has {values.shape[1]} channels; WAV states no units: "
-            "say what they are, for example --columns 'force:V@2.25mV/N,acceleration:"
+            "describe them, for example --columns 'force:V@2.25mV/N,acceleration:"
             "V@10mV/g' --full-scale 10"
         )
     scale = _scale(path, values, full_scale)
@@ -84,8 +84,8 @@ def _scale(path: Path, values: NDArray[Any], full_scale: float | None) -> float:
     """Return what a step of the numbers stands for.
 
     Raises:
-        UnitError: the numbers are whole and nobody said what the largest is.
-        UsageError: it is said to be none.
+        UnitError: the numbers are integers and the full scale is not given.
+        UsageError: the full scale is not above zero.
     """
     if full_scale is not None and not 0.0 < full_scale < math.inf:
         raise UsageError(
@@ -96,7 +96,7 @@ def _scale(path: Path, values: NDArray[Any], full_scale: float | None) -> float:
         return 1.0 if full_scale is None else full_scale
     if full_scale is None:
         raise UnitError(
-            f"{named(path)} holds whole numbers; say what the largest stands for "
+            f"{named(path)} holds whole numbers; give the value of the largest "
             "in the unit of --columns, for example --full-scale 10"
         )
     return full_scale / (np.iinfo(values.dtype).max + 1.0)

@@ -274,8 +274,11 @@ def integrate_link_force(
         count = min(LANES, n_records - first)
         own_poles = np.full((n_modes, LANES), -1.0 + 0.0j)
         own_residues = np.zeros((n_modes, LANES), dtype=np.complex128)
-        own_poles[:, :count] = poles[:, first : first + count]
-        own_residues[:, :count] = residues[:, first : first + count]
+        # One by one: the check of shapes behind a slice takes seconds to compile.
+        for m in range(n_modes):
+            for k in range(count):
+                own_poles[m, k] = poles[m, first + k]
+                own_residues[m, k] = residues[m, first + k]
         w = _made_ready(own_poles, own_residues, dt)
         _integrate_lanes(displacement, velocity, w, laws, needs_velocity, first, out)
     return out

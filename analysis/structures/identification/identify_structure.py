@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Stiffness and damping of joints from what was measured of a structure."""
+"""Stiffness and damping of joints from measurements of a structure."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -57,9 +57,9 @@ from jointbench.analysis.structures.reduction.reduced_model import (
     frequency_bound,
 )
 
-# The model does not fit if noise alone would do worse this seldom.
-_MISFIT = 1e-3
-# Chi2 of measurements that leave no degree of freedom fits below three sd.
+# The model does not fit if the probability of a larger chi2 is below this.
+_POOR_FIT = 1e-3
+# Largest chi2 of a fit without degrees of freedom: three sd.
 _NO_FREEDOM = 9.0
 # Rivals further away than this many standard deviations make a value ambiguous ...
 _RIVAL_SD = 3.0
@@ -73,7 +73,7 @@ _ROUNDING = 1e-7
 
 @dataclass(frozen=True, slots=True)
 class StructureSearch:
-    """How the joints of a structure are sought.
+    """Settings of the search for the joints of a structure.
 
     Attributes:
         starts: of the search over the box of the reduction.
@@ -102,16 +102,16 @@ def identify_structure(
     Args:
         model: the reduced structure.
         evidence: modes or FRFs of one or several states (torques).
-        known: values of what is not sought.
+        known: values of the other parameters.
         sought: names ``"<joint>.<direction>"``; default all.
-        shared: names that all states have in common.
-        search: how it is sought; None for the defaults.
-        structure: of which the optimum is checked by one full solve; None skips it.
+        shared: names common to all states.
+        search: settings; None for the defaults.
+        structure: for a check of the optimum by one full solve; None skips it.
 
     Returns:
-        Values with standard deviations (enlarged where the misfit shows that the
-        given uncertainties are too small), every distinct solution, and what to
-        measure next for what is not identifiable.
+        Values with standard deviations (enlarged where chi2 shows that the given
+        uncertainties are too small), every distinct solution, and what to measure next
+        for parameters that are not identifiable.
 
     Raises:
         BadData: names do not exist, or more modes were measured than predicted.
@@ -177,7 +177,7 @@ def _open_reason(
     sd: float,
     unit: str,
 ) -> str:
-    """Say why a parameter is not identifiable; empty if it is."""
+    """Return why a parameter is not identifiable; empty if it is."""
     best, rivals = standing[0], standing[1:]
     if not sd < LARGEST_LOG_SD:
         return (
@@ -192,7 +192,7 @@ def _open_reason(
         return ""
     logs = [float(one.unknowns[at]) for one in (best, *others)]
     return (
-        f"not identifiable: {_listing(np.exp(np.sort(logs)), unit)} fit alike; "
+        f"not identifiable: {_listing(np.exp(np.sort(logs)), unit)} fit equally well; "
         + what_separates(problem, best, others[0])
     )
 
@@ -200,15 +200,15 @@ def _open_reason(
 def _listed(
     optima: Sequence[Optimum], standing: Sequence[Optimum]
 ) -> tuple[Optimum, ...]:
-    """Return the solutions to list: the best ones, and of each unknown the extremes."""
+    """Return the solutions to list: the best ones, and the extremes of each unknown."""
     value = np.array([one.unknowns for one in standing])
     wanted = {*range(_LISTED), *value.argmin(axis=0), *value.argmax(axis=0)}
-    # Those that stand come first among all.
+    # The admissible ones come first.
     return tuple(one for at, one in enumerate(optima) if at in wanted)
 
 
 def _listing(values: FloatArray, unit: str) -> str:
-    """Name a few values, or say how many there are and how far they reach."""
+    """List a few values, or give their number and range."""
     if values.size <= _NAMED:
         return " or ".join(f"{one:.3g}" for one in values) + f" {unit}"
     return f"{values.size} values from {values[0]:.3g} to {values[-1]:.3g} {unit}"
@@ -217,9 +217,9 @@ def _listing(values: FloatArray, unit: str) -> str:
 def _judge(
     parameters: Sequence[JointParameter], best: Optimum, freedom: int, rivals: bool
 ) -> tuple[IdentificationVerdict, tuple[str, ...]]:
-    """Return the verdict on the whole, and its reasons."""
+    """Return the verdict on the identification, and its reasons."""
     reasons = [f"{one.name}: {one.reason}" for one in parameters if one.reason]
-    limit = chi2_distribution.isf(_MISFIT, freedom) if freedom > 0 else _NO_FREEDOM
+    limit = chi2_distribution.isf(_POOR_FIT, freedom) if freedom > 0 else _NO_FREEDOM
     if best.chi2 > limit:
         line = (
             f"chi2 is {best.chi2:.3g} for {freedom} degrees of freedom: no joint "
@@ -249,7 +249,7 @@ def _solution(
 
 
 def _state_fit(problem: StiffnessProblem, best: Optimum, row: int) -> StateFit:
-    """Return measured beside predicted modes of one state."""
+    """Return measured and predicted modes of one state."""
     model, evidence = problem.model, problem.evidence[row]
     values = values_of(problem, best.unknowns, row)
     state = modal_state(model, values.stiffness)

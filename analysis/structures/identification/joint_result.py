@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the identification of a structure's joints answers."""
+"""Result of the identification of a structure's joints."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ from jointbench.analysis.lumped.identified import IdentificationVerdict, JointPa
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LikelihoodProfile:
-    """How the best fit worsens as one parameter is held elsewhere.
+    """Best fit as a function of one fixed parameter.
 
     Attributes:
-        value: of the parameter [SI], shape (n_points,), rising.
-        chi2: best of all others at that value [-], shape (n_points,).
+        value: of the parameter [SI], shape (n_points,), ascending.
+        chi2: best over all others at that value [-], shape (n_points,).
         low: lower end of the 95 % interval; None where it is open.
         high: upper end of the 95 % interval; None where it is open.
     """
@@ -32,12 +32,12 @@ class LikelihoodProfile:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JointSolution:
-    """A set of parameters that is locally best, or as good along what is open.
+    """A locally optimal set of parameters, or one of a continuum.
 
     Attributes:
         parameters: value [SI] by name.
-        chi2: misfit [-].
-        admissible: whether the measurement leaves it standing beside the best.
+        chi2: sum of squared, whitened residuals [-].
+        admissible: whether the measurement does not exclude it against the best.
     """
 
     parameters: Mapping[str, float]
@@ -51,7 +51,7 @@ class StateFit:
 
     Attributes:
         label: of the state.
-        measured: frequencies [Hz]; empty if the state has FRFs alone.
+        measured: frequencies [Hz]; empty if the state has only FRFs.
         predicted: of the modes paired with them [Hz], or all elastic ones.
         damping_ratio: predicted [-].
         mac: between measured and predicted shapes [-], or empty.
@@ -72,14 +72,14 @@ class StateFit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FullCheck:
-    """The optimum, solved once more with the whole mesh.
+    """The optimum, solved again with the full mesh.
 
     Attributes:
         label: of the state.
         reduced: elastic frequencies of the reduced model [Hz].
-        full: of the whole mesh [Hz], same shape.
-        bound: what the reduced model promised at most [Hz], same shape.
-        agrees: whether the difference stays within the promise.
+        full: of the full mesh [Hz], same shape.
+        bound: error bound of the reduced model [Hz], same shape.
+        agrees: whether the difference is within the bound.
     """
 
     label: str
@@ -98,15 +98,15 @@ class StructureIdentification:
     """Joint parameters of a structure from measurements.
 
     Attributes:
-        verdict: how far they are determined.
-        reasons: one line for each thing the verdict rests on.
-        parameters: stiffness and damping of every direction sought.
+        verdict: how far the parameters are determined.
+        reasons: one line for each basis of the verdict.
+        parameters: stiffness and damping of every identified direction.
         log_covariance: of ln parameters, shape (n_parameters, n_parameters).
-        solutions: distinct ones, the best first; of what is open, with the softest and
-            the stiffest found.
-        profiles: by name of the parameter; empty if not asked for.
-        states: measured beside predicted.
-        full_check: of the first state's optimum; None if not asked for.
+        solutions: distinct ones, the best first; for undetermined parameters with the
+            softest and the stiffest found.
+        profiles: by name of the parameter; empty if not requested.
+        states: measured and predicted modes.
+        full_check: of the first state's optimum; None if not requested.
         degrees_of_freedom: rows minus unknowns.
     """
 
@@ -128,7 +128,7 @@ class StructureIdentification:
         """Return the parameter called `name`.
 
         Raises:
-            KeyError: it was not sought.
+            KeyError: it was not identified.
         """
         return {one.name: one for one in self.parameters}[name]
 

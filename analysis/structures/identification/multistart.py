@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Many starts, one least-squares descent each, and what is distinct among the ends."""
+"""Least-squares descents from many starts, and their distinct ends."""
 
 from collections.abc import Sequence
 
@@ -20,11 +20,11 @@ _DAMPING_START = 1e-2
 # Two ends are one solution if every parameter agrees to this in ln.
 _SAME = 0.02
 _MOST_STEPS = 100
-# So many branches of solutions are followed along what is open ...
+# Most branches of solutions that are followed along undetermined unknowns ...
 _FOLLOWED = 4
-# ... with each open unknown held at so many values, over the whole box.
+# ... and number of values of each such unknown over the whole box.
 _HELD = 12
-# Chi2 that differs by less than this is the same but for rounding.
+# Chi2 that differ by less than this are equal up to rounding.
 _TIE = 1e-6
 # More than this standard deviation in ln counts as not identifiable (100 %).
 LARGEST_LOG_SD = 1.0
@@ -33,15 +33,15 @@ LARGEST_LOG_SD = 1.0
 def descend(
     problem: StiffnessProblem, start: FloatArray, fixed: Sequence[int] = ()
 ) -> Optimum:
-    """Go down from one start, some unknowns held.
+    """Minimise from one start, with some unknowns fixed.
 
     Args:
-        problem: what is sought.
+        problem: of the identification.
         start: logarithms, shape (n_unknowns,).
-        fixed: numbers of the unknowns that stay.
+        fixed: numbers of the fixed unknowns.
 
     Returns:
-        Where it ends.
+        The end of the descent.
     """
     parts = states_apart(problem)
     if len(parts) == 1:
@@ -54,7 +54,7 @@ def descend(
 
 
 def _joined(problem: StiffnessProblem, ends: Sequence[Optimum]) -> Optimum:
-    """Put the ends of all states together."""
+    """Join the ends of all states."""
     unknowns = np.empty(problem.size)
     rows = sum(end.slopes.shape[0] for end in ends)
     slopes, begin = np.zeros((rows, problem.size)), 0
@@ -109,16 +109,16 @@ def _descend(
 def find_optima(
     problem: StiffnessProblem, *, starts: int, seed: int
 ) -> tuple[Optimum, ...]:
-    """Search from many starts and keep what is distinct, the best first.
+    """Search from many starts and keep the distinct ends, the best first.
 
     Args:
-        problem: what is sought.
+        problem: of the identification.
         starts: points of a Latin hypercube over the logarithms of the box.
         seed: of the points.
 
     Returns:
-        Distinct ends. Where states share nothing each is searched on its own, and a
-        rival is another end of one state beside the best of all others.
+        Distinct ends. States without shared unknowns are searched separately; a rival
+        is then another end of one state with the best of all others.
     """
     searched = [
         _search(part, starts, seed + at)
@@ -136,14 +136,14 @@ def find_optima(
 
 
 def _search(problem: StiffnessProblem, starts: int, seed: int) -> tuple[Optimum, ...]:
-    """Search a problem as it is; see `find_optima`."""
+    """Search an undivided problem; see `find_optima`."""
     found = [descend(problem, start) for start in _starts(problem, starts, seed)]
     limit = min(found, key=lambda end: end.chi2).limit()
     standing = [end for end in found if end.chi2 < limit]
     for branch in _branches(problem, standing)[:_FOLLOWED]:
         along = _open_ways(problem, branch, limit)
         if along:
-            # Where chance starts end along what is open means nothing.
+            # Ends of random starts along undetermined unknowns are arbitrary.
             floor = min(end.chi2 for end in along) - _TIE * branch.noise()
             found = [end for end in found if not _idle(end, branch, floor)] + along
     return _distinct(in_order(problem, found))
@@ -152,8 +152,8 @@ def _search(problem: StiffnessProblem, starts: int, seed: int) -> tuple[Optimum,
 def in_order(problem: StiffnessProblem, ends: Sequence[Optimum]) -> list[Optimum]:
     """Sort ends, the best first.
 
-    Differences of chi2 far below one are rounding and must not decide: of ends that
-    tie, the least determined leads, then the one nearest to the middle of the box.
+    Differences of chi2 far below one are rounding and must not decide: among equal ends
+    the least determined is first, then the one closest to the middle of the box.
     """
     best = min(ends, key=lambda end: end.chi2)
     tie = best.chi2 + _TIE * best.noise()
@@ -168,12 +168,12 @@ def in_order(problem: StiffnessProblem, ends: Sequence[Optimum]) -> list[Optimum
 
 
 def is_open(end: Optimum) -> BoolArray:
-    """Tell which unknowns the measurement leaves open around an end."""
+    """Return which unknowns are not determined around an end."""
     return np.asarray(np.diag(end.covariance()) * end.noise() >= LARGEST_LOG_SD**2)
 
 
 def _branches(problem: StiffnessProblem, ends: Sequence[Optimum]) -> list[Optimum]:
-    """Return one end of each branch that is open somewhere."""
+    """Return one end of each branch with an undetermined unknown."""
     kept: list[Optimum] = []
     for one in in_order(problem, ends) if ends else []:
         if is_open(one).any() and not any(_same_branch(one, other) for other in kept):
@@ -182,13 +182,13 @@ def _branches(problem: StiffnessProblem, ends: Sequence[Optimum]) -> list[Optimu
 
 
 def _same_branch(one: Optimum, other: Optimum) -> bool:
-    """Tell whether two ends agree in all that both determine."""
+    """Return whether two ends agree in all unknowns that both determine."""
     determined = ~(is_open(one) | is_open(other))
     return bool(np.all(np.abs(one.unknowns - other.unknowns)[determined] < _SAME))
 
 
 def _idle(end: Optimum, branch: Optimum, floor: float) -> bool:
-    """Tell whether an end is but another point of a branch, and no better."""
+    """Return whether an end is only another point of a branch, and no better."""
     along = _same_branch(end, branch) and bool(np.any(is_open(end)))
     return along and end.chi2 >= floor
 
@@ -206,10 +206,10 @@ def _distinct(ends: Sequence[Optimum]) -> tuple[Optimum, ...]:
 def _open_ways(
     problem: StiffnessProblem, branch: Optimum, limit: float
 ) -> list[Optimum]:
-    """Return fits with each open unknown held all over the box, as far as they stand.
+    """Return the admissible fits with each undetermined unknown fixed over the box.
 
-    A descent along a valley stops wherever it begins, so that chance starts alone find
-    as much of it as rounding lets them.
+    A descent in a valley stops near its start, so random starts alone find an arbitrary
+    part of it.
     """
     ends = []
     for at in np.flatnonzero(is_open(branch)):
@@ -227,7 +227,7 @@ def _open_ways(
 
 
 def with_value(unknowns: FloatArray, at: int, value: float) -> FloatArray:
-    """Return unknowns of which one is replaced."""
+    """Return unknowns with one value replaced."""
     moved = unknowns.copy()
     moved[at] = value
     return moved

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which further measurement would identify a parameter that is open."""
+"""Propose a measurement that would identify an undetermined parameter."""
 
 import numpy as np
 
@@ -14,25 +14,25 @@ from jointbench.analysis.structures.reduction.predict_modes import (
     modal_state,
 )
 
-# What a hammer test usually reaches: frequency 0.2 %, damping ratio 5 % of its value.
+# Usual uncertainty of a hammer test: frequency 0.2 %, damping ratio 5 % of its value.
 _FREQUENCY_SD = 0.002
 _DAMPING_SD = 0.05
 # A measurement helps if it brings the standard deviation below this in ln.
 _HELPS = 0.5
-# Frequencies of two solutions differ if they do so by more than this, relative.
-_TELLS_APART = 0.003
+# Least relative difference of distinguishable frequencies of two solutions.
+_DISTINGUISHABLE = 0.003
 
 
 def what_to_measure(problem: StiffnessProblem, best: Optimum, at: int) -> str:
     """Name the mode whose frequency or damping would determine a parameter best.
 
     Args:
-        problem: what is sought.
+        problem: of the identification.
         best: solution.
-        at: number of the open parameter.
+        at: number of the undetermined parameter.
 
     Returns:
-        One clause that says what to measure and how well that would do.
+        One clause on what to measure and the resulting uncertainty.
     """
     row = int(np.flatnonzero(np.any(problem.columns == at, axis=1))[0])
     state = modal_state(problem.model, values_of(problem, best.unknowns, row).stiffness)
@@ -56,7 +56,8 @@ def what_to_measure(problem: StiffnessProblem, best: Optimum, at: int) -> str:
     if problem.damping[at] and ratio.max() > 0:
         return "measure FRFs with damping, at sensors on both sides of the joint"
     return (
-        "no single mode tells; measure FRFs or mode shapes at sensors on both sides of "
+        "no single mode determines it; measure FRFs or mode shapes at sensors on both "
+        "sides of "
         f"the joint, up to {frequency[problem.model.modes - 1]:.0f} Hz"
     )
 
@@ -65,12 +66,12 @@ def what_separates(problem: StiffnessProblem, best: Optimum, rival: Optimum) -> 
     """Name the mode whose frequency differs most between two solutions.
 
     Args:
-        problem: what is sought.
+        problem: of the identification.
         best: solution.
-        rival: another one that fits alike.
+        rival: another one that fits equally well.
 
     Returns:
-        One clause that says what to measure.
+        One clause on what to measure.
     """
     found = []
     for row in range(len(problem.evidence)):
@@ -85,15 +86,15 @@ def what_separates(problem: StiffnessProblem, best: Optimum, rival: Optimum) -> 
         frequency = [np.sqrt(one[at]) / (2 * np.pi) for one in level]
         found.append((float(ratio[at]), at + 1, frequency))
     ratio_of, number, (first, second) = max(found)
-    if ratio_of < _TELLS_APART:
+    if ratio_of < _DISTINGUISHABLE:
         return "no frequency separates them; measure FRFs or mode shapes on both sides"
     return f"mode {number} separates them: {first:.0f} Hz or {second:.0f} Hz"
 
 
 def _sd_with(information: FloatArray, slope: FloatArray, at: int) -> float:
-    """Return the standard deviation in ln once one more row is known."""
+    """Return the standard deviation in ln after one more row."""
     whole = information + np.outer(slope, slope)
-    # Scaled, so that what nothing decides does not drown what is decided.
+    # Scaled, so that undetermined unknowns do not spoil the determined ones.
     whole = whole + 1e-12 * np.eye(whole.shape[0])
     return float(np.sqrt(np.linalg.inv(whole)[at, at]))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Intervals of parameters: of one solution, or of all that the measurement admits."""
+"""Intervals of parameters, of one solution or of all admissible ones."""
 
 from collections.abc import Sequence
 
@@ -22,7 +22,7 @@ Interval = tuple[float | None, float | None]
 # 95 % of a normal distribution, and of chi-squared of one degree of freedom.
 _Z = 1.959963984540054
 LEVEL = _Z**2
-# An end is sought to this in ln.
+# Tolerance of an end in ln.
 _RESOLUTION = 0.02
 
 
@@ -44,17 +44,17 @@ def local_interval(end: Optimum, at: int, scale: float) -> Interval:
 def admissible_interval(
     problem: StiffnessProblem, standing: Sequence[Optimum], at: int, scale: float
 ) -> Interval:
-    """Return the union of the 95 % intervals of all solutions that stand.
+    """Return the union of the 95 % intervals of all admissible solutions.
 
     Args:
-        problem: what is sought.
+        problem: of the identification.
         standing: solutions, the best first.
         at: number of the unknown.
         scale: of the variances.
 
     Returns:
-        The ends of the union [SI]; None where the measurement admits everything up to
-        the bounds of the search.
+        The ends of the union [SI]; None where all values up to the bound of the search
+        are admissible.
     """
     variance = [one.covariance()[at, at] for one in standing]
     sd = np.sqrt(scale * np.array(variance))
@@ -65,7 +65,7 @@ def admissible_interval(
         reach = sign * (value + sign * _Z * np.where(known, sd, 0.0))
         furthest = float(reach.max())
         if not known.all():
-            # Of the solutions around which it is open the outermost goes on.
+            # Among the solutions that do not determine it, the outermost is followed.
             outer = np.where(known, -np.inf, sign * value)
             edge = _edge(problem, standing[int(np.argmax(outer))], at, bound, scale)
             furthest = max(furthest, np.inf if edge is None else sign * edge)
@@ -77,7 +77,7 @@ def admissible_interval(
 def _edge(
     problem: StiffnessProblem, start: Optimum, at: int, bound: float, scale: float
 ) -> float | None:
-    """Return how far one unknown may be held before chi2 exceeds its limit.
+    """Return the value of one unknown at which chi2 exceeds its limit.
 
     Returns:
         Logarithm; None if it does not before the bound.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile likelihood: hold one parameter, fit the others, see how chi2 grows."""
+"""Profile likelihood: chi2 over one fixed parameter, with the others fitted."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from jointbench.analysis.structures.identification.stiffness_problem import (
 
 # Steps away from the best value, in standard deviations.
 _STEPS = (0.5, 1.0, 1.5, 2.0, 2.5, 3.0)
-# A step is no larger than this in ln: a factor of about 4.5.
+# Largest step in ln: a factor of about 4.5.
 _LARGEST_STEP = 1.5
 
 
@@ -28,11 +28,11 @@ def profile_likelihood(
     """Follow the likelihood of every parameter away from its best value.
 
     Args:
-        problem: what is sought.
+        problem: of the identification.
         best: solution.
         covariance: of the logarithms.
         scale: chi2 over degrees of freedom, at least 1.
-        wanted: whether to do so at all; it costs some ten fits a parameter.
+        wanted: False skips the profiles, which cost about ten fits per parameter.
 
     Returns:
         Profiles by the names of the parameters. An interval is open where chi2 does
@@ -63,7 +63,7 @@ def profile_likelihood(
 def _walk(
     problem: StiffnessProblem, best: Optimum, at: int, sd: float, scale: float
 ) -> list[tuple[float, float]]:
-    """Hold one parameter ever further away; start each fit where the last ended."""
+    """Fix one parameter at increasing distance; start each fit at the last result."""
     points: list[tuple[float, float]] = []
     last = best.unknowns
     for step in _STEPS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is sought from what: unknowns, their bounds, and how far they miss."""
+"""The identification problem: unknowns, their bounds, and residuals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,14 +10,14 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
-    misfit,
+    evidence_residual,
 )
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 
-# A search may leave the box of the reduction by this factor at the most.
+# Largest factor by which a search may leave the box of the reduction.
 _BEYOND = 3.0
-# Damping is sought within these fractions of stiffness over frequency.
+# Bounds of damping as fractions of stiffness over frequency.
 _DAMPING_RANGE = (1e-7, 10.0)
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
@@ -27,15 +27,15 @@ _FLAT = 1e-6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StiffnessProblem:
-    """What is sought from what.
+    """Unknowns and measurements of an identification.
 
-    The unknowns are logarithms of stiffness and damping. Each state has its own,
-    except those that states share.
+    The unknowns are logarithms of stiffness and damping. Each state has its own
+    unknowns, except those that states share.
 
     Attributes:
         model: the reduced structure.
-        evidence: measurements, one a state.
-        columns: place among the unknowns of every stiffness, then every damping, of
+        evidence: measurements, one per state.
+        columns: index among the unknowns of every stiffness, then every damping, of
             each state, shape (n_states, 2 n_parameters); -1 where it is known.
         known: its logarithm where it is known, shape (n_states, 2 n_parameters).
         names: of the unknowns.
@@ -74,7 +74,7 @@ class Optimum:
     slopes: FloatArray
 
     def covariance(self) -> FloatArray:
-        """Return the covariance of the logarithms: large where nothing decides."""
+        """Return the covariance of the logarithms: large where undetermined."""
         _, size, direction = np.linalg.svd(self.slopes, full_matrices=False)
         floor = np.full(self.unknowns.size, _FLAT)
         floor[: size.size] = np.maximum(size, _FLAT)
@@ -85,13 +85,13 @@ class Optimum:
     def noise(self) -> float:
         """Return chi2 over its degrees of freedom, at least 1.
 
-        So much larger are the variances than those that were given.
+        This is the factor of the variances over the given ones.
         """
         freedom = self.slopes.shape[0] - self.unknowns.size
         return max(1.0, self.chi2 / freedom) if freedom > 0 else 1.0
 
     def limit(self) -> float:
-        """Return the chi2 below which a rival of this best solution stands."""
+        """Return the chi2 below which a rival of this best solution is admissible."""
         return self.chi2 + _SEPARATES * self.noise()
 
 
@@ -103,15 +103,15 @@ def pose_problem(
     sought: Sequence[str] | None = None,
     shared: Sequence[str] = (),
 ) -> StiffnessProblem:
-    """Lay out the unknowns.
+    """Set up the unknowns.
 
     Args:
         model: the reduced structure.
         evidence: one for each state.
-        known: values of what is not sought.
-        sought: names ``"<joint>.<direction>"``, of which stiffness and, if the
-            evidence knows of it, damping are sought; default all.
-        shared: names of those that all states have in common.
+        known: values of the other parameters.
+        sought: names ``"<joint>.<direction>"``, whose stiffness and, if measured,
+            damping are unknown; default all.
+        shared: names of those common to all states.
 
     Returns:
         The problem.
@@ -154,7 +154,7 @@ def pose_problem(
 
 def _known_logs(known: JointValues | None, count: int) -> FloatArray:
     if known is None:
-        # Undamped, as far as a logarithm can say it.
+        # Undamped: a finite logarithm of zero.
         return np.concatenate([np.zeros(count), np.full(count, -np.inf)])
     with np.errstate(divide="ignore"):
         both = np.concatenate([known.stiffness, known.damping])
@@ -185,7 +185,7 @@ def residuals(
     rows, slopes = [], []
     for at, evidence in enumerate(problem.evidence):
         values = values_of(problem, unknowns, at)
-        left, slope = misfit(problem.model, evidence, values)
+        left, slope = evidence_residual(problem.model, evidence, values)
         whole = np.zeros((left.size, problem.size))
         sought = problem.columns[at] >= 0
         np.add.at(whole.T, problem.columns[at][sought], slope[:, sought].T)
@@ -197,14 +197,14 @@ def residuals(
 def states_apart(
     problem: StiffnessProblem,
 ) -> tuple[tuple[StiffnessProblem, IntArray], ...]:
-    """Part a problem whose states share no unknown: each is a problem of its own.
+    """Split a problem whose states share no unknown into separate problems.
 
     Args:
-        problem: what is sought.
+        problem: of all states.
 
     Returns:
-        Problems and the places of their unknowns among all; the whole one where states
-        share anything.
+        Problems and the indices of their unknowns among all; the undivided one where
+        states share unknowns.
     """
     owners = [np.unique(row[row >= 0]) for row in problem.columns]
     if len(owners) < 2 or sum(own.size for own in owners) > problem.size:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What was measured of a structure, and how far a set of joint values misses it."""
+"""Measurements of a structure, and their residual for a set of joint values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,9 +28,9 @@ from jointbench.analysis.structures.reduction.reduced_model import (
 )
 from jointbench.signal.frf.frf import Frf
 
-# Modes nearer than this, relative in lambda, mix: their shapes have no derivative.
+# Modes closer than this, relative in lambda, mix: their shapes have no derivative.
 _CLOSEST = 1e-6
-# How much a frequency off by a factor of e counts against the MAC of a pair.
+# Weight of ln frequency against the MAC of a pair.
 _FREQUENCY_WEIGHT = 0.5
 
 
@@ -54,7 +54,7 @@ class StructureEvidence:
     inputs: FloatArray
 
     def __post_init__(self) -> None:
-        """Check that there is something, with its uncertainty."""
+        """Check that there are measurements, with their uncertainty."""
         if self.modes is None and self.frf is None:
             raise BadData(f"state {self.label!r} holds neither modes nor FRFs")
         if self.frf is not None and self.frf.variance is None:
@@ -68,20 +68,20 @@ class StructureEvidence:
 
     @property
     def damped(self) -> bool:
-        """Whether the measurement says anything about damping."""
+        """Whether the measurement contains damping."""
         return self.frf is not None or (
             self.modes is not None and self.modes.damping_ratio is not None
         )
 
 
-def misfit(
+def evidence_residual(
     model: ReducedModel, evidence: StructureEvidence, values: JointValues
 ) -> tuple[FloatArray, FloatArray]:
     """Compare prediction and measurement.
 
     Args:
         model: the reduced structure.
-        evidence: what was measured.
+        evidence: measurements.
         values: of its joints.
 
     Returns:
@@ -100,7 +100,7 @@ def misfit(
 def pair_modes(
     state: ModalState, candidates: IntArray, measured: MeasuredModes, rows: FloatArray
 ) -> IntArray:
-    """Say which predicted mode each measured one is.
+    """Assign a predicted mode to each measured one.
 
     Args:
         state: predicted modes.
@@ -254,7 +254,7 @@ def _shape_rows(
     pairs: IntArray,
     change: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Compare shapes, each scaled to fit; what scaling takes up is projected out."""
+    """Compare shapes, each scaled to fit; the scaling is projected out."""
     assert measured.shapes is not None
     assert measured.shape_sd is not None
     at_sensors = outputs @ state.shapes
@@ -297,7 +297,7 @@ def _frf_rows(
 
 
 def states(evidence: Sequence[StructureEvidence]) -> tuple[str, ...]:
-    """Return the labels; each names a state of its own.
+    """Return the labels; each state has a separate one.
 
     Raises:
         BadData: a label is given twice.

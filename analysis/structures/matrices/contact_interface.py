@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What two faces share, and the consistent springs spread over it.
+"""The shared area of two faces, and consistent springs over it.
 
 The energy of a joint is 1/2 sum_d (k_d / A) int (u_a - u_b)_d^2 dA with the elements'
-own shape functions. Faces need not match: they are cut along each other's edges.
+own shape functions. Meshes of the faces need not match: faces are cut along each
+    other's edges.
 """
 
 from collections.abc import Sequence
@@ -27,7 +28,7 @@ from jointbench.analysis.structures.meshes.polygons import (
     polygon_area,
 )
 
-# Faces this far apart, as a share of the size of the body, still lie in one plane.
+# Largest distance of faces in one plane, as a share of the size of the body.
 _ONE_PLANE = 1e-6
 # Normals this parallel are one: faces of a joint are plane.
 _PARALLEL = 1e-6
@@ -51,13 +52,13 @@ class Plane:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContactPoints:
-    """Quadrature points of what two faces share.
+    """Quadrature points of the shared area of two faces.
 
     Attributes:
         position: [m], shape (n_points, 3).
         weight: area of each [m^2], shape (n_points,).
-        first: element of the first body behind each point, shape (n_points,).
-        second: the same of the second body; without meaning for the ground.
+        first: element of the first body at each point, shape (n_points,).
+        second: the same of the second body; undefined for the ground.
     """
 
     position: FloatArray
@@ -88,7 +89,7 @@ def face_plane(mesh: Mesh, face: str) -> Plane:
 
 
 def shared_planes(first: Mesh, second: Mesh) -> list[Plane]:
-    """Return the planes in which faces of two bodies look at each other."""
+    """Return the planes with opposing faces of two bodies."""
     tolerance = _ONE_PLANE * max(first.size, second.size)
     own, others = _plane_table(first), _plane_table(second)
     found: list[Plane] = []
@@ -117,7 +118,7 @@ def _plane_table(mesh: Mesh) -> FloatArray:
 
 
 def _frame(normal: FloatArray) -> FloatArray:
-    """Return normal and tangents; tangents follow the global axes left over."""
+    """Return normal and tangents; tangents follow the remaining global axes."""
     lead = int(np.argmax(np.abs(normal)))
     rest = [axis for axis in range(3) if axis != lead]
     unit = normal / np.linalg.norm(normal)
@@ -131,13 +132,13 @@ def _frame(normal: FloatArray) -> FloatArray:
 def contact_points(
     first: Mesh, second: Mesh | None, plane: Plane, patches: Sequence[Patch] = ()
 ) -> ContactPoints:
-    """Find what the faces of two bodies share in a plane.
+    """Return quadrature points of the shared area of two bodies in a plane.
 
     Args:
         first: of the body whose outward normal is the plane's.
-        second: of the other body; None for the ground, which is everywhere.
+        second: of the other body; None for the ground, which is unbounded.
         plane: of the joint.
-        patches: parts of the plane that touch; none means all of it. They must not
+        patches: parts of the plane in contact; none means all of it. They must not
             overlap.
 
     Returns:
@@ -147,14 +148,14 @@ def contact_points(
     other = _faces_in(second, plane, -1.0) if second is not None else None
     pieces: list[tuple[FloatArray, int, int]] = []
     for polygon, cell in own:
-        for window, behind in _facing(polygon, other):
+        for window, opposite in _facing(polygon, other):
             shared = polygon if window is None else _shared(polygon, window)
             parts = (
                 [_shared(shared, patch.corners) for patch in patches]
                 if patches and shared.size
                 else [shared]
             )
-            pieces += [(part, cell, behind) for part in parts if part.shape[0] > 2]
+            pieces += [(part, cell, opposite) for part in parts if part.shape[0] > 2]
     return _quadrature(pieces, plane)
 
 
@@ -178,7 +179,7 @@ def _faces_in(mesh: Mesh, plane: Plane, sign: float) -> _Polygons:
 def _facing(
     polygon: FloatArray, other: _Polygons | None
 ) -> list[tuple[FloatArray | None, int]]:
-    """Return the polygons whose bounding boxes overlap; None stands for all."""
+    """Return the polygons whose bounding boxes overlap; None means all."""
     if other is None:
         return [(None, 0)]
     if not other:
@@ -231,14 +232,14 @@ def interpolation(mesh: Mesh, cells: IntArray, points: FloatArray) -> Sparse:
 
     Args:
         mesh: of the body.
-        cells: the element that each point lies in, shape (n_points,).
+        cells: the element of each point, shape (n_points,).
         points: [m], shape (n_points, 3).
 
     Returns:
         Shape functions, shape (n_points, n_nodes).
 
     Raises:
-        BadData: a point lies in no such element.
+        BadData: a point is not inside its element.
     """
     corner = mesh.nodes[mesh.cells[cells]]
     natural = np.tile(ELEMENTS[mesh.kind].centre, (cells.size, 1))
@@ -250,7 +251,7 @@ def interpolation(mesh: Mesh, cells: IntArray, points: FloatArray) -> Sparse:
     value, _ = shape_functions(mesh.kind, natural)
     left = np.abs(points - np.einsum("pi,pia->pa", value, corner)).max(initial=0.0)
     if not left <= _ONE_PLANE * mesh.size:
-        raise BadData(f"a point lies {left:.3g} m outside of its element; mesh again")
+        raise BadData(f"a point is {left:.3g} m outside of its element; mesh again")
     starts = np.arange(cells.size + 1) * value.shape[1]
     columns = mesh.cells[cells].ravel()
     shape = (cells.size, mesh.nodes.shape[0])
@@ -260,7 +261,7 @@ def interpolation(mesh: Mesh, cells: IntArray, points: FloatArray) -> Sparse:
 def relative_motion(
     first: Mesh, second: Mesh | None, points: ContactPoints
 ) -> tuple[Sparse, Sparse | None]:
-    """Return the interpolations that relative motion at the points is made of."""
+    """Return the interpolations for the relative motion at the points."""
     own = interpolation(first, points.first, points.position)
     if second is None:
         return own, None
@@ -273,8 +274,8 @@ def spread_springs(
     """Spread a total stiffness of 1 N/m over a joint, for each direction.
 
     Args:
-        motion: relative motion at the points from one value a node, shape
-            (n_points, n_nodes).
+        motion: relative motion at the points from one value per node, shape (n_points,
+            n_nodes).
         points: with their areas.
         directions: rows of unit vectors, shape (n_directions, 3).
 

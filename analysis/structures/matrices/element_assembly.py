@@ -15,9 +15,9 @@ from jointbench.analysis.structures.meshes.mesh import Mesh
 Sparse = sparse.csr_array
 """Sparse matrices, row by row."""
 
-# Elements that agree to this share of their size have one and the same matrix.
+# Elements that agree to this share of their size share one matrix.
 _SAME_ELEMENT = 1e-9
-# A Jacobian below this share of its mean is no volume any more.
+# Least Jacobian of a valid element, as a share of its mean.
 _NO_VOLUME = 1e-6
 _CHUNK = 2000
 
@@ -44,7 +44,7 @@ class Material:
         require_positive("density", self.density)
         if not -1.0 < self.poisson_ratio < 0.5:
             raise BadData(
-                f"poisson_ratio is {self.poisson_ratio:g}; it must lie between -1 and "
+                f"poisson_ratio is {self.poisson_ratio:g}; it must be between -1 and "
                 "0.5, both excluded"
             )
         if not 0.0 <= self.loss_factor < 1.0:
@@ -63,7 +63,7 @@ def assemble(mesh: Mesh, material: Material) -> tuple[Sparse, Sparse]:
         z node by node.
 
     Raises:
-        BadData: an element is turned inside out or has no volume.
+        BadData: an element is inverted or has no volume.
 
     Source:
         Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), ch. 6 and 9.
@@ -93,7 +93,7 @@ def assemble(mesh: Mesh, material: Material) -> tuple[Sparse, Sparse]:
 
 
 def _distinct_elements(mesh: Mesh) -> tuple[IntArray, IntArray]:
-    """Return one element of each form, and the form of every element."""
+    """Return one element of each shape, and the shape of every element."""
     corners = mesh.nodes[mesh.cells]
     relative = corners - corners[:, :1]
     step = _SAME_ELEMENT * np.abs(relative).max()
@@ -139,7 +139,7 @@ def _chunk_matrices(
 
 
 def _isotropic(product: FloatArray, material: Material) -> FloatArray:
-    """Turn integrals of gradient times gradient into the stiffness of each element."""
+    """Return the stiffness of each element from integrals of gradient products."""
     e, nu = material.youngs_modulus, material.poisson_ratio
     first = e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
     shear = e / (2.0 * (1.0 + nu))

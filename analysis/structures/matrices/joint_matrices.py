@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The matrices of joints, supports and riding masses over all nodes."""
+"""The matrices of joints, supports and attached masses over all nodes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ from jointbench.analysis.structures.meshes.mesh import Mesh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Assembly:
-    """Bodies and where their nodes begin.
+    """Bodies and the first node of each.
 
     Attributes:
         bodies: in order.
@@ -55,7 +55,7 @@ def kept_rows(matrix: Any, free: IntArray) -> Sparse:
     return whole if free.size == whole.shape[0] else Sparse(whole[free][:, free])
 
 
-# A glued joint is a spring so many times stiffer than the softer body behind it.
+# Stiffness of a glued joint over that of the softer body.
 _GLUE = 3e5
 
 
@@ -86,7 +86,7 @@ def _body_stiffness(build: Assembly, joint: Joint, area: float) -> float:
         if name == GROUND:
             continue
         body = build.bodies[build.place(name)]
-        # A node's own stiffness is about E times the size of its element.
+        # The stiffness of a node is about E times the size of its element.
         modulus_length = float(np.median(body.stiffness.diagonal()))
         step = (np.ptp(body.mesh.nodes, axis=0).prod() / len(body.mesh.cells)) ** (
             1 / 3
@@ -124,7 +124,7 @@ def _planes(joint: Joint, first: Mesh, second: Mesh | None) -> list[Plane]:
         return [face_plane(first, joint.face)]
     if second is None:
         raise UsageError(
-            f"joint {joint.name!r} stands on the ground; say on which face, e.g. 'z-'"
+            f"joint {joint.name!r} is to the ground; name its face, e.g. 'z-'"
         )
     return shared_planes(first, second)
 
@@ -143,14 +143,14 @@ def _no_single_plane(joint: Joint, count: int) -> str:
 
 
 def _placed(motion: Sparse, build: Assembly, name: str, total: int) -> Sparse:
-    """Return a matrix of one body's nodes as one of all nodes."""
+    """Expand a matrix of one body's nodes to all nodes."""
     begin = int(build.first_node[build.place(name)])
     columns = motion.indices + begin
     return Sparse((motion.data, columns, motion.indptr), shape=(motion.shape[0], total))
 
 
 def support_springs(build: Assembly, support: Support) -> Sparse:
-    """Return the stiffness of a face on springs [N/m]."""
+    """Return the stiffness of a face supported by springs [N/m]."""
     joint = Joint(
         f"support of {support.body}", (support.body, GROUND), face=support.face
     )
@@ -171,9 +171,9 @@ def held_freedoms(build: Assembly, support: Support) -> BoolArray:
         raise BadData(
             f"support of {support.body!r}: face {support.face!r} has no flat area"
         )
-    behind = np.unique(mesh.cells[points.first])
-    height = mesh.nodes[behind] @ plane.frame[0] - plane.offset
-    nodes = behind[np.abs(height) <= 1e-6 * mesh.size] + build.first_node[at]
+    candidates = np.unique(mesh.cells[points.first])
+    height = mesh.nodes[candidates] @ plane.frame[0] - plane.offset
+    nodes = candidates[np.abs(height) <= 1e-6 * mesh.size] + build.first_node[at]
     held = np.zeros(3 * int(build.first_node[-1]), bool)
     held[(3 * nodes[:, None] + np.arange(3)).ravel()] = True
     return held
@@ -209,7 +209,7 @@ def face_masses(build: Assembly, masses: Sequence[FaceMass]) -> Sparse:
 
 
 def nearest_node(mesh: Mesh, position: Sequence[float]) -> int:
-    """Return the node nearest to a position.
+    """Return the node closest to a position.
 
     Raises:
         BadData: the position is further from every node than the elements are large.
@@ -221,7 +221,7 @@ def nearest_node(mesh: Mesh, position: Sequence[float]) -> int:
     edge = float(np.linalg.norm(corner[:, 1] - corner[:, 0], axis=1).max())
     if distance[best] > edge:
         raise BadData(
-            f"position {tuple(position)} m lies {distance[best]:.3g} m from the "
+            f"position {tuple(position)} m is {distance[best]:.3g} m from the "
             "nearest node of its body; check the unit and the origin"
         )
     return int(used[best])

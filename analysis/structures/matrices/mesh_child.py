@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""meshio in a process of its own: its parsers have no bound on time or memory.
+"""meshio in a separate process: its parsers have no bound on time or memory.
 
-A line of a gmsh file that never ends kept one of them busy for minutes. What a child
-takes can be bounded by the system (not on Windows, where only its time is).
+An endless line of a gmsh file kept one of them busy for minutes. The system can limit a
+child's time and memory (on Windows only its time).
 """
 
 import subprocess
@@ -21,9 +21,9 @@ from jointbench.acquisition.file_access.text_files import file_size
 CPU = 10
 """[s]"""
 _OURS = 150 * 10**6
-"""Of what the file may take, for this process [bytes]."""
+"""Memory limit of the child for a file [bytes]."""
 _WALL = 120.0
-"""Longest wait, on a machine that is busy with other work [s]."""
+"""Longest wait on a loaded machine [s]."""
 _CODE = """
 import sys
 path, out, cpu, memory = sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
@@ -45,7 +45,7 @@ def read_with_meshio(path: Path) -> tuple[FloatArray, list[tuple[str, IntArray]]
     """Return the nodes of a mesh file, shape (n, 3), and its cells, block by block.
 
     Args:
-        path: of the file; meshio tells its format by the ending.
+        path: of the file; meshio recognises its format by the suffix.
 
     Returns:
         Nodes in the unit of the file, and for each block the type of its elements and
@@ -53,7 +53,7 @@ def read_with_meshio(path: Path) -> tuple[FloatArray, list[tuple[str, IntArray]]
 
     Raises:
         FormatError: meshio cannot read it.
-        HostileFile: that takes more time or memory than the file may.
+        HostileFile: reading takes more time or memory than allowed for the file.
     """
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "mesh.npz"
@@ -65,12 +65,12 @@ def read_with_meshio(path: Path) -> tuple[FloatArray, list[tuple[str, IntArray]]
             )
         except subprocess.TimeoutExpired as error:
             raise _too_much(path) from error
-        told = (done.stderr.strip() or done.stdout.strip() or "nothing").splitlines()
-        if done.returncode < 0 or told[-1].startswith("MemoryError"):
+        printed = (done.stderr.strip() or done.stdout.strip() or "nothing").splitlines()
+        if done.returncode < 0 or printed[-1].startswith("MemoryError"):
             raise _too_much(path)
         if done.returncode or not out.exists():
             raise FormatError(
-                f"{named(path)}: meshio cannot read it ({shown(told[-1])})"
+                f"{named(path)}: meshio cannot read it ({shown(printed[-1])})"
             )
         with np.load(out, allow_pickle=False) as arrays:
             blocks = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Meshes and matrices made elsewhere: Abaqus, Nastran, gmsh; Matrix Market, Ansys."""
+"""Read meshes (Abaqus, Nastran, gmsh) and matrices (Matrix Market, Ansys)."""
 
 import importlib.util
 from pathlib import Path
@@ -22,7 +22,7 @@ from jointbench.analysis.structures.meshes.mesh import Mesh, merge_nodes
 _KINDS = {"hexahedron20": ElementKind.HEX20, "tetra10": ElementKind.TET10}
 _MOST_BYTES = 500_000_000
 _HEAD_LINES = 100
-# Values that differ by this share of the largest are unequal: no symmetric matrix.
+# Largest asymmetry of a symmetric matrix, as a share of the largest value.
 _ASYMMETRY = 1e-8
 
 
@@ -64,7 +64,7 @@ def read_matrix(path: Path) -> Sparse:
         path: Matrix Market ``.mtx``, or Harwell-Boeing as Ansys' HBMAT writes it.
 
     Returns:
-        The whole matrix, even where the file holds one triangle.
+        The full matrix, even if the file holds one triangle.
 
     Raises:
         FormatError: the file cannot be read, or the matrix is not symmetric.
@@ -100,15 +100,15 @@ def matrix_body(
     order: IntArray | None = None,
     loss_factor: float = 0.0,
 ) -> MeshedBody:
-    """Return a body whose matrices another program made.
+    """Return a body with matrices of another program.
 
     Args:
         name: of the body.
-        mesh: that they belong to: it says where joints and sensors sit.
+        mesh: of the matrices: it gives the positions of joints and sensors.
         stiffness: K [N/m], shape (3 n_nodes, 3 n_nodes).
         mass: M [kg].
         order: row of the matrices for every degree of freedom x, y, z node by node,
-            shape (3 n_nodes,); left out where they run so already.
+            shape (3 n_nodes,); None if already in this order.
         loss_factor: of the material [-].
 
     Returns:
@@ -123,7 +123,7 @@ def _require_sane_matrix(path: Path) -> None:
     """Refuse a matrix whose header claims more than its file can hold.
 
     Raises:
-        HostileFile: it claims so many rows or values.
+        HostileFile: the header claims too many rows or values.
     """
     market = path.suffix.lower() == ".mtx"
     with path.open("rb") as file:
@@ -133,7 +133,7 @@ def _require_sane_matrix(path: Path) -> None:
         words = lines[0] if market else lines[2][1:]
         claimed = [int(word) for word in words[:4]]
     except (ValueError, IndexError):
-        return  # the reader will say what is damaged
+        return  # the reader reports the damage
     full = market and b"array" in head[0].lower()
     rows = max(claimed[:2], default=0)
     values = rows * min(claimed[:2], default=0) if full else max(claimed, default=0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a structure is made of: bodies, joints, supports, masses that ride on them."""
+"""Parts of a structure: bodies, joints, supports, attached masses."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -19,7 +19,7 @@ DIRECTIONS = ("normal", "tangential_1", "tangential_2")
 
 
 class SupportKind(StrEnum):
-    """How a face is held."""
+    """Kind of support of a face."""
 
     FIXED = "fixed"
     SPRINGS = "springs"
@@ -27,7 +27,7 @@ class SupportKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """A face of a body held by the ground.
+    """A face of a body supported by the ground.
 
     Attributes:
         body: name.
@@ -44,11 +44,11 @@ class Support:
 
 @dataclass(frozen=True, slots=True)
 class PointMass:
-    """A small mass that rides on a body: an accelerometer, a hammer tip.
+    """A small mass attached to a body: an accelerometer, a hammer tip.
 
     Attributes:
         body: name.
-        position: [m], within or next to the body; the nearest node takes it.
+        position: [m], within or next to the body; it is added to the nearest node.
         mass: [kg].
     """
 
@@ -59,7 +59,7 @@ class PointMass:
 
 @dataclass(frozen=True, slots=True)
 class FaceMass:
-    """A mass that rides on a face as a whole: it follows the face's mean motion.
+    """A mass attached to a whole face: it follows the face's mean motion.
 
     Attributes:
         body: name.
@@ -97,7 +97,7 @@ class MeshedBody:
             if matrix.shape != (wanted, wanted):
                 raise BadData(
                     f"{name} of body {self.name!r} has shape {matrix.shape}, its mesh "
-                    f"asks for ({wanted}, {wanted}): three numbers a node"
+                    f"needs ({wanted}, {wanted}): three numbers per node"
                 )
 
 
@@ -109,16 +109,16 @@ def solid_body(name: str, mesh: Mesh, material: Material) -> MeshedBody:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """Where two bodies, or a body and the ground, touch.
+    """The contact of two bodies, or of a body and the ground.
 
     Attributes:
         name: of the joint.
         between: two bodies, or a body and ``"ground"``.
-        patches: parts of the plane that touch, in global coordinates along the two
-            tangents; none means all that the faces share.
-        face: of the first body, ``"z+"`` for example; left out, the planes where the
-            two bodies look at each other; the ground needs one.
-        glued: held together, whatever the parameters: it has none.
+        patches: parts of the plane in contact, in global coordinates along the two
+            tangents; none means the whole shared area.
+        face: of the first body, ``"z+"`` for example; default is the planes with
+            opposing faces; required for the ground.
+        glued: rigidly tied, without parameters.
     """
 
     name: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Bodies, supports and joints, and the matrices that they make together.
+"""Bodies, supports and joints, and the matrices of the assembly.
 
 K(theta) = K + sum theta_d G_d: theta_d is a TOTAL stiffness [N/m] of one joint in one
 direction, spread consistently over its area; C likewise. K alone is block diagonal.
@@ -40,23 +40,23 @@ from jointbench.analysis.structures.meshes.mesh import Mesh
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
-    """The matrices of bodies and joints over the degrees of freedom that are free.
+    """The matrices of bodies and joints over the free degrees of freedom.
 
     Attributes:
         bodies: in order.
         stiffness: of bodies and springs of supports, block diagonal [N/m], shape
             (n_free, n_free).
         mass: block diagonal, with point masses [kg].
-        springs: of supports, as they stand in `stiffness` [N/m].
+        springs: of supports, as included in `stiffness` [N/m].
         loss: loss factor times stiffness, block diagonal [N/m].
         spread: G of every joint and direction, joint by joint, total 1 N/m.
         glue: stiffness of glued joints [N/m]; zero if there are none.
         joints: names of the joints that have parameters.
         area: of these joints [m^2], shape (n_joints,).
         frames: rows normal and tangents, shape (n_joints, 3, 3).
-        blocks: where the degrees of freedom of each body begin, and the end, shape
-            (n_bodies + 1,).
-        free: place of each free degree of freedom among all, shape (n_free,).
+        blocks: first degree of freedom of each body, and the end, shape (n_bodies +
+            1,).
+        free: index of each free degree of freedom among all, shape (n_free,).
         first_node: of each body among all nodes, shape (n_bodies + 1,).
     """
 
@@ -108,13 +108,13 @@ def build_structure(
     supports: Sequence[Support] = (),
     masses: Sequence[PointMass | FaceMass] = (),
 ) -> Structure:
-    """Put bodies, joints, supports and small masses together.
+    """Assemble bodies, joints, supports and small masses.
 
     Args:
         bodies: with different names.
         joints: with different names.
         supports: of faces of bodies.
-        masses: that ride on bodies.
+        masses: attached to bodies.
 
     Returns:
         The structure.
@@ -163,7 +163,7 @@ def pick(structure: Structure, body: str, position: Sequence[float]) -> Sparse:
     """Return the motion x, y, z of a point of a body from the free degrees of freedom.
 
     Args:
-        structure: that the body belongs to.
+        structure: with the body.
         body: its name.
         position: of the point [m]; between nodes it is interpolated.
 
@@ -171,7 +171,7 @@ def pick(structure: Structure, body: str, position: Sequence[float]) -> Sparse:
         Shape (3, n_free).
 
     Raises:
-        BadData: the point does not lie on the body.
+        BadData: the point is not on the body.
         UsageError: there is no such body.
     """
     names = [one.name for one in structure.bodies]
@@ -188,7 +188,7 @@ def pick(structure: Structure, body: str, position: Sequence[float]) -> Sparse:
 
 
 def _point_values(mesh: Mesh, point: FloatArray) -> Sparse:
-    """Return the shape functions at a point: of the element that it suits best."""
+    """Return the shape functions at a point: of the best matching element."""
     node = nearest_node(mesh, point.tolist())
     around = np.flatnonzero(np.any(mesh.cells == node, axis=1))
     rows = []
@@ -201,7 +201,7 @@ def _point_values(mesh: Mesh, point: FloatArray) -> Sparse:
     sizes = [float(np.abs(row.data).sum()) for row in rows]
     if not rows or min(sizes) > 3.5:
         raise BadData(
-            f"point {point.tolist()} m does not lie on the body; check unit and origin"
+            f"point {point.tolist()} m is not on the body; check unit and origin"
         )
     return rows[int(np.argmin(sizes))]
 

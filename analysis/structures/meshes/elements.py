@@ -14,7 +14,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 
 
 class ElementKind(StrEnum):
-    """The elements known here, by their number of nodes."""
+    """The supported elements, by their number of nodes."""
 
     HEX20 = "hex20"
     TET10 = "tet10"
@@ -76,7 +76,7 @@ class Element:
 
     Attributes:
         kind: which.
-        edges: corners at the ends of each midside node, shape (n_midsides, 2).
+        edges: corners on both sides of each midside node, shape (n_midsides, 2).
         faces: nodes of each face, corners first, counter-clockwise seen from outside,
             shape (n_faces, n_face_nodes).
         corners: number of corner nodes.
@@ -161,7 +161,7 @@ def _tet10(natural: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def volume_rule(kind: ElementKind) -> tuple[FloatArray, FloatArray]:
-    """Return 27 quadrature points and weights of the element's own volume.
+    """Return 27 quadrature points and weights of the element's volume.
 
     Exact for the mass of straight-edged elements: degree 5 in each direction.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Meshes of quadratic solids: the record, boxes without a mesher, outer faces."""
+"""Meshes of quadratic solids: record, box meshes, outer faces."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,9 +12,9 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.meshes.elements import ELEMENTS, ElementKind
 
-# Nodes nearer than this share of the size of the mesh are one.
+# Nodes closer than this share of the size of the mesh are merged.
 _SAME_NODE = 1e-7
-# A midside node may lie this far off the middle of its edge, as a share of the edge.
+# Largest distance of a midside node from the middle of its edge, as a share of it.
 _MIDSIDE_DRIFT = 0.3
 # The Kuhn division of a cube: six tetrahedra along the main diagonal.
 _KUHN = np.array(
@@ -66,7 +66,7 @@ class Mesh:
 
 
 def _require_midsides(mesh: Mesh) -> None:
-    """Raise where midside nodes do not lie between their corners (foreign order)."""
+    """Raise where midside nodes are not between their corners (foreign order)."""
     element = ELEMENTS[mesh.kind]
     ends = mesh.nodes[mesh.cells[:, element.edges]]
     length = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=-1)
@@ -76,7 +76,7 @@ def _require_midsides(mesh: Mesh) -> None:
     if bad.size:
         cell, edge = bad[0]
         raise BadData(
-            f"element {cell}: midside node {edge} lies {drift[cell, edge]:.3g} m off "
+            f"element {cell}: midside node {edge} is {drift[cell, edge]:.3g} m off "
             "the middle of its edge; midside nodes must follow VTK order (bottom, top, "
             "vertical edges)"
         )
@@ -127,8 +127,7 @@ def grid_mesh(
     Returns:
         The mesh; midside nodes halve their edges.
 
-    Raises:
-        UsageError: lines do not rise.
+    Raises: UsageError: lines do not rise.
     """
     if any(line.size < 2 or np.any(np.diff(line) <= 0) for line in lines):
         raise UsageError("grid lines must rise, two at the least in each direction")
@@ -158,7 +157,7 @@ def quadratic_mesh(nodes: FloatArray, cells: IntArray, *, kind: ElementKind) -> 
     Args:
         nodes: coordinates of the corners [m], shape (n_corners, 3).
         cells: shape (n_cells, 8 or 4).
-        kind: what the cells become.
+        kind: of the result.
 
     Returns:
         The mesh, with a node in the middle of every edge.
@@ -181,7 +180,7 @@ class Faces:
     Attributes:
         nodes: of each face, corners first, seen counter-clockwise from outside,
             shape (n_faces, 8 or 6).
-        cells: the element behind each face, shape (n_faces,).
+        cells: the element of each face, shape (n_faces,).
         normal: unit vectors outwards, shape (n_faces, 3).
     """
 
@@ -218,7 +217,7 @@ def outer_faces(mesh: Mesh) -> Faces:
 
 
 def merge_nodes(mesh: Mesh) -> Mesh:
-    """Join nodes at the same place, and drop those of no element.
+    """Merge nodes at the same place, and drop unused ones.
 
     Args:
         mesh: as read from a file; parts may have been meshed one by one.

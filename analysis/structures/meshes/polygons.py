@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Convex polygons in a plane: patches of a joint, and what two faces share."""
+"""Convex polygons in a plane: patches of a joint, and shared areas of faces."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -67,7 +67,7 @@ def clip(subject: FloatArray, window: FloatArray) -> FloatArray:
         window: corners, counter-clockwise, shape (m, 2).
 
     Returns:
-        Corners of the shared polygon, shape (k, 2); k = 0 where they share nothing.
+        Corners of the shared polygon, shape (k, 2); k = 0 without overlap.
 
     Source:
         Sutherland and Hodgman 1974, Commun. ACM 17, 32-42.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Factors body by body, and the modes of a jointed structure without any other.
+"""Factors body by body, and the modes of a jointed structure from these alone.
 
-K(theta) >= K of the bodies alone, so that a factor of each body plus a shift serves
+K(theta) >= K of the bodies alone, so a factor of each body plus a shift is valid for
 every joint: as a preconditioner here, and for the error bound of a reduced model.
 """
 
@@ -30,7 +30,7 @@ class BodyFactors:
 
     Attributes:
         solves: one for each body.
-        blocks: where the degrees of freedom of each body begin, and the end.
+        blocks: first degree of freedom of each body, and the end.
         shift: [1/s^2].
     """
 
@@ -48,16 +48,16 @@ class BodyFactors:
 
 
 def factor_bodies(structure: Structure, solver: Solver = Solver.AUTO) -> BodyFactors:
-    """Factor every body on its own.
+    """Factor every body separately.
 
     Args:
         structure: bodies and joints; bodies that are glued share one factor.
-        solver: who factors.
+        solver: of the factors.
 
     Returns:
         The factors.
     """
-    # Glue is no wave: the shift is that of the bodies without it.
+    # The shift is that of the bodies without glue, which carries no waves.
     shift = shift_of(structure.stiffness, structure.mass)
     shifted = Sparse(structure.stiffness + structure.glue + shift * structure.mass)
     edges = glued_blocks(structure)
@@ -66,9 +66,9 @@ def factor_bodies(structure: Structure, solver: Solver = Solver.AUTO) -> BodyFac
 
 
 def glued_blocks(structure: Structure) -> IntArray:
-    """Return where the blocks of bodies that glue ties together begin, and the end.
+    """Return the first degree of freedom of each block of glued bodies, and the end.
 
-    Bodies between two that are glued join their block: it must be one range.
+    Bodies between two glued ones belong to their block: it must be one range.
     """
     edges = structure.blocks
     ties = structure.glue.tocoo()
@@ -88,7 +88,7 @@ def body_modes(
     Args:
         structure: bodies and joints.
         count: modes of each body, rigid ones included.
-        solver: who factors.
+        solver: of the factors.
 
     Returns:
         Columns that move one body, or those glued to it, shape (n_free, n_blocks *
@@ -129,9 +129,9 @@ def solve_bodywise(
         factors: of its bodies.
         stiffness: totals [N/m], shape (3 n_joints,).
         start: subspace to begin with, orthonormal in M, shape (n_free, r), r >= count.
-        count: how many modes.
-        residual_norm: of each mode to stop at, relative [-]; where a mode stands alone
-            its frequency is wrong by about the square of it.
+        count: number of modes.
+        residual_norm: of each mode to stop at, relative [-]; the relative error of an
+            isolated frequency is about its square.
 
     Returns:
         Mass-normalised shapes as columns, shape (n_free, count).

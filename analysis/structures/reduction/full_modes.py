@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Modes of a whole structure by one factor: the reference that others are held to."""
+"""Modes of a whole structure by one factor: the reference for other solvers."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,10 @@ from jointbench.analysis.structures.reduction.krylov_subspace import largest_of_
 from jointbench.analysis.structures.reduction.rigid_motions import rigid_motions
 from jointbench.analysis.structures.reduction.sparse_factor import Solver, factorise
 
-# The shift lies so far below the waves that fit once into the structure.
+# Shift over the eigenvalue of a wave as long as the structure.
 _SHIFT_SHARE = 0.3
-# Strain energy below so many units in the last place of |x|' |K| |x| is rounding.
+# Strain energy below this number of units in the last place of |x|' |K| |x| is
+# rounding.
 _ROUNDING = 16.0 * float(np.finfo(float).eps)
 
 
@@ -24,8 +25,7 @@ class StructureModes:
     """Undamped modes of a structure, the lowest first.
 
     Attributes:
-        natural_frequency: [Hz], shape (n_modes,); zero for motions without strain,
-            however slow the others are.
+        natural_frequency: [Hz], shape (n_modes,); zero only for motions without strain.
         shapes: mass-normalised, shape (n_modes, n_free) [kg^-1/2].
         residual: ||K phi - lambda M phi|| over ||K phi||, largest of all [-].
     """
@@ -48,7 +48,7 @@ def shift_of(stiffness: Sparse, mass: Sparse) -> float:
         stiffness: of the bodies [N/m].
         mass: [kg].
     """
-    # A mesh carries waves up to about sqrt(k/m) of one node; n^(1/3) nodes in a row.
+    # Waves of a mesh reach about sqrt(k/m) of one node; n^(1/3) nodes in a row.
     highest = stiffness.diagonal().sum() / mass.diagonal().sum()
     in_a_row = (stiffness.shape[0] / 3.0) ** (1.0 / 3.0)
     return float(highest * (_SHIFT_SHARE / in_a_row) ** 2)
@@ -66,8 +66,8 @@ def solve_full(
     Args:
         structure: bodies and joints.
         stiffness: total of every joint and direction [N/m], shape (3 n_joints,).
-        count: how many modes, rigid ones included.
-        solver: who factors.
+        count: number of modes, rigid ones included.
+        solver: of the factors.
 
     Returns:
         The modes.
@@ -82,7 +82,7 @@ def solve_full(
     values = np.asarray(stiffness, float)
     if values.size and not values.min() >= 0:
         raise BadData(f"a joint's stiffness is {values.min():g} N/m; it must be >= 0")
-    # Springs and glue are no waves: they must not raise the shift.
+    # Springs and glue carry no waves and must not raise the shift.
     shift = shift_of(structure.stiffness, structure.mass)
     whole = structure.with_joints(values)
     rigid = rigid_motions(structure, values)
@@ -103,14 +103,14 @@ def lowest_modes(
     Args:
         stiffness: K [N/m].
         mass: M [kg].
-        count: how many.
-        solver: who factors.
-        shift: of the spectrum [1/s^2]; None takes that of the matrices.
-        rigid: motions that strain nothing, orthonormal in M, shape (n_free, k); None
-            takes modes whose strain energy is rounding for such.
+        count: number of modes.
+        solver: of the factors.
+        shift: of the spectrum [1/s^2]; None uses that of the matrices.
+        rigid: motions without strain, orthonormal in M, shape (n_free, k); None uses
+            modes whose strain energy is rounding.
 
     Raises:
-        BadData: too many modes are asked for, or the matrices cannot be factored.
+        BadData: too many modes are requested, or the matrices cannot be factored.
     """
     size = stiffness.shape[0]
     if not 0 < count < size - 1:
@@ -133,7 +133,7 @@ def lowest_modes(
 
 
 def _strain_rounding(stiffness: Sparse, vector: FloatArray) -> FloatArray:
-    """Return the strain energy of each shape that rounding alone makes [1/s^2]."""
+    """Return the strain energy of each shape due to rounding [1/s^2]."""
     size = np.abs(vector)
     return np.asarray(_ROUNDING * np.einsum("nk,nk->k", size, abs(stiffness) @ size))
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Orthonormal bases, and the block Lanczos iteration that finds multiple modes too.
+"""Orthonormal bases, and a block Lanczos iteration that also finds multiple modes.
 
 A single-vector iteration misses copies of a multiple eigenvalue (the six rigid
-motions of a free body): ARPACK did, on our own plates.
+motions of a free body): ARPACK did, on simulated plates.
 """
 
 import numpy as np
@@ -12,9 +12,10 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.reduction.sparse_factor import Solve
 
-# What is left of a direction after taking out the others, below which it is dropped.
+# Remainder of a direction after projection below which it is dropped.
 _DEPENDENT = 1e-6
-# Of each Ritz vector of the inverse, relative: its square is the eigenvalue's error.
+# Relative residual of each Ritz vector of the inverse: its square is the eigenvalue's
+# error.
 _CONVERGED = 1e-7
 _BLOCK = 8
 _MOST_STEPS = 80
@@ -39,7 +40,8 @@ def orthonormalise(basis: FloatArray, mass: Sparse, new: FloatArray) -> FloatArr
         value, vector = np.linalg.eigh(kept.T @ (mass @ kept))
         good = value > limit**2
         kept = kept @ (vector[:, good] / np.sqrt(value[good]))
-        # The second pass only cleans up: what survived the first is of length one.
+        # The second pass removes rounding: directions kept by the first have length
+        # one.
         limit = 0.5
     return np.asarray(kept)
 
@@ -52,8 +54,8 @@ def largest_of_inverse(
     Args:
         solve: with A, symmetric positive definite.
         mass: M, shape (n, n).
-        count: how many.
-        known: eigenvectors orthonormal in M that are not sought, shape (n, k).
+        count: number of eigenvalues.
+        known: eigenvectors orthonormal in M to exclude, shape (n, k).
 
     Returns:
         Eigenvalues, the largest first, shape (count,), and vectors orthonormal in M as

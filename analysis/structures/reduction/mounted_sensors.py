@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Points and directions: of accelerometers as they are mounted, and of hits."""
+"""Points and directions of mounted accelerometers and of hits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ class MountedSensor:
 
     Attributes:
         name: of the channel or hit point.
-        body: that it sits on.
+        body: name of its body.
         position: [m].
         direction: along which it measures or strikes, of any length.
     """
@@ -30,7 +30,7 @@ class MountedSensor:
 
 
 def sensor_rows(structure: Structure, sensors: Sequence[MountedSensor]) -> FloatArray:
-    """Return the rows that turn the motion of the mesh into that of sensors.
+    """Return the rows from the motion of the mesh to that of sensors.
 
     Args:
         structure: bodies and joints.
@@ -40,7 +40,7 @@ def sensor_rows(structure: Structure, sensors: Sequence[MountedSensor]) -> Float
         Shape (n_sensors, n_free) [-].
 
     Raises:
-        BadData: a sensor does not lie on its body, or has no direction.
+        BadData: a sensor is not on its body, or has no direction.
         UsageError: there is no such body.
     """
     rows = np.zeros((len(sensors), structure.size))
@@ -57,10 +57,10 @@ def sensor_rows(structure: Structure, sensors: Sequence[MountedSensor]) -> Float
 def readout(
     structure: Structure, model: ReducedModel, sensors: Sequence[MountedSensor]
 ) -> FloatArray:
-    """Return the rows that turn reduced motion into that of sensors.
+    """Return the rows from reduced motion to that of sensors.
 
     Args:
-        structure: that was reduced.
+        structure: of the reduced model.
         model: the reduced structure.
         sensors: points and directions.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Modes of a jointed structure under light damping, and what each joint has of them."""
+"""Modes of a lightly damped, jointed structure, with energy shares of the joints."""
 
 from dataclasses import dataclass
 
@@ -79,7 +79,7 @@ class PredictedModes:
 def predict_modes(
     model: ReducedModel, values: JointValues, rows: FloatArray | None = None
 ) -> PredictedModes:
-    """Predict the elastic modes that the reduced model was made for.
+    """Predict the elastic modes in the range of the reduced model.
 
     Args:
         model: the reduced structure.
@@ -88,7 +88,7 @@ def predict_modes(
 
     Returns:
         Frequencies of the undamped structure, and damping ratios to first order in
-        the damping: right as long as damping is light.
+        the damping: valid for light damping.
 
     Source:
         Ewins, Modal Testing (2000), sec. 2.4.
@@ -121,5 +121,5 @@ def energy_shares(state: ModalState, stiffness: FloatArray) -> FloatArray:
 
 
 def _straining(state: ModalState) -> FloatArray:
-    """Return eigenvalues to divide by: what strains nothing shares in nothing."""
+    """Return eigenvalues to divide by; motions without strain have zero shares."""
     return np.where(state.eigenvalue > 0, state.eigenvalue, np.inf)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a jointed structure does: modes of any damping, FRFs, response to a force."""
+"""Response of a jointed structure: modes of any damping, FRFs, response to a force."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,13 +16,13 @@ from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
 )
 
-# Modes that damping couples at once; beyond them it is brought in by refinement.
+# Number of modes coupled by damping directly; others are coupled by refinement.
 _COUPLED = 60
 _REFINEMENTS = 4
-# A pole that swings less than this against its decay is a decay; the loss of the bodies
-# alone turns a decay by about its loss factor.
+# Least ratio of imaginary to real part of an oscillating pole; the loss of the bodies
+# alone gives a decay about its loss factor.
 _SWINGS = 0.02
-# A pole this small beside the largest is the zero of a motion that nothing holds.
+# Poles this small relative to the largest are zero: free rigid motions.
 _NO_POLE = 1e-13
 
 
@@ -37,7 +37,7 @@ def predict_complex_modes(
 
     Returns:
         |pole| / 2 pi [Hz] and damping ratio [-] of oscillating elastic modes, by
-        frequency, as many as the model was made for at most.
+        frequency, at most the number of modes of the model.
 
     Source:
         Ewins, Modal Testing (2000), sec. 2.7.
@@ -45,7 +45,7 @@ def predict_complex_modes(
     state = modal_state(model, values.stiffness)
     count = min(_COUPLED, state.eigenvalue.size)
     moved = np.s_[state.rigid : count]
-    # Unknowns: omega times displacement, which rigid motions do not need, and velocity.
+    # Unknowns: omega times displacement (not of rigid motions), and velocity.
     omega = np.sqrt(state.eigenvalue[moved])
     spring = np.zeros((count, omega.size), complex)
     spring[moved] = np.diag(omega) + 1j * state.loss[moved, moved] / omega
@@ -65,7 +65,7 @@ def predict_complex_modes(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FrfSlopes:
-    """FRFs and how they move with the joints.
+    """FRFs and their derivatives by the joints.
 
     Attributes:
         response: receptance [m/N], shape (n_outputs, n_inputs, n_lines).
@@ -91,8 +91,8 @@ def predict_frf(
     Args:
         model: the reduced structure.
         values: of its joints.
-        laplace: where: j omega, plus the decay rate that an exponential window added
-            [1/s], shape (n_lines,).
+        laplace: lines: j omega plus the decay rate of an exponential window [1/s],
+            shape (n_lines,).
         outputs: rows of `readout`, shape (n_outputs, r).
         inputs: rows of `readout`, shape (n_inputs, r).
 
@@ -118,8 +118,8 @@ def _solve_lines(
 ) -> ComplexArray:
     """Return Z^-1 load for every line, shape (n_lines, r, n_loads).
 
-    Low modes coupled and high ones each alone are a first answer, which the residual
-    of all modes together then refines; a line that it does not help is left.
+    The first estimate couples low modes and treats high ones separately; the residual
+    of all modes refines it. A line that does not improve keeps the estimate.
     """
     viscous = np.tensordot(damping, state.flex, 1)
     own = state.eigenvalue + laplace[:, None] ** 2
@@ -176,23 +176,24 @@ def response_to_force(
     Args:
         model: the reduced structure.
         values: of its joints.
-        force: [N], shape (n_inputs, n_samples); it should end long before the record
-            does, or the record should hold the decay.
+        force: [N], shape (n_inputs, n_samples); it should end long before the record,
+            or the record should contain the decay.
         sample_rate: [Hz].
         outputs: rows of `readout`.
         inputs: rows of `readout`.
 
     Returns:
         Displacement [m], shape (n_outputs, n_samples). Rigid motions of a free
-        structure are left out: they leave the room.
+        structure are left out: they grow without limit.
 
     Source:
-        Fourier transform of twice the record, the decay pressed down by an exponential
-        (Ewins, Modal Testing (2000), sec. 3.7), then lifted again.
+        Fourier transform of twice the record with an exponential window (Ewins, Modal
+        Testing (2000), sec. 3.7), which is then removed.
     """
     count = force.shape[1]
     padded = 2 * count
-    # Circular response of the second half is pressed down by exp(-decay T) = 1e-6.
+    # The window reduces the circular response of the second half by exp(-decay T) =
+    # 1e-6.
     decay = np.log(1e6) * sample_rate / padded
     time = np.arange(padded) / sample_rate
     press = np.exp(-decay * time)

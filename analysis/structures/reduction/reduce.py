@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reduce a structure once, body by body, for a whole box of joint stiffnesses."""
+"""Reduce a structure body by body for a whole box of joint stiffnesses."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,16 +28,16 @@ from jointbench.analysis.structures.reduction.rigid_motions import (
 from jointbench.analysis.structures.reduction.sparse_factor import Solver
 
 DEFAULT_BOX = (1e6, 1e11)
-"""Total stiffnesses that machine joints have [N/m]."""
+"""Range of total stiffness of machine joints [N/m]."""
 
-# Trial points of the box, beside its lowest and highest corner.
+# Trial points of the box, in addition to its lowest and highest corner.
 _TRIALS = 128
-# So many are tried before the basis grows again.
+# Points tried before the basis grows again.
 _AT_ONCE = 16
 _MOST_POINTS = 60
-# Modes of a point are iterated to a residual norm this small at first: its square is
-# the error of a frequency that stands alone. Where the bound of that point still asks
-# for more (close modes, soft joints), to a tenth of it each time, down to rounding.
+# First residual norm for the modes of a point: its square is the error of an isolated
+# frequency. Where the bound of that point needs more (close modes, soft joints), it is
+# reduced to a tenth each time, down to rounding.
 _RESIDUAL_NORM = 3e-4
 _TIGHTER = 0.1
 _SMALLEST_NORM = 1e-7
@@ -47,7 +47,7 @@ _RANK = 1e-15
 
 @dataclass(frozen=True, slots=True)
 class ReductionStep:
-    """What one point added.
+    """Result of one added point.
 
     Attributes:
         worst: largest bound of all trial points, relative frequency [-].
@@ -68,21 +68,22 @@ def reduce_structure(
     solver: Solver = Solver.AUTO,
     progress: Callable[[ReductionStep], None] | None = None,
 ) -> ReducedModel:
-    """Reduce a structure to a basis that serves all joints in a box.
+    """Reduce a structure to a basis valid for all joints in a box.
 
-    The free modes of the bodies are joined by the modes at the point of the box where
-    the error bound is worst, until it is small everywhere. No factor is larger than
-    that of one body, or of bodies that are glued together.
+    The basis starts with the free modes of the bodies. The modes at the point of the
+    box with the worst error bound are added, until the bound is small everywhere. No
+    factor is larger than that of one body, or of bodies that are glued together.
 
     Args:
         structure: bodies and joints.
-        modes: how many modes, rigid ones included, are to be right.
+        modes: number of accurate modes, rigid ones included.
         box: smallest and largest total stiffness of any joint and direction [N/m].
         tolerance: of the bound, relative frequency [-].
         loads: rows of `sensor_rows` where forces act or FRFs are read, shape
-            (n_points, n_free): how the bodies give way there joins the basis.
-        solver: who factors.
-        progress: is told after every point.
+            (n_points, n_free): the local compliance of the bodies there is added to the
+            basis.
+        solver: of the factors.
+        progress: called after every point.
 
     Returns:
         The reduced structure.
@@ -90,7 +91,7 @@ def reduce_structure(
     Raises:
         BadData: the bound stays above `tolerance` although the modes of its worst point
             are in the basis to rounding, or after so many points.
-        UsageError: there is no joint to vary, or the box is empty.
+        UsageError: there is no joint with parameters, or the box is empty.
 
     Source:
         Rozza et al. 2008, Arch. Comput. Methods Eng. 15, 229-275 (greedy choice).
@@ -101,7 +102,7 @@ def reduce_structure(
     start = body_modes(structure, modes, solver)
     space.add(orthonormalise(space.basis, structure.mass, start))
     if loads is not None:
-        space.add(_give_way(structure, factors, space.basis, loads))
+        space.add(_compliance(structure, factors, space.basis, loads))
     trials = _trial_points(len(structure.spread), box)
     norm, point = _RESIDUAL_NORM, np.zeros(0)
     for _ in range(_MOST_POINTS):
@@ -111,7 +112,7 @@ def reduce_structure(
             progress(ReductionStep(worst, model.size))
         if not trials:
             return model
-        # A point that is met again was not solved as closely as its bound asks.
+        # A repeated point was not solved as accurately as its bound requires.
         again = np.array_equal(point, trials[0])
         norm, point = norm * _TIGHTER if again else _RESIDUAL_NORM, trials[0]
         if norm < _SMALLEST_NORM:
@@ -122,7 +123,7 @@ def reduce_structure(
 
 
 def _stays(worst: float, tolerance: float, point: FloatArray, norm: float) -> str:
-    """Say what keeps the bound up: rounding at one point, or too many points."""
+    """Return the reason for a large bound: rounding, or too many points."""
     where = ", ".join(f"{one:.2g}" for one in point)
     text = (
         f"the reduced model's error bound stays at {worst:.2g} of the frequency, "
@@ -148,12 +149,12 @@ def _require_box(structure: Structure, box: tuple[float, float]) -> None:
         )
 
 
-def _give_way(
+def _compliance(
     structure: Structure, factors: BodyFactors, basis: FloatArray, loads: FloatArray
 ) -> FloatArray:
-    """Return what point loads do to the bodies beside their modes.
+    """Return the static response of the bodies to point loads.
 
-    The answer to each load at the shift, and the next term of its series.
+    The response to each load at the shift, and the next term of its series.
     """
     first = factors.solve(np.ascontiguousarray(loads.T))
     second = factors.solve(structure.mass @ first)
@@ -165,9 +166,9 @@ def _give_way(
 def _open_points(
     model: ReducedModel, points: list[FloatArray], tolerance: float
 ) -> tuple[float, list[FloatArray]]:
-    """Return the worst bound met, and the points left, the worst first.
+    """Return the worst bound found, and the remaining points, the worst first.
 
-    A basis that grows only becomes better: a point within tolerance stays so.
+    A growing basis only improves: a point within tolerance remains so.
     """
     while points:
         some, rest = points[:_AT_ONCE], points[_AT_ONCE:]
@@ -250,7 +251,7 @@ class _Space:
         loss = _symmetric(basis.T @ (self.structure.loss @ basis))
         spread = [part / scale for part, scale in zip(joints, self.scale, strict=True)]
         elastic = bodies - shift * mass
-        # What strains nothing does so exactly, not to rounding.
+        # Motions without strain have exactly zero strain, not rounding.
         still = self.strains.shape[1]
         for matrix in (elastic, loss):
             matrix[:still] = matrix[:, :still] = 0.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A reduced structure: any joint in about a millisecond, with a bound of its error."""
+"""A reduced structure, solved in about a millisecond, with an error bound."""
 
 from dataclasses import dataclass
 
@@ -11,27 +11,27 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.reduction.full_modes import frequency_of
 from jointbench.analysis.structures.reduction.rigid_motions import unstrained
 
-# Modes solved beyond those asked for, so that the last one has neighbours.
+# Extra modes solved, so that the last requested one has neighbours.
 _SPARE = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReducedModel:
-    """Matrices of a structure in a basis that serves a whole box of joints.
+    """Matrices of a structure in a basis valid for a whole box of joints.
 
     Attributes:
         stiffness: of the bodies, shape (r, r); the mass is the unit matrix.
         spread: of every joint and direction, total 1 N/m, shape (n_parameters, r, r).
         loss: loss factor times stiffness, shape (r, r).
         basis: from reduced to free degrees of freedom, shape (n_free, r).
-        riesz: the residual's norm is that of riesz @ (y, (shift + lambda) y,
+        riesz: the norm of the residual is that of riesz @ (y, (shift + lambda) y,
             theta_1/scale_1 y, ...), shape (n_rank, (2 + n_parameters) r).
         scale: of the stiffnesses in `riesz` [N/m], shape (n_parameters,).
-        strains: of `joint_strains`, for the first columns of the basis: those move the
-            bodies without strain; shape (n_parameters, n_motions, n_motions) [-].
+        strains: of `joint_strains`, for the first columns of the basis, motions without
+            strain of the bodies; shape (n_parameters, n_motions, n_motions) [-].
         shift: of the norm [1/s^2].
-        box: smallest and largest stiffness it was made for [N/m].
-        modes: how many modes, rigid ones included, it was made for.
+        box: smallest and largest valid stiffness [N/m].
+        modes: number of accurate modes, rigid ones included.
         names: of the parameters.
     """
 
@@ -76,7 +76,7 @@ class ReducedModes:
         eigenvalue: [1/s^2], shape (n_modes,); exactly zero for rigid motions.
         natural_frequency: [Hz], shape (n_modes,).
         shapes: reduced, orthonormal, columns, shape (r, n_modes).
-        rigid: how many of them, the first ones, strain nothing.
+        rigid: number of modes without strain, the first ones.
     """
 
     eigenvalue: FloatArray
@@ -93,7 +93,7 @@ def solve_reduced(
     Args:
         model: the reduced structure.
         stiffness: totals [N/m], shape (n_parameters,).
-        count: how many modes; default those it was made for.
+        count: number of modes; default is that of the model.
 
     Returns:
         The modes; rigid ones have frequency zero, all others one above zero.
@@ -108,7 +108,7 @@ def solve_reduced(
     value, vector = np.zeros(wanted), np.eye(model.size, wanted)
     if wanted > rigid:
         straining = matrix[rigid:, rigid:]
-        # No softer joint can be told from rounding.
+        # Softer joints cannot be distinguished from rounding.
         smallest = np.finfo(float).eps * float(np.abs(straining).max())
         found, vector[rigid:, rigid:] = eigh(
             straining,
@@ -124,18 +124,18 @@ def solve_reduced(
 def frequency_bound(
     model: ReducedModel, stiffness: FloatArray, count: int | None = None
 ) -> tuple[FloatArray, FloatArray]:
-    """Bound how far reduced frequencies lie above those of the full mesh.
+    """Bound the error of reduced frequencies above those of the full mesh.
 
     With A = K(theta) + shift M, each residual r of a Ritz pair is measured in the norm
     of the inverse of the bodies' own K + shift M, which is never smaller than that of
-    A. The Ritz values of A^-1 M are then right within |r| (alone) and within the sum
-    of |r|^2 over the gap to the rest of the spectrum (a group of neighbours). The gap
-    is measured between Ritz values, less their own bounds.
+    A. The error of the Ritz values of A^-1 M is then at most |r| (isolated), and at
+    most the sum of |r|^2 over the gap to the rest of the spectrum (a group of
+    neighbours). The gap is measured between Ritz values, less their own bounds.
 
     Args:
         model: the reduced structure.
         stiffness: totals [N/m], shape (n_parameters,).
-        count: how many modes; default those it was made for.
+        count: number of modes; default is that of the model.
 
     Returns:
         Natural frequencies [Hz] and the largest amount by which each exceeds that of
@@ -171,9 +171,9 @@ def _residual_norms(
 def _inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:
     """Return how much each eigenvalue of A^-1 M may exceed its Ritz value.
 
-    Of all groups of neighbours that a mode belongs to, the one with the smallest sum of
-    squares over its gap counts: soft joints have modes far closer to each other, seen
-    from the shift, than to the rest.
+    Among all groups of neighbours of a mode, the one with the smallest sum of squares
+    over its gap is used: with soft joints, modes are far closer to each other, relative
+    to the shift, than to the rest.
     """
     slack = inverse * error
     last = inverse.size - 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reduced models on disk, named by the content that they were made from."""
+"""Reduced models on disk, named by a hash of their input."""
 
 import hashlib
 import os
@@ -11,7 +11,7 @@ import numpy as np
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 
-# Raised whenever the way of reducing changes, so that old files are not met again.
+# Incremented when the reduction changes, so that old files are not used.
 _VERSION = 3
 _ARRAYS = ("stiffness", "spread", "loss", "basis", "riesz", "scale", "strains")
 
@@ -34,12 +34,12 @@ def content_key(structure: Structure, *options: object) -> str:
 def cached(
     folder: Path | None, key: str, make: Callable[[], ReducedModel]
 ) -> ReducedModel:
-    """Return the reduced model of a key from disk, or make and keep it.
+    """Return the reduced model of a key from disk, or create and store it.
 
     Args:
-        folder: of the cache; None keeps nothing.
+        folder: of the cache; None stores nothing.
         key: of `content_key`.
-        make: the model if it is not there.
+        make: creates the model if it is not stored.
 
     Returns:
         The reduced model.
@@ -67,7 +67,7 @@ def cached(
 
 
 def _read(path: Path) -> ReducedModel | None:
-    """Return the model of a file; None if the file is cut short."""
+    """Return the model of a file; None if the file is truncated."""
     try:
         with np.load(path, allow_pickle=False) as file:
             arrays = {name: file[name] for name in _ARRAYS}

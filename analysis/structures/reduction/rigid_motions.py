@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Motions without strain: the null space of a stiffness, never what is merely slow.
+"""Motions without strain: the exact null space of a stiffness.
 
-A table on a soft joint swings slowly, and strains it; a free body strains nothing. Only
-the rigid motions of connected pieces can be free of strain. Bodies, supports, glue and
-joints each take away those that strain them, and each is measured against its own size:
-the softest joint does not drown in the rounding of a stiff body.
+A table on a soft joint moves slowly but strains it; a free body has no strain. Only the
+rigid motions of connected parts can be free of strain. Bodies, supports, glue and
+joints each exclude the motions that strain them. Each is compared with its own
+stiffness, so that the softest joint is not lost in the rounding of a stiff body.
 """
 
 import numpy as np
@@ -16,11 +16,12 @@ from jointbench.analysis.structures.matrices.parts import MeshedBody
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.krylov_subspace import orthonormalise
 
-# Strain energy below so many units in the last place of |x|' |K| |x| is rounding.
+# Strain energy below this number of units in the last place of |x|' |K| |x| is
+# rounding.
 _ROUNDING = 16.0 * float(np.finfo(float).eps)
-# Strain of a joint that is clean of rounding, relative to its trace.
+# Least strain of a joint above rounding, relative to its trace.
 _NO_STRAIN = 1e-12
-# Matrices of other programs come as text; so many of their entries are looked at.
+# Number of entries checked for the precision of matrices from text files.
 _SAMPLE = 200
 _FEWEST_DIGITS, _MOST_DIGITS = 5, 15
 
@@ -29,7 +30,7 @@ def unstrained_bodies(structure: Structure) -> FloatArray:
     """Return the motions that strain no body, no support and no glue.
 
     Args:
-        structure: bodies and joints; the joints count as open.
+        structure: bodies and joints; joints are ignored.
 
     Returns:
         Columns orthonormal in M, shape (n_free, n_motions).
@@ -54,7 +55,7 @@ def unstrained_bodies(structure: Structure) -> FloatArray:
 
 
 def joint_strains(structure: Structure, motions: FloatArray) -> FloatArray:
-    """Return how motions strain every joint and direction, without rounding.
+    """Return the strain of every joint and direction by motions, without rounding.
 
     Args:
         structure: bodies and joints.
@@ -74,22 +75,22 @@ def joint_strains(structure: Structure, motions: FloatArray) -> FloatArray:
 
 
 def unstrained(strains: FloatArray, stiff: BoolArray) -> tuple[FloatArray, int]:
-    """Turn motions so that those come first which no stiff joint holds.
+    """Rotate motions so that those not held by a stiff joint come first.
 
     Args:
         strains: of `joint_strains`, shape (n_parameters, n_motions, n_motions).
         stiff: which stiffnesses are above zero, shape (n_parameters,).
 
     Returns:
-        Orthogonal, shape (n_motions, n_motions), and how many of its columns strain
-        nothing.
+        Orthogonal, shape (n_motions, n_motions), and the number of its columns without
+        strain.
     """
     value, turn = np.linalg.eigh(strains[stiff].sum(axis=0))
     return turn, int(np.count_nonzero(value <= _NO_STRAIN))
 
 
 def rigid_motions(structure: Structure, stiffness: FloatArray) -> FloatArray:
-    """Return the motions of a jointed structure that strain nothing.
+    """Return the motions of a jointed structure without strain.
 
     Args:
         structure: bodies and joints.
@@ -113,14 +114,14 @@ def _strain(part: Sparse, motions: FloatArray, precision: float) -> FloatArray:
 
 
 def _kept(strain: FloatArray) -> FloatArray:
-    """Return an orthonormal basis of what `strain` leaves without strain."""
+    """Return an orthonormal basis of the null space of `strain`."""
     value, vector = np.linalg.eigh(strain)
     limit = _NO_STRAIN * max(float(np.abs(value).max(initial=0.0)), 1e-300)
     return np.asarray(vector[:, value <= limit])
 
 
 def _rigid_motions(body: MeshedBody) -> FloatArray:
-    """Return three shifts and three turns of every connected piece of a body."""
+    """Return the six rigid motions of every connected part of a body."""
     nodes = body.mesh.nodes
     ties = body.stiffness.tocoo()
     near = Sparse(
@@ -139,9 +140,10 @@ def _rigid_motions(body: MeshedBody) -> FloatArray:
 
 
 def _precision(matrix: Sparse) -> float:
-    """Return how exact the entries of a body's matrix are, relative.
+    """Return the relative precision of the entries of a body's matrix.
 
-    Text of few digits is known by its entries: they survive being written so again.
+    Text of few digits is recognised by its entries: they are unchanged by rounding to
+        as many digits.
     """
     size = np.abs(matrix.data)
     largest = matrix.data[np.argsort(size)[-_SAMPLE:]]

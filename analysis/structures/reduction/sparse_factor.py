@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Sparse factors behind one door: SuperLU always, Pardiso where it is installed.
+"""Sparse factors by SuperLU, or Pardiso where it is installed.
 
-Every solve is checked by its residual: a fast wrong answer is no answer.
+Every solve is checked by its residual.
 """
 
 import importlib.util
@@ -21,12 +21,12 @@ Solve = Callable[[FloatArray], FloatArray]
 
 # The residual of a solve relative to the size of matrix times solution.
 _LARGEST_RESIDUAL = 1e-8
-# Below this size SuperLU is faster: a call of Pardiso has a cost of its own.
+# Below this size SuperLU is faster: a call of Pardiso has an overhead.
 _PARDISO_FROM = 12_000
 
 
 class Solver(StrEnum):
-    """Who factors."""
+    """Sparse solver."""
 
     AUTO = "auto"
     SUPERLU = "superlu"
@@ -38,7 +38,7 @@ def factorise(matrix: Sparse, solver: Solver = Solver.AUTO) -> Solve:
 
     Args:
         matrix: shape (n, n).
-        solver: AUTO takes Pardiso for large matrices if pypardiso is installed, else
+        solver: AUTO uses Pardiso for large matrices if pypardiso is installed, else
             SuperLU.
 
     Returns:
@@ -46,13 +46,13 @@ def factorise(matrix: Sparse, solver: Solver = Solver.AUTO) -> Solve:
 
     Raises:
         BadData: the matrix is singular, or a solve leaves a large residual.
-        UsageError: Pardiso is asked for but not installed.
+        UsageError: Pardiso is requested but not installed.
     """
     installed = importlib.util.find_spec("pypardiso") is not None
     if solver is Solver.PARDISO and not installed:
         raise UsageError(
             "solver 'pardiso' needs pypardiso; pip install 'jointbench[pardiso]', or "
-            "take 'superlu'"
+            "use 'superlu'"
         )
     large = matrix.shape[0] > _PARDISO_FROM
     fast = solver is Solver.PARDISO or (installed and large and solver is Solver.AUTO)
@@ -70,7 +70,7 @@ def factorise(matrix: Sparse, solver: Solver = Solver.AUTO) -> Solve:
 def _require_small_residual(
     matrix: Sparse, load: FloatArray, answer: FloatArray, size: float
 ) -> None:
-    # One column stands for all: they went through the same factor.
+    # One column is checked: all use the same factor.
     load, answer = load.reshape(load.shape[0], -1), answer.reshape(load.shape[0], -1)
     column = int(np.argmax(np.abs(load).max(axis=0)))
     left = np.abs(matrix @ answer[:, column] - load[:, column]).max()
@@ -93,8 +93,8 @@ def _superlu(matrix: Sparse) -> Solve:
         )
     except RuntimeError as error:
         raise BadData(
-            f"the stiffness cannot be factored ({error}); a body or node hangs on "
-            "nothing: check supports and joints"
+            f"the stiffness cannot be factored ({error}); a body or node is not "
+            "connected: check supports and joints"
         ) from error
 
     def solve(load: FloatArray) -> FloatArray:
@@ -110,16 +110,16 @@ def _pardiso(matrix: Sparse) -> Solve:
     upper = Sparse(triu(matrix, format="csr"))
     upper.sort_indices()
     engine = PyPardisoSolver(mtype=2)
-    # All parameters by hand: with its own defaults MKL from 2025 on went wrong
-    # (PyPardiso issue 87). Nested dissection, two refinements, pivots as they come.
+    # All parameters are set: with its defaults MKL from 2025 on fails (PyPardiso issue
+    # 87). Nested dissection, two refinements, no pivoting.
     for place, value in {1: 1, 2: 2, 8: 2, 10: 8, 18: -1, 21: 1}.items():
         engine.set_iparm(place, value)
     try:
         engine.factorize(upper)
     except PyPardisoError as error:
         raise BadData(
-            f"the stiffness cannot be factored (Pardiso: {error}); a body or node "
-            "hangs on nothing: check supports and joints"
+            f"the stiffness cannot be factored (Pardiso: {error}); a body or node is "
+            "not connected: check supports and joints"
         ) from error
 
     def solve(load: FloatArray) -> FloatArray:

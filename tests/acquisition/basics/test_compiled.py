@@ -73,7 +73,7 @@ def test_nothing_is_cached_by_one_file_alone() -> None:
     assert alone == []
 
 
-def test_the_digest_of_a_march_counts_what_is_inlined(
+def test_the_digest_of_an_integration_counts_what_is_inlined(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Each other file that is compiled into it changes it."""

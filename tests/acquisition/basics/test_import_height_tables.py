@@ -80,7 +80,7 @@ def test_coordinates_that_wobble_stay_on_their_grid(tmp_path):
 
 
 def test_points_that_form_no_grid_are_refused(tmp_path):
-    """Scattered points are not laid on a grid by force."""
+    """Scattered points are not forced onto a grid."""
     np.save(tmp_path / "a.npy", np.random.default_rng(2).uniform(size=(3, 200)))
     with pytest.raises(FormatError, match="grid"):
         read_surface(tmp_path / "a.npy", columns=MAP)
@@ -174,7 +174,7 @@ def test_what_is_no_surface_is_refused(tmp_path, data):
 
 @pytest.mark.parametrize("code", [-25400, -9999, 1e30])
 def test_a_known_code_far_outside_is_a_missing_point(tmp_path, code):
-    """Masked without a word from the user, where even a single one stands far out."""
+    """Masked without an option, where even a single one stands far out."""
     z = [1.0, 2.0, code, 1.5, 1.7, 1.2, 1.1, 1.9]
     path = written(tmp_path / "a.csv", "".join(f"{x},{h}\n" for x, h in enumerate(z)))
     surface = read_surface(path, columns="x:um,z:um")

@@ -38,8 +38,8 @@ def surfcom(heights, *, length="10.00000", count=None):
 
 
 @pytest.mark.parametrize("name", ["a.tx1", "a.TX2", "a.txt"])
-def test_a_surfcom_profile_is_read_without_being_told_units(tmp_path, name):
-    """Both units belong to the format; the count tells it where the ending does not."""
+def test_a_surfcom_profile_is_read_without_given_units(tmp_path, name):
+    """Both units belong to the format; the count shows it without a suffix."""
     path = written(tmp_path / name, surfcom(HEIGHTS.ravel()), "ascii")
     surface = read_surface(path)
     assert isinstance(surface, Profile)

@@ -138,7 +138,7 @@ def test_fewer_rows_than_declared_are_said_in_the_provenance(tmp_path):
     ],
 )
 def test_a_keyence_image_that_is_not_whole_is_refused(tmp_path, change, error, says):
-    """One line each that says what is wrong."""
+    """One line each with the error."""
     path = written(tmp_path / "k.csv", change(keyence()))
     with pytest.raises(error, match=says) as caught:
         read_surface(path)

@@ -62,8 +62,8 @@ def instead(answer: bytes) -> Noise:
 def gauge(noise: dict[int, Noise]) -> tuple[mark10.Reading, int]:
     """Return a reading of 4.285 N m through noise, and how often it was asked."""
     noisy = Noisy(Mark10Twin().answer, noise)
-    with Twin(noisy, over_socket=True) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=0.3)
+    with Twin(noisy, over_socket=True) as device:
+        line = SerialLine(device.name, baud=9600, timeout=0.3)
         try:
             return mark10.read_gauge(line), noisy.turn
         finally:
@@ -73,8 +73,8 @@ def gauge(noise: dict[int, Noise]) -> tuple[mark10.Reading, int]:
 def dh8(noise: dict[int, Noise], points: int = 50) -> np.ndarray:
     """Return the counts of a DH-8's profile through noise."""
     noisy = Noisy(DiaviteTwin(wave_counts(points)).answer, noise)
-    with Twin(noisy, over_socket=True) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=0.3)
+    with Twin(noisy, over_socket=True) as device:
+        line = SerialLine(device.name, baud=9600, timeout=0.3)
         try:
             profile = diavite.read_profile(line, name="f", traverse=4.8e-3)
         finally:
@@ -85,8 +85,8 @@ def dh8(noise: dict[int, Noise], points: int = 50) -> np.ndarray:
 def surftest(noise: dict[int, Noise]) -> np.ndarray:
     """Return three heights [um] of a Surftest, two a file, through noise."""
     noisy = Noisy(MitutoyoTwin((1.5, -0.25, 0.125), per_file=2).answer, noise)
-    with Twin(noisy, over_socket=True) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=0.3)
+    with Twin(noisy, over_socket=True) as device:
+        line = SerialLine(device.name, baud=9600, timeout=0.3)
         try:
             profile = mitutoyo.read_profile(line, name="f")
         finally:
@@ -140,8 +140,8 @@ def test_what_came_before_the_request_answers_nothing() -> None:
     def answer(received: bytes) -> tuple[int, bytes]:
         return len(received), f"{next(shown)} Nm\r\n0.500 Nm\r\n\x81".encode("latin-1")
 
-    with Twin(answer, over_socket=True) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=0.3)
+    with Twin(answer, over_socket=True) as device:
+        line = SerialLine(device.name, baud=9600, timeout=0.3)
         found = []
         for _ in range(3):
             found.append(mark10.read_gauge(line).value)
@@ -213,8 +213,8 @@ def test_a_dh8_profile_that_is_garbled_is_fetched_again(
 def test_a_text_of_the_dh8_with_a_junk_byte_is_asked_for_again(junk: bytes) -> None:
     """Its unit, with a byte that is no character."""
     noisy = Noisy(DiaviteTwin((1,)).answer, {0: put(junk, 2)})
-    with Twin(noisy, over_socket=True) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=0.3)
+    with Twin(noisy, over_socket=True) as device:
+        line = SerialLine(device.name, baud=9600, timeout=0.3)
         assert diavite.ask_text(line, "unit") == "um"
         line.close()
 
@@ -222,8 +222,8 @@ def test_a_text_of_the_dh8_with_a_junk_byte_is_asked_for_again(junk: bytes) -> N
 def test_a_measurement_is_started_once_whatever_the_answer() -> None:
     """A second start would trace again."""
     noisy = Noisy(DiaviteTwin((1,)).answer, {0: put(b"\x81", 1)})
-    with Twin(noisy, over_socket=True) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=0.3)
+    with Twin(noisy, over_socket=True) as device:
+        line = SerialLine(device.name, baud=9600, timeout=0.3)
         with pytest.raises(Unreadable):
             diavite.ask_text(line, "start")
         line.close()
@@ -241,17 +241,17 @@ def test_a_profile_that_breaks_off_keeps_the_longest_of_its_answers() -> None:
     )
 
 
-def test_a_silent_line_is_told_from_one_that_was_unplugged() -> None:
+def test_a_silent_line_is_distinguished_from_one_that_was_unplugged() -> None:
     """The one may answer when it is asked again."""
-    with Twin(lambda received: None, over_socket=True) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=0.1)
+    with Twin(lambda received: None, over_socket=True) as device:
+        line = SerialLine(device.name, baud=9600, timeout=0.1)
         with pytest.raises(LineSilent):
             mark10.read_gauge(line)
-        twin_name = twin.name
+        line_name = device.name
     with pytest.raises(LineBroken) as broken:
         line.receive(1)
     line.close()
-    assert twin_name in str(broken.value)
+    assert line_name in str(broken.value)
     assert not isinstance(broken.value, LineSilent)
 
 

@@ -55,7 +55,7 @@ def test_a_file_that_is_there_is_not_overwritten_unless_asked(tmp_path):
     """The old content stays to the byte."""
     path = tmp_path / "a.h5"
     path.write_bytes(b"precious")
-    with pytest.raises(UsageError, match="is there already"), new_file(path, **SCHEMA):
+    with pytest.raises(UsageError, match="exists already"), new_file(path, **SCHEMA):
         pass
     assert path.read_bytes() == b"precious"
     with new_file(path, overwrite=True, **SCHEMA):
@@ -100,7 +100,7 @@ def test_attributes_come_back_as_written(file, value):
 
 
 def test_an_attribute_of_none_is_left_out(file):
-    """What nobody stated is not stored."""
+    """Values that are not given are not stored."""
     write_attributes(file, {"a": None})
     assert "a" not in file.attrs
     assert read_attribute(file, "a") is None

@@ -17,7 +17,7 @@ def test_roles_and_units_are_read_in_order():
 
 
 def test_label_point_and_sensitivity_are_read():
-    """A channel in volts says its sensor's sensitivity behind an @."""
+    """A channel in volts has its sensor's sensitivity after an @."""
     (column,) = parse_columns("acceleration.a1@3:V@10mV/g")
     assert (column.label, column.point) == ("a1", "3")
     assert_allclose(column.factor, 9.80665 / 0.01, rtol=1e-14)
@@ -38,7 +38,7 @@ def test_volts_without_sensitivity_are_refused_with_what_to_type():
 
 
 def test_a_missing_unit_is_refused_with_what_to_type():
-    """The role alone says nothing about the size."""
+    """The role alone does not give the size."""
     with pytest.raises(UnitError, match="time:s"):
         parse_columns("time,force:N")
 

@@ -26,7 +26,7 @@ def test_every_common_separator_is_recognised(tmp_path, separator):
     "encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252"]
 )
 def test_every_encoding_is_recognised(tmp_path, encoding):
-    """The header holds a micro sign, which tells the encodings apart."""
+    """The header holds a micro sign, which distinguishes the encodings."""
     path = tmp_path / "table.csv"
     path.write_bytes(f"time,Weg \u00b5m\r\n{rows(',')}".encode(encoding))
     table = load_table(path)
@@ -109,7 +109,7 @@ def test_an_array_file_is_read_in_either_orientation(tmp_path, shape):
 
 
 def test_a_square_array_is_read_by_rows_unless_the_count_says_otherwise(tmp_path):
-    """Three rows of two columns are told from two rows of three by the count."""
+    """The count distinguishes three rows of two columns from two rows of three."""
     path = tmp_path / "table.npy"
     np.save(path, np.arange(6.0).reshape(3, 2))
     assert read_table(path, columns=3).shape == (3, 2)
@@ -145,8 +145,8 @@ def array_with_a_broken_header(path):
     path.write_bytes(path.read_bytes().replace(b"}", b"{", 1))
 
 
-def test_who_has_an_array_of_objects_is_told_to_save_numbers(tmp_path):
-    """numpy.save made it: to be told to save it with numpy.save helps nobody."""
+def test_an_array_of_objects_is_refused_with_the_remedy(tmp_path):
+    """numpy.save wrote it: the remedy is not to save it with numpy.save again."""
     array_of_objects(tmp_path / "table.npy")
     with pytest.raises(FormatError, match=r"Python objects.*array\.astype\(float\)"):
         load_table(tmp_path / "table.npy")

@@ -111,10 +111,10 @@ def test_a_wrong_teds_differs_from_the_right_one() -> None:
 
 
 def test_a_hit_comes_in_newtons_with_its_peak() -> None:
-    """The peak of the pulse is what the hand says, within what sampling can see."""
+    """The peak of the pulse is that of the stroke, within the sampling error."""
     with chassis() as client:
         made = stream(client)
-        client.hand(b'{"point": "1", "level": 200}')
+        client.strike(b'{"point": "1", "level": 200}')
         blocks = [i.samples for i in take(made, 20) if isinstance(i, Block)]
         made.close()
     force = np.hstack(blocks)[0]
@@ -130,7 +130,7 @@ def test_a_wrong_sensitivity_gives_wrong_newtons() -> None:
         with chassis() as client:
             made = NiStream(client, (hammer, A1), StreamSettings(12_800.0, 512))
             made.start()
-            client.hand(b"{}")
+            client.strike(b"{}")
             blocks = [i.samples for i in take(made, 20) if isinstance(i, Block)]
             made.close()
         peaks.append(np.hstack(blocks)[0].max())
@@ -143,7 +143,7 @@ def test_samples_do_not_depend_on_the_size_of_a_block() -> None:
     for block in (512, 768):
         with chassis() as client:
             made = stream(client, block=block)
-            client.hand(b'{"point": "3"}')
+            client.strike(b'{"point": "3"}')
             items = take(made, 6144 // block)
             made.close()
         streams.append(np.hstack([i.samples for i in items if isinstance(i, Block)]))
@@ -214,7 +214,7 @@ def test_a_bare_read_of_overwritten_samples_raises_overrun() -> None:
 
 
 def test_a_dropped_server_ends_a_segment_and_the_next_one_begins() -> None:
-    """Lost and back are told apart, and the new task counts from zero."""
+    """Lost and back are distinguished, and the new task counts from zero."""
     with chassis("drop@1024:0.1") as client:
         made = stream(client)
         items = take(made, 6)
@@ -235,7 +235,7 @@ def test_a_server_that_stays_away_ends_in_one_line() -> None:
             take(made, 4)
 
 
-def test_nobody_at_the_address_is_a_lost_connection() -> None:
+def test_no_answer_at_the_address_is_a_lost_connection() -> None:
     """Port 9 of this computer serves nothing."""
     client = Chassis("127.0.0.1:9")
     with pytest.raises(ConnectionLost, match="does not answer"):
@@ -251,7 +251,7 @@ def test_a_computer_without_the_driver_says_what_to_install() -> None:
 
 
 def test_an_open_sensor_loop_is_reported_by_channel() -> None:
-    """The fault opens input 1; the device's own attribute says so."""
+    """The fault opens input 1; the device's attribute shows it."""
     with chassis("open@512:1") as client:
         made = stream(client)
         take(made, 1)
@@ -270,14 +270,14 @@ def test_the_hardware_trigger_stands_exactly_where_it_was_asked_for() -> None:
         task.start_triggered(
             12_800.0, samples=1024, source="force", before=100, level=20.0
         )
-        client.hand(b"{}")
+        client.strike(b"{}")
         samples = task.read(1024, timeout=10.0)
         task.close()
     assert samples[0, 99] < 20.0 <= samples[0, 100]
 
 
 def test_a_module_without_a_trigger_refuses_it() -> None:
-    """`anlg_trig_supported` says so beforehand, -200077 afterwards."""
+    """`anlg_trig_supported` shows it beforehand, -200077 afterwards."""
     with chassis(analogue_trigger=False) as client:
         assert not client.modules()[0].analogue_trigger
         task = client.task("t", SENSORS)
@@ -299,9 +299,9 @@ def test_a_triaxial_sensor_is_one_sensor_with_three_channels() -> None:
 
 def test_an_input_that_is_used_twice_is_refused() -> None:
     """Two sensors cannot share a plug."""
-    twin = replace(A1, name="a2", axes=(Axis("cDAQSim1Mod1/ai1", "+z", 1e-3),))
+    device = replace(A1, name="a2", axes=(Axis("cDAQSim1Mod1/ai1", "+z", 1e-3),))
     with pytest.raises(UsageError, match="used twice"):
-        require_table((HAMMER, A1, twin))
+        require_table((HAMMER, A1, device))
 
 
 @pytest.mark.parametrize(

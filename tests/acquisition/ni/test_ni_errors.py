@@ -95,7 +95,7 @@ def take(
     ("code", "wanted"), [(c, helps) for helps, codes in SORTED.items() for c in codes]
 )
 def test_each_error_is_sorted_by_what_helps(code: int, wanted: Remedy) -> None:
-    """Wait, start again, open again, or tell."""
+    """Wait, restart, reopen, or report."""
     assert remedy(code) is wanted
 
 
@@ -118,7 +118,7 @@ def test_no_code_is_typed_in(room: str) -> None:
 def test_a_device_that_stopped_is_started_again_without_a_connection_lost(
     code: int,
 ) -> None:
-    """A gap says so, the next block is the first of a new segment."""
+    """A gap reports it, the next block is the first of a new segment."""
     with chassis(f"error@1024:{-code}") as client:
         items, made = take(client, 4)
     (gap,) = [i for i in items if isinstance(i, StreamGap)]
@@ -150,7 +150,7 @@ def test_samples_that_are_late_are_waited_for_in_the_same_task(code: int) -> Non
     assert made.counters.lost == 0
 
 
-def test_a_device_that_makes_no_sample_for_too_long_is_told() -> None:
+def test_a_device_that_makes_no_sample_for_too_long_is_reported() -> None:
     """A clock that never ticks ends in one line, once patience is over."""
     faults = ",".join(["error@1024:200284"] * 3)
     with chassis(faults) as client, pytest.raises(InstrumentError, match="no sample"):
@@ -161,7 +161,7 @@ def test_a_device_that_makes_no_sample_for_too_long_is_told() -> None:
 def test_an_error_that_nothing_helps_against_ends_the_stream_with_its_number(
     code: int,
 ) -> None:
-    """It is none of those that the stream goes on after."""
+    """It is none of those after which the stream continues."""
     with (
         chassis(f"error@1024:{-code}") as client,
         pytest.raises(InstrumentError, match=str(code)) as raised,
@@ -185,7 +185,7 @@ def test_a_module_without_a_readable_teds_has_none(code: int) -> None:
         "PROPERTY_NOT_SUPPORTED_FOR_TIMING_SRC",
     ],
 )
-def test_an_error_that_is_not_about_teds_is_told(name: str) -> None:
+def test_an_error_that_is_not_about_teds_is_reported(name: str) -> None:
     """Two numbers once stood for "no TEDS" by mistake."""
     code = int(DAQmxErrors[name])
     with (
@@ -217,7 +217,7 @@ def test_a_current_that_the_module_does_not_offer_is_refused_with_what_it_does()
         client.task("t", (stated, A1))
 
 
-def test_a_module_without_a_current_is_told_unless_the_sensor_needs_none() -> None:
+def test_a_module_without_a_current_is_reported_unless_the_sensor_needs_none() -> None:
     """`iepe = '0 mA'` is for a sensor with a supply of its own."""
     own = tuple(replace(sensor, excitation=0.0) for sensor in (HAMMER, A1))
     with chassis(currents=()) as client:
@@ -276,7 +276,7 @@ def test_a_reader_that_was_held_up_takes_all_that_waits() -> None:
 
 
 def test_a_stream_in_real_time_loses_little_more_than_was_overwritten() -> None:
-    """A reader 30 s behind a buffer of 20 s loses 10 s; the rest is still to come."""
+    """A reader 30 s late with a buffer of 20 s loses 10 s and reads the rest."""
     rests: list[float] = []
     with chassis(speed=20.0) as client:
         made = NiStream(client, (HAMMER, A1), StreamSettings(RATE, BLOCK, buffer=20.0))
@@ -309,7 +309,7 @@ def _asleep(made: NiStream, seconds: float) -> None:
 
 
 def test_a_stream_that_is_paused_in_the_middle_of_what_was_read_goes_on_anew() -> None:
-    """What was read and not handed over is unwanted, and counted as such."""
+    """Samples read and not yielded are unwanted, and counted as such."""
     with chassis("overrun@2048:1") as client:
         made = NiStream(client, (HAMMER, A1), StreamSettings(RATE, BLOCK, buffer=2.0))
         made.start()

@@ -144,7 +144,7 @@ def test_a_mitutoyo_that_refuses_says_its_code() -> None:
 def test_a_mark10_reading_is_si_with_its_kind(
     shown: bytes, value: float, kind: str
 ) -> None:
-    """The unit tells torque from force."""
+    """The unit distinguishes torque from force."""
     line = Dialogue((b"?\r", shown + b"\r\n"))
     reading = mark10.read_gauge(line)
     assert (reading.value, reading.kind) == (pytest.approx(value), kind)
@@ -158,11 +158,11 @@ def test_a_mark10_error_is_an_instrument_error() -> None:
 
 
 @pytest.mark.parametrize("over_socket", [False, True])
-def test_the_twin_of_the_dh8_delivers_9600_points_exactly(over_socket: bool) -> None:
+def test_the_simulated_dh8_delivers_9600_points_exactly(over_socket: bool) -> None:
     """Through pyserial, on a pseudo-terminal and on a socket, nothing left over."""
     counts = wave_counts(9600)
-    with Twin(DiaviteTwin(counts).answer, over_socket=over_socket) as twin:
-        line = SerialLine(twin.name, baud=diavite.BAUD)
+    with Twin(DiaviteTwin(counts).answer, over_socket=over_socket) as device:
+        line = SerialLine(device.name, baud=diavite.BAUD)
         profile = diavite.read_profile(line, name="face", traverse=4.8e-3)
         assert line.waiting() == 0
         line.close()
@@ -184,14 +184,14 @@ def _read_mitutoyo(line: Line) -> object:
         (MitutoyoTwin((1.0, 2.0, 3.0)).answer, _read_mitutoyo, 27),
     ],
 )
-def test_a_plug_pulled_in_the_middle_keeps_what_came(
+def test_a_disconnection_keeps_the_received_part(
     answer: Callable[[bytes], tuple[int, bytes] | None],
     read: Callable[[Line], object],
     after: int,
 ) -> None:
     """The error is one line, and holds the bytes of the answer that broke off."""
-    with Twin(answer, over_socket=True, unplug_after=after) as twin:
-        line = SerialLine(twin.name, baud=9600, timeout=1.0)
+    with Twin(answer, over_socket=True, unplug_after=after) as device:
+        line = SerialLine(device.name, baud=9600, timeout=1.0)
         with pytest.raises(LineBroken) as broken:
             read(line)
         line.close()
@@ -199,9 +199,9 @@ def test_a_plug_pulled_in_the_middle_keeps_what_came(
     assert "\n" not in str(broken.value)
 
 
-def test_the_twin_of_the_mark10_answers_through_pyserial() -> None:
+def test_the_simulated_mark10_answers_through_pyserial() -> None:
     """A torque tester on a pseudo-terminal."""
-    with Twin(Mark10Twin("20.02 Nm").answer) as twin:
-        line = SerialLine(twin.name, baud=mark10.BAUD)
+    with Twin(Mark10Twin("20.02 Nm").answer) as device:
+        line = SerialLine(device.name, baud=mark10.BAUD)
         assert mark10.read_gauge(line).value == pytest.approx(20.02)
         line.close()

@@ -109,7 +109,7 @@ def test_a_foreign_hdf5_file_is_described_too(tmp_path):
     "data", [b"", b"time,force\n0,1\n", b"\x89HDF\r\n\x1a\n" + b"\0"]
 )
 def test_what_is_no_hdf5_file_is_refused_in_one_line(tmp_path, data):
-    """Empty, text, and a signature with nothing behind it."""
+    """Empty, text, and a signature with nothing after it."""
     (tmp_path / "x.h5").write_bytes(data)
     with pytest.raises(BadData) as caught:
         describe_file(tmp_path / "x.h5")

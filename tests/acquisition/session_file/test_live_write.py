@@ -57,7 +57,7 @@ def block(first: int, count: int = 100) -> np.ndarray:
 
 
 def record(path: Path, *, end: bool = True) -> None:
-    """Record two runs of a hundred samples, the second with a hit and a gap behind."""
+    """Record two runs of 100 samples, the second with a hit and a gap after it."""
     with LiveSession(path, META, channels=2, block=100) as live:
         live.log({"kind": "run", "name": "one", "point": "1", "preload": 10.0})
         live.append(block(0), segment=0, first=0)
@@ -155,7 +155,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 def test_a_killed_recording_opens_by_itself_and_misses_one_block_at_most(
     tmp_path: Path,
 ) -> None:
-    """Twenty blocks handed over, none waiting: nineteen or twenty are there."""
+    """Twenty blocks passed, none waiting: nineteen or twenty are there."""
     out = tmp_path / "s.h5"
     code = KILLED.format(path=sys.path, out=str(out), meta=META)
     done = subprocess.run([sys.executable, "-c", code], check=False)
@@ -227,7 +227,7 @@ def test_a_folder_that_is_not_there_is_a_usage_error(tmp_path: Path) -> None:
     sys.platform == "win32" or os.geteuid() == 0, reason="root may write anywhere"
 )
 def test_a_folder_without_write_permission_is_a_usage_error(tmp_path: Path) -> None:
-    """The message says so before a sample is taken."""
+    """The message comes before a sample is taken."""
     tmp_path.chmod(0o500)
     with pytest.raises(UsageError, match="cannot be written"):
         LiveSession(tmp_path / "s.h5", META, channels=2, block=100)
@@ -243,7 +243,7 @@ def test_a_closed_session_takes_no_more(tmp_path: Path) -> None:
 
 
 def test_an_error_of_the_disk_does_not_hide_another_one(tmp_path: Path) -> None:
-    """Leaving by an exception of one's own, that exception is what is seen."""
+    """An exception raised inside the context is the one that is seen."""
     with (
         pytest.raises(InstrumentError, match="own"),
         LiveSession(tmp_path / "s.h5", META, channels=2, block=100),
@@ -338,7 +338,7 @@ def test_a_session_is_finished_in_memory_that_does_not_grow_with_it(
 def test_a_disk_without_room_for_the_finished_session_leaves_the_recording(
     tmp_path: Path,
 ) -> None:
-    """One line that says so, no part of a file, and the recording as it was."""
+    """One line, no part of a file, and the recording as it was."""
     path, many = tmp_path / "s.h5", 65_536
     rng = np.random.default_rng(1)
     with LiveSession(path, META, channels=2, block=many) as live:

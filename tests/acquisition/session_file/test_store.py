@@ -108,7 +108,7 @@ def test_a_session_comes_back_to_the_bit(tmp_path):
 
 
 def test_each_recording_keeps_its_own_preload(tmp_path):
-    """And one that has none of its own says so, as in files of before."""
+    """And one without is stored as such, as in earlier files."""
     loose, tight, plain = (recording(name) for name in ("loose", "tight", "plain"))
     loose = dataclasses.replace(loose, preload=2000.0)
     tight = dataclasses.replace(tight, preload=8000.0)
@@ -242,7 +242,7 @@ def test_a_session_that_is_there_is_not_overwritten_unless_asked(tmp_path):
     path = tmp_path / "s.h5"
     write_session(session(), path)
     before = path.read_bytes()
-    with pytest.raises(UsageError, match="is there already"):
+    with pytest.raises(UsageError, match="exists already"):
         write_session(session(), path)
     assert path.read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["s.h5"]
@@ -259,7 +259,7 @@ def test_a_session_that_cannot_be_written_leaves_nothing(tmp_path):
 
 
 def test_two_records_of_one_name_are_refused():
-    """They could not be told apart again."""
+    """They could not be distinguished again."""
     with pytest.raises(ShapeError, match="'hit 1' twice"):
         new_session(source="", simulated=False, recordings=[recording(), recording()])
 

@@ -52,7 +52,7 @@ def test_stiffness_falls_with_roughness(model):
 
 
 def test_stiffness_has_its_greatest_value_inside_the_range_of_dimension():
-    """It does not rise with D for ever, as the papers say: it falls near the end."""
+    """It does not always rise with D, as the papers state: it falls near the end."""
     offset = np.linspace(0.4, 0.98, 200)
     sums = contact_curve(
         "modified_2d", dimension=1 + offset, roughness=1e-9, material=IRON, preload=1e3
@@ -154,7 +154,7 @@ def test_a_real_area_far_above_the_largest_contact_is_remarked():
 def test_a_dimension_of_the_other_kind_is_refused_with_the_way_out(
     model, dimension, hint
 ):
-    """Profile and surface dimensions differ by one: the message says which is meant."""
+    """Profile and surface dimensions differ by one: the message suggests the other."""
     with pytest.raises(BadData, match=hint):
         predict_contact(
             joint_case(

@@ -61,7 +61,7 @@ def test_the_sum_of_contacts_is_not_the_slope_by_the_gap():
 
 
 def test_the_closed_form_softens_where_all_is_elastic():
-    """The disagreement that the page tells of."""
+    """The disagreement that the page reports."""
     page = script("oracle_page")
     for row in ROWS:
         found = page.columns(row)

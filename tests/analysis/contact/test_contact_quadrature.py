@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every closed form against quadrature of the asperity laws, written out anew."""
+"""Every closed form against quadrature of the asperity laws, written independently."""
 
 import math
 from functools import partial
@@ -120,7 +120,7 @@ def panels(function, low, high):
 
 
 def reachable(draw):
-    """Tell whether areas stay within what doubles hold."""
+    """Return whether areas are within the range of doubles."""
     return abs(draw.log_critical()) + abs(math.log(draw.ratio)) / draw.e < 500
 
 

@@ -89,7 +89,7 @@ def test_a_dimension_that_is_mostly_out_of_range_is_refused():
 
 
 def test_draws_outside_the_range_are_counted():
-    """The median stays a prediction of the model, the share lost is told."""
+    """The median stays a prediction of the model, the rejected share is reported."""
     found = predict_interval(
         joint_case("ke_3d", spread=ContactSpread(dimension=0.4), **JOINT)
     )

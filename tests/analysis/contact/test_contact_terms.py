@@ -135,7 +135,7 @@ def test_approach_stiffness_is_the_slope_of_load_by_the_largest_interference():
 
 
 def test_a_tangential_load_softens_until_the_joint_slides():
-    """(1 - T/(mu P))^(1/3), then nothing, and the verdict's reasons say so."""
+    """(1 - T/(mu P))^(1/3), then nothing, and the verdict's reasons state it."""
     options = {
         "dimension": 2.5,
         "roughness": 1e-10,

@@ -144,7 +144,7 @@ def test_the_uncertainty_of_the_masses_enters_that_of_the_stiffness():
         assert 0.005 < one.sd / one.value < 0.02
 
 
-def test_a_lone_known_link_leaves_only_the_joint_to_find():
+def test_a_single_known_link_leaves_only_the_joint_to_find():
     """`unknown` names the links sought; the rest keep their values."""
     model = LumpedModel(TRUTH.bodies, (TRUTH.links[0], chain().links[1]))
     measured = measure(TRUTH, shapes=False)
@@ -165,7 +165,7 @@ def test_one_mode_does_not_determine_two_links_and_says_so():
 
 
 def test_the_higher_mode_alone_is_matched_to_the_higher_mode():
-    """With the ground known, `mode_numbers` says which one was measured."""
+    """With the ground known, `mode_numbers` selects the measured one."""
     model = LumpedModel(TRUTH.bodies, (TRUTH.links[0], chain().links[1]))
     modes = solve_modes(TRUTH)
     second = MeasuredModes(modes.natural_frequency[1:], np.array([0.05]))
@@ -198,12 +198,12 @@ def test_two_bodies_that_read_one_channel_are_refused():
         identify_links(chain(), named_twice)
 
 
-def test_damping_of_a_hardly_strained_joint_cannot_be_told_from_zero():
+def test_damping_of_a_hardly_strained_joint_cannot_be_distinguished_from_zero():
     """Damping ratios good to 60 % leave the joint's share undecided."""
     result = identify_links(chain(), measure(TRUTH, damping_sd=0.6))
     one = result.parameter("joint.damping")
     assert not one.identifiable
-    assert "told from zero" in one.reason
+    assert "distinguished from zero" in one.reason
     assert result.verdict is IdentificationVerdict.PARTLY
 
 
@@ -220,7 +220,7 @@ def test_damping_is_never_negative():
     assert not one.identifiable
 
 
-def test_a_misfit_enlarges_the_standard_deviations():
+def test_a_large_residual_enlarges_the_standard_deviations():
     """Uncertainties somewhat too small: the same values, sd as they should be."""
     measured = measure(TRUTH, seed=4)
     fields = ("frequency_sd", "damping_ratio_sd", "shape_sd")
@@ -261,9 +261,9 @@ def test_a_link_with_two_solutions_has_the_interval_of_both():
     assert max(found) > 1.3 * min(found)
     low, high = one.interval
     assert low < min(found) < max(found) < high
-    told = identification_json(result)["parameters"]["joint.stiffness"]
-    assert told["sd"] is None
-    assert told["interval_95"] == [low, high]
+    reported = identification_json(result)["parameters"]["joint.stiffness"]
+    assert reported["sd"] is None
+    assert reported["interval_95"] == [low, high]
 
 
 def test_a_search_that_ran_out_of_steps_is_no_rival():
@@ -303,7 +303,7 @@ def test_a_free_pair_gives_the_joint_between_its_bodies():
 
 
 def test_a_free_pair_has_no_second_mode():
-    """The message says what to do about it."""
+    """The message states the remedy."""
     blank = LumpedModel(TRUTH.bodies, (Link("joint", ("base", "top")),))
     measured = MeasuredModes(np.array([100.0, 300.0]), np.array([0.1, 0.1]))
     with pytest.raises(BadData, match="fewer oscillating modes"):

@@ -68,7 +68,7 @@ def test_a_model_without_enough_oscillation_has_no_residuals():
 
 
 def test_more_modes_than_bodies_are_refused():
-    """The message says how many the model can have."""
+    """The message states the largest number."""
     one = LumpedModel((Body("a", 5.0),), (Link("g", ("ground", "a")),))
     measured = MeasuredModes(np.array([10.0, 20.0]), np.array([0.1, 0.1]))
     with pytest.raises(BadData, match="at most 1"):

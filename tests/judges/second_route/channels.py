@@ -17,7 +17,7 @@ from jointbench.analysis.gap.response.excitation import Excitation
 
 Values = Mapping[str, float]
 AT_SAMPLES = ("saturation", "hum")
-"""Faults of the converter, behind its filter; all others lie before it."""
+"""Faults of the converter, after its filter; all others are before it."""
 
 
 def anti_alias(signal: FloatArray, excitation: Excitation) -> FloatArray:

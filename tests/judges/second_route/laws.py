@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Force laws of links in continuous time, written anew for the second route.
+"""Force laws of links in continuous time, written independently for the second route.
 
-Nothing here is shared with the compiled march: a law gives its force and the rates of
+Nothing here is shared with the compiled time integration: a law gives its force and the
+    rates of
 its own states at one instant, and `second_route.motion` integrates.
 """
 

@@ -43,7 +43,7 @@ def force_between_samples(excitation: Excitation, beyond: int) -> CubicSpline:
 
     Args:
         excitation: holds the forces, zero outside their hits.
-        beyond: samples of silence behind the record.
+        beyond: samples of silence after the record.
 
     Returns:
         Function of time [s] with values of shape (..., n_records).
@@ -65,7 +65,7 @@ def integrate_motion(
     Args:
         system: equations of motion.
         excitation: forces.
-        beyond: samples to go on behind the record.
+        beyond: samples to continue after the record.
         tolerance: local error over the size of the state [-].
 
     Raises:
@@ -79,7 +79,7 @@ def integrate_motion(
     def rate(t: float, y: FloatArray) -> FloatArray:
         return system.rates(push(t), y.reshape(records, width)).ravel()
 
-    # A law that runs away overflows before the integrator gives up and says so.
+    # A law that runs away overflows before the integrator reports a failure.
     with np.errstate(over="ignore", invalid="ignore"):
         run = solve_ivp(
             rate,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Equations of motion of lumped bodies, put together anew for the second route.
+"""Equations of motion of lumped bodies, assembled independently for the second route.
 
 Mass, stiffness and damping matrices of every record come from the effects' parameters,
 with an oscillator hung on as a further body; the fast route has dynamic stiffnesses
@@ -75,7 +75,7 @@ class System:
         return 2 * int(self.mass.shape[1]) + sum(law.states for law in self.laws)
 
     def rates(self, force: FloatArray, state: FloatArray) -> FloatArray:
-        """Return the rates of the states, acceleration behind velocity.
+        """Return the rates of the states, acceleration after velocity.
 
         Args:
             force: on the body that was hit [N], shape (..., n_records).
@@ -84,8 +84,10 @@ class System:
         """
         n = self.mass.shape[1]
         x, v = state[..., :n], state[..., n : 2 * n]
-        pull = (self.stiffness @ x[..., None] + self.damping @ v[..., None])[..., 0]
-        acceleration = force[..., None] * self.input - pull
+        link_force = (self.stiffness @ x[..., None] + self.damping @ v[..., None])[
+            ..., 0
+        ]
+        acceleration = force[..., None] * self.input - link_force
         parts, at = [v, acceleration], 2 * n
         for law, ends in zip(self.laws, self.ends, strict=True):
             r, speed, own = x @ ends, v @ ends, state[..., at : at + law.states]

@@ -2,9 +2,10 @@
 """Verify predicted responses by a second route that shares no step with the first.
 
 The first route (`predict_records`) works with transfer functions on a
-line in the Laplace plane and a compiled march of the link force; the second puts up the
-equations of motion and hands them to `scipy.integrate.solve_ivp`. Where both agree to a
-small part of the noise, a gap between model and measurement is none of the solver's.
+line in the Laplace plane and a compiled time integration of the link force; the second
+puts up the equations of motion and passes them to `scipy.integrate.solve_ivp`. Where
+both agree to a small part of the noise, a gap between model and measurement is none of
+the solver's.
 """
 
 from collections.abc import Sequence
@@ -30,7 +31,7 @@ from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 TOLERANCE = 1e-9
 BEYOND = 64
-"""Samples integrated behind the record, for leads and for the filter to end in."""
+"""Samples integrated after the record, for leads and for the filter to end in."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

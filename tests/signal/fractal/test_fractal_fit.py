@@ -94,7 +94,7 @@ def test_the_stated_interval_covers_the_truth():
     assert np.sqrt(np.mean(ratio**2)) > 0.5
 
 
-def test_noise_is_told_from_roughness():
+def test_noise_is_distinguished_from_roughness():
     """Noise of a whole step moves a plain slope by 0.2; the fit finds both."""
     dimension, size = 1.4, STEP
     found = fit(brownian(10_000, dimension, 4) + noise(10_000, size, 4))
@@ -107,7 +107,7 @@ def test_noise_is_told_from_roughness():
     assert parameter.sd < 0.1 * size
 
 
-def test_a_point_spread_is_told_from_smoothness():
+def test_a_point_spread_is_distinguished_from_smoothness():
     """A blur of 3 samples bends S up to 10 samples; D and width both come back."""
     dimension = 1.5
     blurred = gaussian_filter1d(brownian(12_000, dimension, 5), 3.0)
@@ -121,7 +121,7 @@ def test_a_point_spread_is_told_from_smoothness():
     assert found.fit_band[0] > 2 * SPACING
 
 
-def test_a_tip_is_told_from_a_point_spread():
+def test_a_tip_is_distinguished_from_a_point_spread():
     """A tip leaves creases where it turns; D comes back."""
     dimension = 1.3
     heights = 10 * brownian(12_000, dimension, 6)
@@ -181,7 +181,7 @@ def test_rows_that_repeat_add_no_knowledge():
 
 
 def test_two_faces_of_one_dimension_add_their_amplitudes():
-    """Like faces: D as before, and S doubled means G 2^(1/(2(D-1))) times larger."""
+    """Two equal surfaces: same D, and twice S means G 2^(1/(2(D-1))) times larger."""
     faces = [
         structure_function(Profile(f"p{seed}", z, SPACING, all_valid(z)))
         for seed in (1, 2)

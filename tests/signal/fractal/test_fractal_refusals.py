@@ -127,7 +127,7 @@ def test_a_surface_buried_in_noise_is_instrument_limited():
 
 @pytest.mark.parametrize("name", ["GII-EII"])
 def test_a_real_stylus_trace_gets_a_reason(name: str):
-    """Smooth below 5 um and bent above: no power law, and the slopes say so."""
+    """Smooth below 5 um and bent above: no power law, and the slopes show it."""
     path = DATA / "surfcom" / f"{name}.tx1"
     if not path.exists():
         pytest.skip(f"{path} is not beside the checkout")

@@ -47,8 +47,8 @@ def test_a_map_agrees_with_the_full_sum_over_rows():
     heights = np.random.default_rng(0).standard_normal((rows, points))
     surface = Areal("m", heights, (1.0, 1.0), all_valid(heights))
     estimate = structure_function(surface, lags=(1, 4, 10))
-    face = replace(estimate.faces[0], row_distance=1.0)
-    found = structure_covariance(replace(estimate, faces=(face,)))(noisy_power)
+    sampling = replace(estimate.samplings[0], row_distance=1.0)
+    found = structure_covariance(replace(estimate, samplings=(sampling,)))(noisy_power)
     e = np.arange(rows)[:, None] - np.arange(rows)
     for i, a in enumerate((1, 4, 10)):
         d = np.arange(points - a)[None, :] - np.arange(points - a)[:, None]

@@ -1,4 +1,4 @@
-"""From heights to a verdict: what scales is measured, what does not is said not to."""
+"""From heights to a verdict: D where there is a scaling range, a reason where not."""
 
 from dataclasses import replace
 
@@ -86,7 +86,7 @@ def test_what_does_not_scale_is_not_called_fractal(name: str) -> None:
 
 
 def test_two_faces_add_their_structure_functions() -> None:
-    """S_e = S_a + S_b, and two like faces keep the dimension of one."""
+    """S_e = S_a + S_b, and two equal surfaces keep the dimension of one."""
     faces = [
         structure_function(
             rough_profile(

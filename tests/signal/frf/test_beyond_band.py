@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Peaks above the band are told, with the way to reach them."""
+"""Peaks above the band are reported, with a band that includes them."""
 
 from collections.abc import Callable
 from typing import Any
@@ -33,7 +33,7 @@ def beyond(structure: Make, hammered: Make) -> Callable[..., Beyond]:
     return make
 
 
-def test_a_peak_above_the_default_band_is_told_with_the_band_to_ask_for(
+def test_a_peak_above_the_default_band_is_reported_with_its_band(
     beyond: Callable[..., Beyond],
 ) -> None:
     """Accelerance of the mode at 2000 Hz is far above that at 300 Hz."""
@@ -45,7 +45,7 @@ def test_a_peak_above_the_default_band_is_told_with_the_band_to_ask_for(
     assert f"--band {found.begin:.3g}:2200" in found.words()
 
 
-def test_the_band_that_is_told_finds_the_mode(structure: Make, hammered: Make) -> None:
+def test_the_reported_band_finds_the_mode(structure: Make, hammered: Make) -> None:
     """Asked for up to 2100 Hz, the mode at 2000 Hz is there."""
     truth = structure((300.0, 2000.0), (0.01, 0.005))
     record = find_hits(hammered(truth, width=1e-3, peaks=(90.0, 100.0), noise=1e-5))

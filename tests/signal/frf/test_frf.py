@@ -132,7 +132,7 @@ def test_the_variance_from_the_scatter_is_that_of_the_added_noise(
 def test_coherence_falls_where_noise_rises(
     hammered: Callable[..., Recording], structure: Callable[..., Any]
 ) -> None:
-    """Near 1 at the resonance; lower off it, where the noise is as loud as ever."""
+    """Near 1 at the resonance; lower off it, where the noise is unchanged."""
     record = hammered(structure((300.0,), (0.01,)), peaks=(100.0,) * 6, noise=0.01)
     frf = estimate_frf(record)
     assert frf.coherence is not None

@@ -44,7 +44,7 @@ def test_a_single_noisy_line_is_not_looked_away_from() -> None:
     assert np.allclose(weight, 1.0)
 
 
-def test_coherence_tells_lines_apart_where_scatter_is_unknown() -> None:
+def test_coherence_weights_lines_where_scatter_is_unknown() -> None:
     """Noise over signal is (1 - c) / c: 1 at 0.5 against 1/9 at 0.9."""
     coherence = np.where(FREQUENCY > 70.0, 0.5, 0.9)[None, None]
     weight, source = weights_of(plain(coherence=coherence), ALL)
@@ -54,7 +54,7 @@ def test_coherence_tells_lines_apart_where_scatter_is_unknown() -> None:
 
 
 def test_without_any_knowledge_all_lines_count_alike() -> None:
-    """No weights, and the record says so."""
+    """No weights, as the record states."""
     assert weights_of(plain(), ALL) == (None, "none")
 
 
@@ -97,9 +97,9 @@ def test_the_noise_seen_by_the_stage_is_that_of_the_frf() -> None:
     """Against the scatter of 40 hits, between modes: within a factor of two."""
     frfs = [estimate_frf(staged(seed)) for seed in range(40)]
     scatter = np.var([frf.response[0, 0] for frf in frfs], axis=0)
-    told = frfs[0].innovation_noise
-    assert told is not None
+    reported = frfs[0].innovation_noise
+    assert reported is not None
     inside = (frfs[0].frequency > 50.0) & (frfs[0].frequency < 300.0)
-    ratio = np.median(told[0, 0, inside]) / np.median(scatter[inside])
+    ratio = np.median(reported[0, 0, inside]) / np.median(scatter[inside])
     assert 0.5 < ratio < 2.0
     assert stage_noise_of(frfs[0].provenance)["a1"] == pytest.approx(NOISE, rel=0.3)

@@ -80,9 +80,9 @@ def test_the_sentence_gives_levels_and_chance(structure: Callable[..., Any]) -> 
 
 
 @pytest.mark.parametrize("levels", [(1.0, 2.0), (1.0, 1.01, 1.02, 1.0)])
-def test_hits_that_cannot_tell_are_refused(
+def test_too_few_hits_or_one_level_are_refused(
     structure: Callable[..., Any], levels: tuple[float, ...]
 ) -> None:
     """Two hits, or all on one level."""
-    with pytest.raises(BadData, match="softly and hard"):
+    with pytest.raises(BadData, match="soft and hard"):
         check_linearity(spectra(structure, shift=0.0, levels=levels))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What cannot give modes is refused in one line that says why and what to do."""
+"""Data without modes are refused in one line with reason and remedy."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -93,7 +93,7 @@ def test_the_largest_order_falls_with_lines_and_inputs() -> None:
         orders_to_try(ModalSettings(highest_order=16), 60, 2)
 
 
-def test_a_record_too_short_is_told_how_long_it_must_be(
+def test_a_short_record_is_refused_with_the_needed_length(
     structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
 ) -> None:
     """100 Hz lines up to 1 kHz: 19 lines of a 1 kHz band take 0.019 s, not 0.01 s."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Glancing hits in files of one hit each, told by the level of campaign or plan."""
+"""Glancing hits in files of one hit each, detected by the level of campaign or plan."""
 
 import json
 from collections.abc import Iterator

@@ -73,7 +73,7 @@ def test_a_smooth_crest_read_by_a_coarse_converter_is_not_clipped() -> None:
 
 @pytest.mark.parametrize(("share", "delay"), [(0.6, 80), (0.2, 300), (0.08, 30)])
 def test_a_bounce_is_double_with_its_share_and_delay(share: float, delay: int) -> None:
-    """The number is the second peak over the first; the reason says how much later."""
+    """The number is the second peak over the first; the reason gives the delay."""
     (hit,) = judged(pulse(500, 100.0) + pulse(500 + delay, 100.0 * share))
     assert hit.verdict is Verdict.DOUBLE
     assert hit.measure == pytest.approx(share)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a block cuts off a response, foretold from its end."""
+"""The part of a response cut off by a block, predicted from its end."""
 
 from collections.abc import Callable
 from typing import Any

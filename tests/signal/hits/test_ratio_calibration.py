@@ -70,7 +70,7 @@ def test_scatter_of_the_hits_is_the_scatter_of_their_mean() -> None:
     assert found.expanded == pytest.approx(3.182 * 0.001155, rel=1e-3)
 
 
-def test_a_mass_that_bends_is_told_from_a_rigid_one() -> None:
+def test_a_mass_that_bends_is_distinguished_from_a_rigid_one() -> None:
     """A ratio that rises by 8 % over the band fails, and is in the uncertainty."""
     recording = on_a_mass((1.0,) * 3, bending=3e-10)
     (found,) = calibrate_ratio([recording], mass=4.0, mass_sd=0.0)

@@ -79,7 +79,7 @@ def test_a_decayed_response_gets_no_exponential_window(
 def test_noise_at_the_end_is_not_taken_for_ringing(
     hammered: Callable[..., Recording], structure: Callable[..., Any]
 ) -> None:
-    """The same structure with 3 % noise: its end is louder than 3 % of its start."""
+    """The same structure with 3 % noise: its end is above 3 % of its start."""
     record = hammered(structure((300.0,), (0.02,)), noise=0.03, seed=4)
     assert choose_window(find_hits(record)).decay_rate is None
 

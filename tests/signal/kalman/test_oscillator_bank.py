@@ -41,7 +41,7 @@ def test_the_bank_without_gaps_agrees_with_filterpy() -> None:
 
 
 def test_a_gap_agrees_with_filterpy_as_well() -> None:
-    """Thirty lost samples: filterpy is told None there."""
+    """Thirty lost samples: filterpy gets None there."""
     samples = np.random.default_rng(1).normal(size=300)
     model, _ = bank_model(samples, *MODES, 1000.0)
     lost = np.zeros(300, bool)

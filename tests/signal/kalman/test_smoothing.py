@@ -180,7 +180,7 @@ def test_the_same_smoother_on_all_channels_leaves_the_frf_alone(
 def test_the_smoother_on_the_response_alone_multiplies_the_frf_by_its_gain(
     hammered: Callable[..., Recording], structure: Callable[..., Any]
 ) -> None:
-    """Which is why it is not the default, and why the record says so."""
+    """This is why it is not the default, and why it is recorded."""
     truth = structure((300.0, 1200.0), (0.02, 0.01))
     record, settings = hammered(truth), KalmanSettings(cutoff=1800.0)
     smooth = smooth_recording(record, settings, channels=("a1",))
@@ -214,7 +214,7 @@ def test_a_channel_that_is_not_there_is_named(
 
 
 def test_the_model_is_read_only() -> None:
-    """Records do not change behind a caller's back."""
+    """Records do not change afterwards."""
     model: StateModel = state_model(KalmanSettings(cutoff=100.0), RATE)
     with pytest.raises(ValueError, match="read-only"):
         model.process[0, 0] = 1.0

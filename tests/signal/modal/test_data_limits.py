@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What cannot be in the data is said: time scale, length, decay, rate."""
+"""Limits of the data are reported: time scale, length, decay, rate."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,10 +12,10 @@ from jointbench.acquisition.records.recordings import Channel, Quantity, Recordi
 from jointbench.signal.frf.frf import estimate_frf
 from jointbench.signal.hits.find_hits import find_hits
 from jointbench.signal.modal.data_limits import (
-    asked_words,
     block_words,
     mode_words,
     pulse_duration,
+    requested_band_words,
     time_scale_words,
 )
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
@@ -33,10 +33,10 @@ def test_the_duration_of_a_half_sine_is_two_thirds_of_it(
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e-3, "ms"), (1e3, "s")])
-def test_a_time_column_in_the_wrong_unit_is_told_with_what_to_type(
+def test_a_time_column_in_the_wrong_unit_is_reported_with_the_remedy(
     structure: Make, hammered: Make, factor: float, unit: str
 ) -> None:
-    """A pulse of 0.4 ms becomes one of 0.4 s, or of 0.4 us; both records are told."""
+    """A pulse of 0.4 ms becomes one of 0.4 s, or of 0.4 us; both are reported."""
     record = hammered(structure((300.0,), (0.02,)), sample_rate=25600.0)
     scaled = replace(record, sample_rate=factor * record.sample_rate)
     (words,) = time_scale_words([record, scaled, scaled])
@@ -71,15 +71,15 @@ def test_a_block_long_enough_says_nothing(structure: Make, hammered: Make) -> No
     assert block_words([record], lines=1000) == ()
 
 
-def test_a_band_beyond_the_record_is_told(structure: Make, hammered: Make) -> None:
+def test_a_band_beyond_the_record_is_reported(structure: Make, hammered: Make) -> None:
     """8192 Hz: half is 4096 Hz, filters act from 3200 Hz on; 1 s holds 3 Hz."""
     record = find_hits(hammered(structure((400.0,), (0.01,))))
-    assert asked_words([record], None) == ()
-    assert asked_words([record], (10.0, 3000.0)) == ()
-    low, high = asked_words([record], (1.0, 5000.0))
+    assert requested_band_words([record], None) == ()
+    assert requested_band_words([record], (10.0, 3000.0)) == ()
+    low, high = requested_band_words([record], (1.0, 5000.0))
     assert "begins at 1 Hz" in low
     assert "nothing above 4096 Hz" in high
-    (near,) = asked_words([record], (10.0, 3500.0))
+    (near,) = requested_band_words([record], (10.0, 3500.0))
     assert "3200 Hz" in near
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from jointbench.signal.frf.frf import Frf, FrfKind
-from jointbench.signal.modal.fit_residuals import misfit_around
+from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import lines_of
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
@@ -77,6 +77,6 @@ def test_white_residuals_as_large_as_stated_inflate_nothing(
     for seed in range(300):
         parts = np.random.default_rng(seed).normal(size=(2, 1, LINES.size))
         noise = (parts[0] + 1j * parts[1]) / np.sqrt(2.0)
-        factors.append(misfit_around(lines, truth.poles, noise, np.ones(noise.shape)))
+        factors.append(residual_around(lines, truth.poles, noise, np.ones(noise.shape)))
     left = 24.0 / 22.0
     assert np.mean(factors) == pytest.approx(left, abs=0.06)

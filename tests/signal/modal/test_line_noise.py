@@ -14,7 +14,7 @@ ONES = np.ones((1, 100), complex)
 LINES = np.arange(1.0, 2000.0, 0.5)
 
 
-def test_roughness_tells_the_noise_of_a_resonant_frf(
+def test_roughness_estimates_the_noise_of_a_resonant_frf(
     structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
 ) -> None:
     """1 % noise: its mean variance over 4000 lines within 10 %."""

@@ -26,13 +26,13 @@ def model(structure: Callable[..., Any], noisy_frf: Callable[..., Frf]) -> Modal
         frequency_sd=np.array([0.2, 0.4, 0.6]),
         damping_ratio=np.array([0.01, 0.01, 0.2]),
         damping_ratio_sd=np.array([0.0001, 0.001, 0.002]),
-        misfit=np.array([100.0, 1.0, 4.0]),
+        residual_ratio=np.array([100.0, 1.0, 4.0]),
         stable_orders=np.array([40, 10, 45], np.int64),
     )
 
 
 def test_the_systematic_part_is_what_noise_does_not_explain(model: ModalModel) -> None:
-    """Sd sqrt(1 - 1/misfit): nearly all at a misfit of 100, nothing at 1."""
+    """Sd sqrt(1 - 1/residual_ratio): nearly all at a ratio of 100, 0 at 1."""
     rated = rate_modes(model, 50)
     assert rated.frequency_error == pytest.approx(
         [0.2 * np.sqrt(0.99), 0.0, 0.6 * np.sqrt(0.75)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Modes from FRFs and from hammer hits, without being told where they are."""
+"""Modes from FRFs and from hammer hits, without start values."""
 
 from collections.abc import Callable
 from typing import Any
@@ -33,7 +33,7 @@ def test_clean_modes_are_found_alone_in_any_kind_of_frf(
     assert np.allclose(model.residues, truth.residues(), rtol=0.02)
 
 
-def test_a_pair_0_8_percent_apart_is_told_apart(
+def test_a_pair_0_8_percent_apart_is_distinguished(
     structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
 ) -> None:
     """One FRF, 1 % noise, half-power widths that overlap."""
@@ -74,7 +74,7 @@ def test_the_benchmark_of_eight_modes_with_two_beyond_the_band() -> None:
 
 
 def test_noise_holds_no_modes() -> None:
-    """Four seeds of white noise, and the message says what was tried."""
+    """Four seeds of white noise, and the message lists what was tried."""
     for seed in range(4):
         rng = np.random.default_rng(seed)
         noise = rng.normal(size=(1, 1, 3000)) + 1j * rng.normal(size=(1, 1, 3000))

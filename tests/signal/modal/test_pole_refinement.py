@@ -45,7 +45,7 @@ def test_the_covariance_is_that_of_repeated_measurements(
     assert np.all(np.abs(rms - 1.0) < 0.2)
 
 
-def test_inflation_tells_residuals_beyond_the_stated_noise(
+def test_inflation_shows_residuals_beyond_the_stated_noise(
     structure: Callable[..., Any], noisy_frf: Callable[..., Frf]
 ) -> None:
     """Variances understated by 25: the factor is 25 within its own scatter."""

@@ -119,7 +119,7 @@ def model(scale: complex = 1.0) -> ModalModel:
         residues=residues,
         residues_sd=np.zeros_like(residues),
         shapes_sd=np.zeros_like(shapes),
-        misfit=np.ones(2),
+        residual_ratio=np.ones(2),
         shapes=shapes,
         participation=participation,
         significance=np.ones(2),
@@ -146,10 +146,10 @@ def test_a_sensor_mounted_the_wrong_way_round_shows_in_the_phase() -> None:
 
 
 def test_without_a_driving_point_there_is_no_mass() -> None:
-    """The message says what to do."""
+    """The message states the remedy."""
     from dataclasses import replace
 
-    with pytest.raises(ChannelMissing, match="hit once beside a sensor"):
+    with pytest.raises(ChannelMissing, match="hit once next to a sensor"):
         mass_normalise(replace(model(), inputs=("7",)))
 
 

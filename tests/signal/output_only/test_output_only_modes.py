@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Modes from responses alone: a machine shaken by a force that nobody measured."""
+"""Modes from responses alone: a machine under an unmeasured force."""
 
 from dataclasses import replace
 
@@ -98,8 +98,8 @@ def test_the_intervals_are_no_wider_than_they_must_be(
 ) -> None:
     """The sd of damping is that of the scatter over runs, within a factor of 2."""
     damping = np.array([modes.damping_ratio[nearest(modes)] for modes in runs])
-    told = np.array([modes.damping_ratio_sd[nearest(modes)] for modes in runs])
-    ratio = np.median(told, axis=0) / np.std(damping, axis=0, ddof=1)
+    reported = np.array([modes.damping_ratio_sd[nearest(modes)] for modes in runs])
+    ratio = np.median(reported, axis=0) / np.std(damping, axis=0, ddof=1)
     assert 0.5 < np.median(ratio) < 2.0
 
 
@@ -121,8 +121,8 @@ def test_shapes_are_those_of_the_structure_up_to_a_factor() -> None:
         assert overlap > 0.995
 
 
-def test_a_sine_of_the_spindle_is_told_from_a_resonance() -> None:
-    """A line at 150 Hz beside the modes: its envelope keeps still."""
+def test_a_sine_of_the_spindle_is_distinguished_from_a_resonance() -> None:
+    """A sine at 150 Hz besides the modes has a constant envelope."""
     run = spindle_run(60.0, 3)
     time = np.arange(run.samples.shape[1]) / RATE
     sine = 0.5 * run.samples.std() * np.sin(2.0 * np.pi * 150.0 * time)

@@ -103,7 +103,7 @@ def test_along_rows_and_columns_it_is_the_structure_function_of_the_map(
         structure_function(surface, direction=direction),
     )
     assert_array_equal(along.value, known.value)
-    assert along.faces[0].row_distance == known.faces[0].row_distance
+    assert along.samplings[0].row_distance == known.samplings[0].row_distance
 
 
 def test_all_lags_of_a_profile_agree_with_direct_sums_beside_an_offset():

@@ -18,7 +18,7 @@ def test_a_tilted_line_levels_to_nothing_and_its_slope_is_recorded():
     assert dict(levelled.provenance[-1].detail)["slope"] == pytest.approx(3e-3)
 
 
-def test_missing_points_do_not_pull_the_plane():
+def test_missing_points_do_not_bias_the_plane():
     """A plane with a hole levels to nothing where measured and stays 0 in the hole."""
     rows, columns = np.indices((30, 40))
     valid = all_valid(np.empty((30, 40)))
@@ -32,7 +32,7 @@ def test_missing_points_do_not_pull_the_plane():
 
 
 def test_a_surface_with_too_few_measured_points_is_refused():
-    """Ten measured points are no surface; the message says how many are needed."""
+    """Ten measured points are no surface; the message states the needed number."""
     heights = np.zeros(50)
     valid = np.arange(50) < 10
     with pytest.raises(SurfaceTooSmall, match="10 measured points, at least 16"):

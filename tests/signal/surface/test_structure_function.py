@@ -83,14 +83,14 @@ def test_rows_that_repeat_each_other_are_recognised_as_one():
     same = np.tile(row, (32, 1))
     apart = np.array([walk(256, seed) for seed in range(32)])
     faces = [
-        structure_function(Areal("m", z, (1e-6, 1e-6), all_valid(z))).faces[0]
+        structure_function(Areal("m", z, (1e-6, 1e-6), all_valid(z))).samplings[0]
         for z in (same, apart)
     ]
     assert faces[0].row_distance < 0.01e-6
     assert faces[1].row_distance > 8e-6
 
 
-def test_provenance_tells_levelling_and_lags():
+def test_provenance_holds_levelling_and_lags():
     """The steps before the estimate stay, levelling among them."""
     estimate = structure_function(profile(walk(100)))
     assert [note.name for note in estimate.provenance] == [
@@ -129,11 +129,11 @@ def test_two_faces_add():
         np.interp(np.log(a.lag[inside]), np.log(b.lag), np.log(b.value))
     )
     assert_allclose(both.value, expected, rtol=1e-12)
-    assert sum(face.share for face in both.faces) == pytest.approx(1.0)
+    assert sum(one.share for one in both.samplings) == pytest.approx(1.0)
 
 
 def test_faces_without_a_common_lag_do_not_combine():
-    """A face measured at 1 mm spacing shares no lag with one of 0.3 mm length."""
+    """A surface measured at 1 mm spacing shares no lag with one of 0.3 mm length."""
     fine = structure_function(profile(walk(300)))
     heights = walk(300)
     coarse = structure_function(Profile("c", heights, 1e-3, all_valid(heights)))

@@ -10,7 +10,7 @@ import pytest
 from jointbench.simulators.measuring.converter import AntiAlias, decimate
 from jointbench.simulators.mechanics.joint_laws import JointLaw, LawKind
 from jointbench.simulators.mechanics.plant import Plant, PlantLink, two_bodies
-from jointbench.simulators.mechanics.plant_march import step_plant
+from jointbench.simulators.mechanics.plant_integration import step_plant
 from jointbench.simulators.mechanics.sliders import jenkins_bank
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gap-campaigns"

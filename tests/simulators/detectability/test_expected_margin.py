@@ -1,4 +1,4 @@
-"""Margins against closed forms: second-order terms, twins, scatter of hits."""
+"""Margins against closed forms: second-order terms, other sites, scatter of hits."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def quiet():
 
 @pytest.fixture(scope="module")
 def scattered():
-    """The same specimen under a scattering hand."""
+    """The same specimen with scatter of the operator."""
     design = draw_design(21, grid="small", noise=0.025, hit_scatter=SCATTER)
     return margin_scale(design)
 
@@ -53,7 +53,7 @@ def test_a_delay_differs_from_a_low_pass_by_its_second_order_term(quiet):
 
 
 def test_a_small_mode_near_a_resonance_may_sit_on_either_body(quiet):
-    """One resonance tells the product of mass and squared shape, not the body."""
+    """One resonance determines the product of mass and squared shape, not the body."""
     omega = 2 * np.pi * 1.02 * quiet.scales.frequency[0]
     mass = 4e-4
     parts = {"m": mass, "k": mass * omega**2, "c": 0.02 * mass * omega, "dof": 0}
@@ -62,8 +62,8 @@ def test_a_small_mode_near_a_resonance_may_sit_on_either_body(quiet):
     assert margin.margin < 0.01 * margin.rho**2
 
 
-def test_two_gains_are_told_apart_by_the_priors_of_the_masses_only(quiet):
-    """A gain on one channel is minus that on the other, both masses weighed anew.
+def test_two_gains_are_distinguished_by_the_priors_of_the_masses_only(quiet):
+    """A gain on one channel is minus that on the other, both masses changed.
 
     The cheapest way to scale all of the base by x costs x^2 times the sum of the
     squared inverse priors.

@@ -32,7 +32,9 @@ def test_the_share_is_that_of_a_slope_over_its_sd(design: CampaignDesign) -> Non
     assert found[0] == pytest.approx(0.01 * spread / SCATTER, rel=1e-3)
 
 
-def test_preload_is_told_from_loosening_by_their_order(design: CampaignDesign) -> None:
+def test_preload_is_distinguished_from_loosening_by_their_order(
+    design: CampaignDesign,
+) -> None:
     """The correlation is that of the two patterns over the records."""
     quiet = replace(design, noise=1e-6)
     found = settled_shares(base_view(quiet), HiddenEffect("loosening", {"frac": 1e-3}))

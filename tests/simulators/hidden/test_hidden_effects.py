@@ -223,7 +223,7 @@ def test_sites_are_words_an_analyst_uses():
 
 
 def test_an_unknown_effect_is_refused_with_a_near_match():
-    """The message says what was probably meant."""
+    """The message suggests the probable name."""
     with pytest.raises(UsageError, match="did you mean cubic_stiffness"):
         HiddenEffect("cubic_stifness", {"k3": 1.0})
 

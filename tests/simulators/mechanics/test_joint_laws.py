@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from jointbench.simulators.mechanics.joint_laws import JointLaw, LawKind
 from jointbench.simulators.mechanics.plant import GROUND, Plant, PlantLink
-from jointbench.simulators.mechanics.plant_march import step_plant
+from jointbench.simulators.mechanics.plant_integration import step_plant
 from jointbench.simulators.mechanics.sliders import jenkins_bank
 
 MASSES = np.array([9.0, 4.6])
@@ -21,13 +21,13 @@ def _pulse(time):
     return PEAK * np.sin(np.pi * phase) ** 2
 
 
-def _reference(pull, state_rate):
+def _reference(link_force, state_rate):
     """Accelerations of base and top from DOP853, the law written out by the test."""
 
     def rate(time, y):
         x, v, w = y[:2], y[2:4], y[4]
         r, drift = x[1] - x[0], v[1] - v[0]
-        joint = 5.0e7 * r + 240.0 * drift + pull(r, drift, w, time)
+        joint = 5.0e7 * r + 240.0 * drift + link_force(r, drift, w, time)
         ground = 2.2e7 * x[0] + 320.0 * v[0]
         bent = np.array([joint - ground, float(_pulse(time)) - joint]) / MASSES
         return np.concatenate((v, bent, [state_rate(drift, w)]))
@@ -126,8 +126,8 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_a_law_moves_the_bodies_as_an_adaptive_integrator_says(name):
     """Within 1e-5 of the peak over 19 ms, kinks and reversals included."""
-    law, pull, state_rate = CASES[name]
-    exact = _reference(pull, state_rate)
+    law, link_force, state_rate = CASES[name]
+    exact = _reference(link_force, state_rate)
     plant = Plant(tuple(MASSES), LINKS, (law,))
     force = _pulse(STEP / 2 * np.arange(2 * STEPS + 1))
     acceleration, _ = step_plant(plant, force, body=1, time_step=STEP)
@@ -146,7 +146,7 @@ def test_every_law_makes_a_difference(name):
     assert np.abs(bent - plain).max() > 1e-2 * np.abs(plain).max()
 
 
-def test_a_law_to_the_ground_pulls_on_one_body_only():
+def test_a_law_to_the_ground_acts_on_one_body_only():
     """A cubic spring of no stiffness elsewhere: m a = -k3 x^3 at the first step."""
     law = JointLaw(LawKind.ODD_POWER, GROUND, 0, (3e15, 3.0))
     plant = Plant((2.0,), (), (law,))
@@ -157,8 +157,8 @@ def test_a_law_to_the_ground_pulls_on_one_body_only():
     assert_allclose(acceleration[0, 0], 5.0)
 
 
-def test_sliders_remember_from_one_march_to_the_next():
-    """A march in two parts equals one march, hysteresis included."""
+def test_sliders_keep_their_state_between_integrations():
+    """An integration in two parts equals one, hysteresis included."""
     law = CASES["slider"][0]
     plant = Plant(tuple(MASSES), LINKS, (law,))
     force = _pulse(STEP / 2 * np.arange(2 * 2000 + 1))

@@ -14,7 +14,7 @@ from jointbench.simulators.mechanics.plant import (
     plant_modes,
     two_bodies,
 )
-from jointbench.simulators.mechanics.plant_march import PlantState, step_plant
+from jointbench.simulators.mechanics.plant_integration import PlantState, step_plant
 
 BENCH = two_bodies(m1=9.0, m2=4.6, k0=2.2e7, c0=320.0, kj=6.0e7, cj=240.0)
 
@@ -93,7 +93,7 @@ def test_forced_response_agrees_with_a_tight_adaptive_integrator():
     assert_allclose(acceleration.T, exact, atol=1e-6 * np.abs(exact).max())
 
 
-def test_a_march_in_two_parts_equals_one_march():
+def test_an_integration_in_two_parts_equals_one():
     """The state carries everything from one piece to the next."""
     force = np.zeros(401)
     force[:40] = 100.0

@@ -32,8 +32,8 @@ def test_a_sharp_curve_keeps_to_its_differential_equation(sharpness):
     places, h = np.linspace(0.01, 2, 300), 1e-5
     values = np.array([curve_value(s, table, step) for s in places])
     ahead = np.array([curve_value(s + h, table, step) for s in places])
-    behind = np.array([curve_value(s - h, table, step) for s in places])
-    assert_allclose((ahead - behind) / (2 * h), 1 - values**sharpness, atol=1e-5)
+    below = np.array([curve_value(s - h, table, step) for s in places])
+    assert_allclose((ahead - below) / (2 * h), 1 - values**sharpness, atol=1e-5)
 
 
 def test_places_are_found_again_from_values():
@@ -54,7 +54,7 @@ def test_a_slider_unloads_along_a_straight_line_and_loads_the_other_way():
 
 
 def test_reloading_joins_the_loading_curve_at_the_value_left():
-    """After an unloading by 0.2 the curve goes on from tanh(1) - 0.2."""
+    """After an unloading by 0.2 the curve continues from tanh(1) - 0.2."""
     u, place = move_slider(0.0, UNKNOWN, 1.0, TABLE, STEP)
     u, place = move_slider(u, place, -0.2, TABLE, STEP)
     u, place = move_slider(u, place, 0.7, TABLE, STEP)

@@ -115,7 +115,7 @@ def test_frf_at_rest_equals_the_closed_form_of_the_two_bodies():
     base = bench.m1 * s**2 + bench.k0 + bench.c0 * s + joint
     exact = s**2 * base / (top * base - joint**2)
     measured = spectrum[2, band] / spectrum[0, band]
-    # The hand misses the direction by 5e-4, 2.5 sigma at most.
+    # The hit misses the direction by 5e-4, 2.5 sigma at most.
     assert_allclose(measured, exact, rtol=3e-3)
 
 
@@ -159,6 +159,6 @@ def test_the_name_of_a_bench_opens_the_same_bench():
     ],
 )
 def test_a_url_that_makes_no_sense_is_refused_with_a_way_out(url, message):
-    """One line that says what to type instead."""
+    """One line with the correct input."""
     with pytest.raises(UsageError, match=message):
         bench_from_url(url)

@@ -1,4 +1,4 @@
-"""A planned visit to the simulated bench: what is asked for, and what cannot be."""
+"""A planned campaign on the simulated bench: its records and its refusals."""
 
 import numpy as np
 import pytest
@@ -12,13 +12,13 @@ URL = "sim:two-body-campaign?seed=3&hide=gap&grid=small"
 
 
 def test_the_url_and_the_bench_say_the_same():
-    """A session's source opens the very visit again."""
+    """A session's source opens the same campaign again."""
     bench = specimen_from_url(URL)
     assert bench == CampaignBench(seed=3, hide="gap", grid="small")
     assert specimen_from_url(bench.name) == bench
 
 
-def test_a_visit_depends_on_its_seed_alone():
+def test_a_campaign_depends_on_its_seed_alone():
     """Same seed, same samples; another seed, others."""
     first, again = (campaign_runs(specimen_from_url(URL).simulate()) for _ in range(2))
     for one, other in zip(first, again, strict=True):
@@ -40,14 +40,14 @@ def test_what_is_hidden_changes_the_responses_and_not_the_hits():
     "query",
     ["hide=gremlin", "grid=huge", "size=0", "noise=-1", "hit_scatter=2", "seed=-1"],
 )
-def test_what_no_visit_can_be_is_refused_before_it_begins(query):
+def test_values_out_of_range_are_refused_at_once(query):
     """The line names key or value."""
     key, _, value = query.partition("=")
     with pytest.raises(UsageError, match=f"{key}|{value}"):
         specimen_from_url(f"sim:two-body-campaign?{query}")
 
 
-def test_a_visit_is_no_single_stream():
-    """Whoever wants one block after another is told what to type."""
+def test_a_campaign_is_no_single_stream():
+    """A request for one stream is refused with the correct URL."""
     with pytest.raises(UsageError, match="sim:two-body"):
         bench_from_url(URL)

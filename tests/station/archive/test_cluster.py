@@ -1,4 +1,4 @@
-"""A cluster that is lost midway: one line, nothing lost, gone on with."""
+"""A cluster that is lost midway: one line, nothing lost, continued."""
 
 import subprocess
 import sys
@@ -34,10 +34,10 @@ def dask(tmp_path: Path) -> Iterator[tuple[str, Ends, Ends]]:
     """Yield a scheduler's address, and what kills it and its only worker."""
     pytest.importorskip("distributed")
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    told = tmp_path / "scheduler.json"
+    reported = tmp_path / "scheduler.json"
     begin = [sys.executable, "-m"]
     local = ["--host", "127.0.0.1", "--port", "0"]
-    where = ["--scheduler-file", str(told), "--no-dashboard"]
+    where = ["--scheduler-file", str(reported), "--no-dashboard"]
     scheduler = subprocess.Popen(
         [*begin, "distributed.cli.dask_scheduler", *local, *where],
         **quiet,  # type: ignore[call-overload]
@@ -54,21 +54,21 @@ def dask(tmp_path: Path) -> Iterator[tuple[str, Ends, Ends]]:
         **quiet,  # type: ignore[call-overload]
     )
     try:
-        yield _address(told), scheduler.kill, worker.kill
+        yield _address(reported), scheduler.kill, worker.kill
     finally:
         for process in (worker, scheduler):
             process.kill()
             process.wait()
 
 
-def _address(told: Path) -> str:
+def _address(reported: Path) -> str:
     from distributed import Client
 
     for _ in range(1200):
-        if told.exists() and told.read_text(encoding="utf-8").endswith("}"):
+        if reported.exists() and reported.read_text(encoding="utf-8").endswith("}"):
             break
         time.sleep(0.05)
-    with Client(scheduler_file=str(told), timeout=60) as client:
+    with Client(scheduler_file=str(reported), timeout=60) as client:
         client.wait_for_workers(1, timeout=60)
         return str(client.scheduler.address)
 
@@ -91,7 +91,7 @@ def _run(folder: Path, backend) -> None:
 def test_a_cluster_that_is_lost_midway_is_one_line_and_gone_on_with(
     make_session, tmp_path: Path, dask, monkeypatch, capfd, killed: str
 ) -> None:
-    """Exit code 4; what was done is whole, blamed on no file, and not done again."""
+    """Exit code 4; what was done is whole and not done again; no file is at fault."""
     monkeypatch.setattr(cluster, "_DESERTED", 3.0)
     first = make_session("in/0.h5")
     for number in range(1, SESSIONS):

@@ -125,7 +125,7 @@ def test_a_killed_run_goes_on_where_it_was(make_session, tmp_path: Path) -> None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Ctrl-C is sent otherwise there")
-def test_ctrl_c_finishes_the_files_in_hand_and_tells_of_each(
+def test_ctrl_c_finishes_the_files_in_progress_and_reports_each(
     make_session, tmp_path: Path
 ) -> None:
     """Every result that is there has its line in the ledger; exit code 130."""
@@ -156,7 +156,7 @@ def test_ctrl_c_finishes_the_files_in_hand_and_tells_of_each(
 def test_a_polite_kill_stops_the_run_in_order(
     make_session, tmp_path: Path, name: str
 ) -> None:
-    """As Ctrl-C: what was done has its line, and the ledger says how it ended."""
+    """As Ctrl-C: what was done has its line, and the ledger records how it ended."""
     make_session("in/a.h5")
 
     def killed(tasks, recipe):
@@ -296,7 +296,7 @@ def test_a_ledger_outlives_a_line_that_was_cut(tmp_path: Path) -> None:
 
 
 def test_a_ledger_has_one_writer(tmp_path: Path) -> None:
-    """A second run over the same ledger is refused while the first goes on."""
+    """A second run over the same ledger is refused while the first is running."""
     path = tmp_path / "l.jsonl"
     with (
         open_ledger(path, {}),
@@ -321,7 +321,7 @@ def test_a_cell_is_no_formula(cell: str) -> None:
     assert escaped(cell) == f"'{cell}"
 
 
-def test_the_line_of_progress_tells_rate_and_time_left() -> None:
+def test_the_line_of_progress_shows_rate_and_time_left() -> None:
     """50 files worked on in 100 s: 2 s a file; those that were skipped took none."""
     counts = {State.DONE: 49, State.SKIPPED: 100, State.FAILED: 1}
     line = progress_line(counts, 300, 100.0)

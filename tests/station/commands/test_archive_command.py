@@ -91,7 +91,7 @@ def test_trends_of_two_recipes_are_kept_apart(make_session, tmp_path: Path) -> N
     assert all(len(way.split()) == 2 for way in ways_of(edited).values())
 
 
-def test_a_change_without_a_deviation_is_told_apart(
+def test_a_change_without_a_deviation_is_distinguished(
     make_session, tmp_path: Path
 ) -> None:
     """What has no standard deviation cannot move beyond it, but is not passed over."""
@@ -173,7 +173,7 @@ def test_a_trend_finds_the_slope_it_was_given() -> None:
     assert trend.significance > 100
 
 
-def test_specimens_that_agree_are_not_told_apart() -> None:
+def test_specimens_that_agree_are_not_distinguished() -> None:
     """Equal means within their sd: no change seen."""
     points = [
         TrendPoint("f", "Hz", name, 100.0 + d, 0.1)

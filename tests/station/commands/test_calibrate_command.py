@@ -37,6 +37,6 @@ def test_the_ratio_of_the_true_sensitivities_is_found(
 
 
 def test_a_mass_of_nothing_is_refused(session: Path) -> None:
-    """The message says what is needed."""
+    """The message names what is missing."""
     with pytest.raises(UsageError, match="above zero"):
         run_calibrate(session, mass="0 kg", mass_sd="0 g", json_target=None)

@@ -111,7 +111,7 @@ def test_a_table_of_a_result_has_labels_in_its_heads_and_words_for_verdicts(
 
 
 def test_variables_of_a_result_keep_their_whole_names(result: Path) -> None:
-    """A standard deviation is told from its quantity; texts keep their rows."""
+    """Quantity and standard deviation differ by name; texts keep their rows."""
     content = scipy.io.loadmat(exported(result, "mat")["mat"])
     sd = content["modal_0_modes_natural_frequency_sd"]
     assert sd.size == content["modal_0_modes_natural_frequency"].size
@@ -171,7 +171,7 @@ def test_shapes_follow_from_residues_of_rank_one() -> None:
 def test_another_format_and_another_file_are_refused(
     make_session, tmp_path: Path
 ) -> None:
-    """One says what there is, the other what the file is."""
+    """One states what exists, the other the kind of file."""
     path = make_session("s.h5")
     with pytest.raises(UsageError, match="csv, mat, uff"):
         run_export(path, kind="xlsx", folder=None, json_target=None)

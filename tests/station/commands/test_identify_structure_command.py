@@ -92,8 +92,8 @@ def test_what_is_open_is_shown_as_the_range_of_all_admissible(
         str(target),
     )
     screen, html = capsys.readouterr().out, page.read_text(encoding="utf-8")
-    told = json.loads(target.read_text(encoding="utf-8"))["parameters"]
-    open_ones = {name: one for name, one in told.items() if not one["identifiable"]}
+    reported = json.loads(target.read_text(encoding="utf-8"))["parameters"]
+    open_ones = {name: one for name, one in reported.items() if not one["identifiable"]}
     assert open_ones
     for name, one in open_ones.items():
         assert one["sd"] is None

@@ -24,7 +24,7 @@ def jointbench(*words: object) -> subprocess.CompletedProcess[str]:
 
 
 def shaken(path: Path, seconds: float) -> Path:
-    """Write the response of one mode at 90 Hz, 1 %, to noise that nobody measured."""
+    """Write the response of one mode at 90 Hz, 1 %, to unmeasured noise."""
     noise = np.random.default_rng(0).normal(size=round(seconds * RATE))
     pole = np.exp(2 * np.pi * 90.0 * (-0.01 + 1j * np.sqrt(1 - 1e-4)) / RATE)
     response = lfilter([1.0, -1.0], [1.0, -2 * pole.real, abs(pole) ** 2], noise)

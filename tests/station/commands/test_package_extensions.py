@@ -173,7 +173,7 @@ def test_an_effect_that_fails_in_a_fit_is_one_line_that_names_its_package(
 def test_an_effect_of_a_file_may_not_bear_the_name_of_an_installed_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Two effects of one name could not be told apart in a verdict."""
+    """Two effects of one name would be ambiguous in a verdict."""
     text = EFFECT_TEXT.format(name="quintic_stiffness", sites=("link",))
     file = tmp_path / "own.py"
     file.write_text(f"{text}EFFECTS = (EFFECT,)", encoding="utf-8")
@@ -344,7 +344,7 @@ def law_of(
 
 @pytest.fixture
 def face_file(tmp_path: Path) -> Path:
-    """A session of one face."""
+    """A session of one surface."""
     face = rough_profile(2000, dimension=1.5, roughness=1e-10, spacing=5e-7, seed=3)
     session = Session(
         uuid="0000-1",

@@ -235,7 +235,7 @@ def test_a_kept_stage_holds_what_it_should(value: object, kind: type) -> None:
 
 
 def test_a_kept_stage_that_would_unpack_to_more_is_refused() -> None:
-    """Zeros that take a thousandth of their place: nothing of ours is packed."""
+    """Zeros that take a thousandth of their place: nothing of the station is packed."""
     buffer = io.BytesIO()
     np.savez_compressed(buffer, record=np.zeros(10_000, np.uint8))
     with pytest.raises(FormatError, match="packed"):
@@ -288,10 +288,10 @@ def test_links_are_identified_at_every_preload(tmp_path: Path) -> None:
     recordings = []
     for number, preload in enumerate((20_000, 30_000)):
         url = f"sim:two-body?seed={number + 1}&hits=3&interval=0.7&preload={preload}"
-        visit = record_runs(open_runs(url))
-        recordings.append(replace(visit.recordings[0], name=f"run-{number}"))
+        recorded = record_runs(open_runs(url))
+        recordings.append(replace(recorded.recordings[0], name=f"run-{number}"))
     path = tmp_path / "s.h5"
-    write_session(replace(visit, recordings=tuple(recordings), joint=None), path)
+    write_session(replace(recorded, recordings=tuple(recordings), joint=None), path)
     (tmp_path / "bench.toml").write_text(BENCH, encoding="utf-8")
     recipe_file = tmp_path / "r.toml"
     recipe_file.write_text(
@@ -322,6 +322,6 @@ def test_links_are_identified_at_every_preload(tmp_path: Path) -> None:
 
 
 def same_again(path: Path, stored: StoredResult) -> bool:
-    """Tell whether a comparison of a result with itself finds nothing."""
+    """Return whether a comparison of a result with itself finds nothing."""
     found = compare_results([stored], [read_result(path)])
     return not (found.moved or found.unjudged or found.causes)

@@ -11,7 +11,7 @@ from jointbench.acquisition.records.session import new_session
 from jointbench.acquisition.records.surfaces import Profile
 from jointbench.acquisition.session_file.store import read_session, write_session
 from jointbench.simulators.twins.dialogue import DiaviteTwin, wave_counts
-from jointbench.simulators.twins.twin import Twin
+from jointbench.simulators.twins.simulator import Twin
 from jointbench.station.sources.read_profile import ProfileRequest, run_profile
 
 
@@ -46,7 +46,7 @@ def test_a_profile_in_a_table_reads_back_as_it_was_measured(
 
 def test_a_profile_is_added_to_a_session_that_keeps_what_it_had(tmp_path: Path) -> None:
     """The same session by its name, with one surface more."""
-    path = tmp_path / "visit.h5"
+    path = tmp_path / "recorded.h5"
     write_session(new_session(source="test", simulated=True, operator="me"), path)
     before = read_session(path)
     profile = fetch("sim:diavite?points=64", session=path)
@@ -60,7 +60,7 @@ def test_a_second_profile_of_the_same_name_is_refused_before_it_is_read(
     tmp_path: Path,
 ) -> None:
     """The line that does not exist is not even opened."""
-    path = tmp_path / "visit.h5"
+    path = tmp_path / "recorded.h5"
     write_session(new_session(source="test", simulated=True), path)
     fetch("sim:diavite?points=64", session=path)
     with pytest.raises(UsageError, match="already"):
@@ -68,14 +68,16 @@ def test_a_second_profile_of_the_same_name_is_refused_before_it_is_read(
 
 
 @pytest.mark.parametrize("over_socket", [False, True])
-def test_a_plug_pulled_mid_profile_leaves_the_points_that_came_in_a_table(
+def test_a_plug_removed_mid_profile_leaves_the_points_that_came_in_a_table(
     tmp_path: Path, over_socket: bool
 ) -> None:
     """1007 bytes hold two answers' frames and 500 whole heights; all 500 are there."""
     counts = wave_counts(900)
-    twin = Twin(DiaviteTwin(counts).answer, over_socket=over_socket, unplug_after=1007)
-    with twin, pytest.raises(InstrumentError, match="500 heights are in"):
-        fetch(twin.name, tmp_path / "face.csv")
+    simulator = Twin(
+        DiaviteTwin(counts).answer, over_socket=over_socket, unplug_after=1007
+    )
+    with simulator, pytest.raises(InstrumentError, match="500 heights are in"):
+        fetch(simulator.name, tmp_path / "face.csv")
     broken = tmp_path / "face.broken.csv"
     heights = np.loadtxt(broken, delimiter=",", skiprows=1)[:, 1]
     np.testing.assert_allclose(heights, np.array(counts[:500]) / 128, atol=1e-6)
@@ -94,7 +96,7 @@ def test_a_mitutoyo_that_breaks_off_keeps_the_files_before(tmp_path: Path) -> No
 
 
 def test_the_traverse_of_a_dh8_has_to_be_given(tmp_path: Path) -> None:
-    """The error says what to type."""
+    """The error names what to type."""
     with pytest.raises(UsageError, match="--traverse"):
         fetch("sim:diavite", tmp_path / "face.csv", traverse=None)
 
@@ -113,7 +115,7 @@ def test_a_profile_without_a_place_is_refused() -> None:
         ("sim:diavite?points=many", "give a number"),
     ],
 )
-def test_a_twin_that_does_not_exist_is_refused(
+def test_a_simulator_that_does_not_exist_is_refused(
     tmp_path: Path, line: str, words: str
 ) -> None:
     """With what there is."""
@@ -136,8 +138,8 @@ def test_a_table_of_ones_own_is_not_replaced_by_a_profile(tmp_path: Path) -> Non
 def test_points_of_an_earlier_break_are_kept(tmp_path: Path) -> None:
     """The second table of a profile that broke off has a number."""
     for _ in range(2):
-        twin = Twin(DiaviteTwin(wave_counts(90)).answer, unplug_after=100)
-        with twin, pytest.raises(InstrumentError, match="heights are in"):
-            fetch(twin.name, tmp_path / "face.csv")
+        simulator = Twin(DiaviteTwin(wave_counts(90)).answer, unplug_after=100)
+        with simulator, pytest.raises(InstrumentError, match="heights are in"):
+            fetch(simulator.name, tmp_path / "face.csv")
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {"face.broken.csv", "face.broken-2.csv"}

@@ -83,7 +83,7 @@ def verdict_of(path: Path, folder: Path, columns: str | None = None) -> dict[str
 def test_a_real_surface_gets_a_verdict_with_its_reason(
     name: str, columns: str | None, tmp_path: Path
 ) -> None:
-    """None of these is one straight line; the reason says what it is instead."""
+    """None of these is one straight line; the reason states what it is instead."""
     found = verdict_of(DATA / "surfaces" / name, tmp_path, columns)
     assert found["verdict"] in VERDICTS
     assert len(found["reason"]) > 20

@@ -64,7 +64,7 @@ def test_every_hit_is_found_and_judged_as_it_was_struck(
     assert "ok" in verdicts
 
 
-def test_the_second_visit_names_what_was_hidden(
+def test_the_second_session_names_the_hidden_effect(
     demo: Path, summary: dict[str, Any]
 ) -> None:
     """Name, site and parameter; session, model and truth lie beside the summary."""
@@ -83,7 +83,7 @@ def test_the_second_visit_names_what_was_hidden(
 
 
 def test_the_session_holds_what_the_summary_speaks_of(demo: Path) -> None:
-    """The file is the evidence: three channels, all hits, both faces, no truth."""
+    """The file is the evidence: three channels, all hits, both surfaces, no truth."""
     session = read_session(demo / "session.h5")
     (recording,) = session.recordings
     assert [c.name for c in recording.channels] == ["force", "a0", "a1"]

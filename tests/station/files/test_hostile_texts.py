@@ -110,17 +110,17 @@ def test_no_command_shows_what_a_file_wants_a_terminal_or_browser_to_do(
     (out / "narrow.toml").write_text("\n")
     bad = tmp_path / "zq\x1bzq\nFORGED.h5"
     bad.write_bytes(b"\x89HDF\r\n\x1a\n" + b"zq\x1bzq" * 9)
-    told = ""
+    reported = ""
 
     def run(*words: str | Path, code: int = 0) -> None:
-        nonlocal told
+        nonlocal reported
         monkeypatch.setattr(sys, "argv", ["jointbench", *map(str, words)])
         found = exit_code(app, debug=False)
         shown = "".join(capsys.readouterr())
         assert found == code, shown
         spoilt = SPOILT.search(shown)
         assert spoilt is None, (words, shown[max(0, spoilt.start() - 80) :][:200])
-        told += shown
+        reported += shown
 
     run("inspect", first)
     run("verify", first)
@@ -145,7 +145,7 @@ def test_no_command_shows_what_a_file_wants_a_terminal_or_browser_to_do(
         for kind in ("csv", "uff"):
             run("export", file, "--to", kind, "--out", out)
     run("export", out / "m.uff", "--to", "csv", "--out", out)
-    assert r"\x1b" in told
+    assert r"\x1b" in reported
     looked_at = [p for p in tmp_path.rglob("*") if p.suffix in TEXT_FILES]
     assert {".csv", ".html", ".uff", ".json"} <= {p.suffix for p in looked_at}
     for path in looked_at:
@@ -182,7 +182,7 @@ def test_no_cell_of_a_table_begins_as_a_formula(cell: str) -> None:
 
 
 def test_a_name_in_a_figure_is_no_link() -> None:
-    """plotly.js takes tags in texts for markup; only line breaks of ours stay so."""
+    """plotly.js takes tags in texts for markup; only own line breaks are kept."""
     name = "a<br>b<a href='https://x'>c</a>\u202e"
     figure = {"data": [{"name": name, "x": [1.0]}], "layout": {}}
     plot = Plot("p", "caption", figure)

@@ -106,7 +106,7 @@ def test_a_pipe_is_written_to_and_not_replaced(tmp_path: Path) -> None:
     os.mkfifo(pipe)
     reading = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     write_text(pipe, "42 N/m")
-    told = os.read(reading, 100)
+    reported = os.read(reading, 100)
     os.close(reading)
-    assert told == b"42 N/m"
+    assert reported == b"42 N/m"
     assert pipe.is_fifo()

@@ -30,9 +30,9 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "silverbox.toml"
 
 
 @pytest.fixture(scope="module")
-def visit(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Record a bench with nothing hidden, once."""
-    path = tmp_path_factory.mktemp("visit") / "session.h5"
+    path = tmp_path_factory.mktemp("recorded") / "session.h5"
     run_record(URL, path, overwrite=False, json_target=None)
     return path
 
@@ -51,9 +51,11 @@ def typed(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
     return exit_code(app, debug=False)
 
 
-def test_a_visit_is_a_session_with_a_preload_a_run_and_its_sheet(visit: Path) -> None:
+def test_a_recorded_campaign_is_a_session_with_preloads_and_its_model(
+    recorded: Path,
+) -> None:
     """Points, levels over 30x, preloads; the truth stays in a file of its own."""
-    session = read_session(visit)
+    session = read_session(recorded)
     hits = [hit for recording in session.recordings for hit in recording.hits]
     assert {hit.point for hit in hits} == {"1", "2"}
     peaks = [hit.peak_force for hit in hits]
@@ -62,8 +64,10 @@ def test_a_visit_is_a_session_with_a_preload_a_run_and_its_sheet(visit: Path) ->
     times = [recording.start_time for recording in session.recordings]
     assert times == sorted(times)
     assert session.simulated
-    assert visit.with_suffix(".truth.json").exists()
-    model = nominal_parameters(read_toml(visit.with_suffix(".toml"), BenchModel)).model
+    assert recorded.with_suffix(".truth.json").exists()
+    model = nominal_parameters(
+        read_toml(recorded.with_suffix(".toml"), BenchModel)
+    ).model
     assert model.base_names == (
         "m1",
         "m2",
@@ -83,29 +87,29 @@ def test_the_crossed_grid_has_every_condition_twice() -> None:
 
 
 def test_a_session_with_nothing_hidden_misses_nothing(
-    visit: Path, tmp_path: Path
+    recorded: Path, tmp_path: Path
 ) -> None:
-    """The same path a bench session takes, with the sheet as --model."""
-    found = gap(visit, tmp_path / "g.json", model=visit.with_suffix(".toml"))
+    """The same path a bench session takes, with the model as --model."""
+    found = gap(recorded, tmp_path / "g.json", model=recorded.with_suffix(".toml"))
     assert found["verdict"] == "none"
     assert found["scored"] == []
 
 
-def test_a_glancing_hit_among_levels_is_left_out_and_told(
-    visit: Path, tmp_path: Path
+def test_a_glancing_hit_among_levels_is_left_out_and_reported(
+    recorded: Path, tmp_path: Path
 ) -> None:
     """Unjudged recordings, one of them a fiftieth of the softest level's force.
 
     The softest level, struck once, a seventh of the next, is meant and stays.
     """
-    session = read_session(visit)
+    session = read_session(recorded)
     bare = [replace(recording, hits=()) for recording in session.recordings]
     softest = min(bare, key=lambda recording: recording.samples[0].max())
     glancing = replace(softest, name="glancing", samples=softest.samples / 50.0)
     unjudged = replace(session, recordings=(*bare, glancing))
     write_session(unjudged, tmp_path / "bare.h5")
     found = gap(
-        tmp_path / "bare.h5", tmp_path / "g.json", model=visit.with_suffix(".toml")
+        tmp_path / "bare.h5", tmp_path / "g.json", model=recorded.with_suffix(".toml")
     )
     reported = [words for words in found["remarks"] if "a glancing hit" in words]
     assert len(reported) == 1
@@ -115,9 +119,11 @@ def test_a_glancing_hit_among_levels_is_left_out_and_told(
 
 
 def test_a_url_is_recorded_and_what_it_hides_is_named(tmp_path: Path) -> None:
-    """A delay of the top's channel, from URL to name."""
+    """A delay of the top's channel, from URL to name; friction effects are slow."""
     url = f"{URL}&hide=delay&size=0.2"
-    found = gap(url, tmp_path / "g.json", report=tmp_path / "g.html")
+    friction = "iwan,bouc_wen,jenkins,coulomb"
+    page = tmp_path / "g.html"
+    found = gap(url, tmp_path / "g.json", report=page, without=friction)
     assert [effect["name"] for effect in found["effects"]] == ["delay"]
     truth = open_runs(url).truth
     assert truth is not None
@@ -127,32 +133,32 @@ def test_a_url_is_recorded_and_what_it_hides_is_named(tmp_path: Path) -> None:
 
 
 def test_a_model_file_that_names_its_sessions_is_a_source(
-    visit: Path, tmp_path: Path
+    recorded: Path, tmp_path: Path
 ) -> None:
     """Paths are read from where the model lies; two sessions are one campaign."""
-    session = read_session(visit)
+    session = read_session(recorded)
     for name, part in (("a", slice(None, 4)), ("b", slice(4, None))):
         half = replace(session, recordings=session.recordings[part])
         write_session(half, tmp_path / f"{name}.h5")
-    text = visit.with_suffix(".toml").read_text() + 'sessions = ["a.h5", "b.h5"]\n'
+    text = recorded.with_suffix(".toml").read_text() + 'sessions = ["a.h5", "b.h5"]\n'
     (tmp_path / "bench.toml").write_text(text)
     found = gap(tmp_path / "bench.toml", tmp_path / "g.json")
     assert found["verdict"] == "none"
 
 
 def test_a_preload_can_be_given_where_the_session_has_none(
-    visit: Path, tmp_path: Path
+    recorded: Path, tmp_path: Path
 ) -> None:
-    """Without it the line says what to type; it never overrules the session."""
-    session = read_session(visit)
+    """Without it The line names what to type; it never overrules the session."""
+    session = read_session(recorded)
     bare = tuple(replace(r, preload=None) for r in session.recordings)
     path = tmp_path / "bare.h5"
     write_session(replace(session, recordings=bare), path)
-    model = visit.with_suffix(".toml")
+    model = recorded.with_suffix(".toml")
     with pytest.raises(BadData, match="--preload"):
         gap(path, tmp_path / "g.json", model=model)
     with pytest.raises(UsageError, match="leave --preload out"):
-        gap(visit, tmp_path / "g.json", model=model, preload="1 kN")
+        gap(recorded, tmp_path / "g.json", model=model, preload="1 kN")
     setup = JointSetup(preload=-1.0)
     write_session(replace(session, recordings=bare, joint=setup), path, overwrite=True)
     with pytest.raises(BadData, match="above zero"):
@@ -172,24 +178,24 @@ def test_a_preload_can_be_given_where_the_session_has_none(
     ],
 )
 def test_a_mistake_in_the_model_is_one_line(
-    visit: Path, tmp_path: Path, wrong: str, right: str, words: str
+    recorded: Path, tmp_path: Path, wrong: str, right: str, words: str
 ) -> None:
     """What, value, rule, way out."""
-    text = visit.with_suffix(".toml").read_text()
+    text = recorded.with_suffix(".toml").read_text()
     assert wrong in text
     model = tmp_path / "bench.toml"
     model.write_text(text.replace(wrong, right))
     with pytest.raises(BadData, match=words) as caught:
-        gap(visit, tmp_path / "g.json", model=model)
+        gap(recorded, tmp_path / "g.json", model=model)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("key", ["mass_sd", "damping_sd", "stiffness"])
 def test_a_value_without_its_spread_is_named(
-    visit: Path, tmp_path: Path, key: str
+    recorded: Path, tmp_path: Path, key: str
 ) -> None:
     """Identify does without; gap does not."""
-    lines = visit.with_suffix(".toml").read_text().splitlines()
+    lines = recorded.with_suffix(".toml").read_text().splitlines()
     first = next(i for i, line in enumerate(lines) if line.startswith(f"{key} ="))
     model = tmp_path / "bench.toml"
     model.write_text("\n".join(lines[:first] + lines[first + 1 :]))
@@ -198,15 +204,15 @@ def test_a_value_without_its_spread_is_named(
 
 
 def test_wrong_requests_are_usage_errors(
-    visit: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    recorded: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Code 2: no model, a URL among files, a model for a campaign, no such specimen."""
-    assert typed(monkeypatch, "gap", str(visit)) == 2
-    assert typed(monkeypatch, "gap", URL, str(visit)) == 2
+    assert typed(monkeypatch, "gap", str(recorded)) == 2
+    assert typed(monkeypatch, "gap", URL, str(recorded)) == 2
     assert typed(monkeypatch, "gap", "sim:three-body") == 2
     assert typed(monkeypatch, "gap", f"{URL}&hide=gremlin") == 2
-    assert typed(monkeypatch, "gap", str(visit.with_suffix(".toml"))) == 2
-    assert typed(monkeypatch, "record", URL, "--out", str(visit)) == 2
+    assert typed(monkeypatch, "gap", str(recorded.with_suffix(".toml"))) == 2
+    assert typed(monkeypatch, "record", URL, "--out", str(recorded)) == 2
     text = tmp_path / "hits.csv"
     text.write_text("1,2\n")
     assert typed(monkeypatch, "gap", str(text)) == 2
@@ -214,7 +220,7 @@ def test_wrong_requests_are_usage_errors(
 
 
 def test_hits_of_one_level_are_not_judged(tmp_path: Path) -> None:
-    """A plain stream is a visit of one run; the verdict says what it lacks."""
+    """A plain stream is a single run; the verdict states what it lacks."""
     path = tmp_path / "s.h5"
     record_session_file(
         "sim:two-body?seed=4&hits=5&level_scatter=0.02&double_rate=0&overload_rate=0",
@@ -245,7 +251,7 @@ def record_model(**changes: str) -> str:
 def test_the_cubic_spring_of_the_silverbox_is_found_on_unseen_samples(
     tmp_path: Path,
 ) -> None:
-    """Two short realisations train; the rest of one is foretold ten times better."""
+    """Two short realisations train; the rest of one is predicted ten times better."""
     text = EXAMPLE.read_text(encoding="utf-8")
     head, _, tail = text.partition("[record.training]")
     model = tmp_path / "short.toml"

@@ -202,7 +202,7 @@ def test_no_label_or_sentence_is_left_in_newtons(tmp_path: Path) -> None:
     def slices(gap: Gap) -> list[str]:
         return [label for view in gap.views for label in view.share]
 
-    where = "the misfit grows with level (59 % of it at 30 N)"
+    where = "the residual grows with level (59 % of it at 30 N)"
     evidence = replace(
         evidence_of_diagnosis(found()), where=where, look=("12 % at 3.5 N, more",)
     )
@@ -218,7 +218,7 @@ def test_no_label_or_sentence_is_left_in_newtons(tmp_path: Path) -> None:
         shown.spectra.condition,
     ]
     assert not [text for text in texts if NEWTON_OR_METRE.search(text)]
-    assert shown.where == "the misfit grows with level (59 % of it at 30 V)"
+    assert shown.where == "the residual grows with level (59 % of it at 30 V)"
     assert shown.look == ("12 % at 3.5 V, more",)
     assert printed.reason == "left by level 30 V"
     loaded = [view for view in given.gap_before.views if view.name != "preload"]

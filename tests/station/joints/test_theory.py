@@ -104,7 +104,7 @@ def test_the_command_lays_printed_frequencies_beside_three_models(
 def test_a_state_without_a_preload_is_asked_for_it(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The line says which state, and what to type where."""
+    """The message names the state, and what to type where."""
     model = tmp_path / "model.toml"
     model.write_text(MODEL + CONTACT, encoding="utf-8")
     assert run(monkeypatch, str(model)) == EXIT_BAD_DATA
@@ -200,7 +200,7 @@ def test_every_torque_has_its_own_prediction_and_ratio() -> None:
         (StateEstimate(3.0, None, 4.0), None),
     ],
 )
-def test_intervals_overlap_or_not_or_nobody_knows(
+def test_intervals_overlap_or_not_or_unknown(
     other: StateEstimate, wanted: bool | None
 ) -> None:
     """An open end decides nothing."""

@@ -21,7 +21,11 @@ from jointbench.station.commands.modal_command import run_modal
 from jointbench.station.commands.verify_command import run_recover, run_verify
 from jointbench.station.main import app, exit_code
 from jointbench.station.measure.bench_session import Measured, measure, run_measure
-from jointbench.station.measure.chassis import OpenChassis, SimulatedHand, open_chassis
+from jointbench.station.measure.chassis import (
+    OpenChassis,
+    OperatorOfSimulation,
+    open_chassis,
+)
 from jointbench.station.measure.plan import conditions, read_plan
 from jointbench.station.measure.text_screen import TextScreen
 from jointbench.station.pipeline.chain import ChainSettings
@@ -115,11 +119,11 @@ def test_every_scripted_hit_gets_its_verdict_and_only_good_ones_count(
 ) -> None:
     """Good, double, overload, weak, good: two are averaged, five are in the file."""
     plan = read_plan(plan_file(tmp_path))
-    bench = PlatesBench(hand=SimulatedOperator(fates=FATES))
+    bench = PlatesBench(operator=SimulatedOperator(fates=FATES))
     setup = ChassisSetup(bench=bench, speed=math.inf)
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
-        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        opened = OpenChassis(chassis, "sim:", True, OperatorOfSimulation(chassis))
         measured = measure(plan, opened, tmp_path / "s.h5", TextScreen(console("-")))
         chassis.close()
         wanted = [VERDICTS[stroke.fate] for stroke in server.history]
@@ -135,11 +139,11 @@ def test_the_first_hit_of_a_point_is_compared_with_those_before_it(
     fates = (Fate.GOOD, Fate.WEAK, Fate.GOOD)
     plan = read_plan(plan_file(tmp_path, points='["1", "2"]', repeats="1", levels="[]"))
     setup = ChassisSetup(
-        bench=PlatesBench(hand=SimulatedOperator(fates=fates)), speed=math.inf
+        bench=PlatesBench(operator=SimulatedOperator(fates=fates)), speed=math.inf
     )
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
-        opened = OpenChassis(chassis, "sim:", True, SimulatedHand(chassis))
+        opened = OpenChassis(chassis, "sim:", True, OperatorOfSimulation(chassis))
         measured = measure(plan, opened, tmp_path / "s.h5", TextScreen(console("-")))
         chassis.close()
     verdicts = [hit.verdict for hit in measured.record.hits]
@@ -180,7 +184,7 @@ def test_a_cable_off_pauses_the_session_until_it_is_back(tmp_path: Path) -> None
 
 
 def test_a_wrong_teds_warns_by_channel(tmp_path: Path) -> None:
-    """The warning is in the file, the session goes on."""
+    """The warning is in the file, the session continues."""
     measured = run(tmp_path, "sim:plates?faults=wrong_teds@0:1", repeats="1")
     session = read_session(tmp_path / "s.h5")
     warnings = [
@@ -231,7 +235,7 @@ def test_verify_reads_a_session_through(tmp_path: Path) -> None:
 
 
 def test_a_finished_session_needs_no_recovery(tmp_path: Path) -> None:
-    """The error says what to type instead."""
+    """The error names what to type instead."""
     run(tmp_path, repeats="1")
     with pytest.raises(UsageError, match="verify"):
         run_recover(tmp_path / "s.h5", out=None, overwrite=False, json_target=None)
@@ -301,7 +305,7 @@ def test_without_a_driver_measure_leaves_with_the_instrument_code(
 
 
 def test_a_stand_alone_server_is_measured_by_its_address(tmp_path: Path) -> None:
-    """`ni+grpc://` finds the simulated device and its hand by itself."""
+    """`ni+grpc://` finds the simulated device and its operator."""
     setup = replace(ChassisSetup(), speed=math.inf)
     with SimulatedChassis(setup) as server:
         measured = run(tmp_path, f"ni+grpc://{server.address}", repeats="1")

@@ -76,7 +76,7 @@ def hits_file(folder: Path) -> Path:
 
 
 def test_a_source_that_does_not_answer_costs_no_earlier_session(earlier: Path) -> None:
-    """Nobody is at port 9; the file is the same to the last byte, and alone."""
+    """No server is at port 9; the file is the same to the last byte, and alone."""
     before = earlier.read_bytes()
     with pytest.raises(InstrumentError, match="does not answer"):
         forced(earlier.parent, "ni+grpc://127.0.0.1:9")
@@ -114,7 +114,7 @@ def test_a_session_that_came_to_its_end_takes_the_place_of_the_earlier_one(
 def test_a_session_that_was_stopped_leaves_the_earlier_one_and_lies_beside_it(
     earlier: Path,
 ) -> None:
-    """Told on the screen; both are whole, and no lock is left."""
+    """Reported on the screen; both are whole, and no lock is left."""
     before, folder = earlier.read_bytes(), earlier.parent
     plan = plan_file(folder, repeats=30)
     arguments = ["measure", str(plan), "--out", str(earlier), "--force"]

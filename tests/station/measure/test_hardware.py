@@ -48,7 +48,7 @@ def test_the_plan_is_done_with_a_block_for_each_hit(measured: Measured) -> None:
 def test_nothing_is_lost_between_the_blocks_that_the_device_delivered(
     measured: Measured,
 ) -> None:
-    """What was read is in the file; what nobody asked for is no loss."""
+    """What was read is in the file; what was not requested is no loss."""
     assert measured.counters.lost == 0
     stored = sum(r.samples.shape[1] for r in read_session(measured.path).recordings)
     assert stored == measured.counters.delivered

@@ -1,4 +1,4 @@
-"""A session that goes on after errors of the device, each by NI's own number."""
+"""A session that continues after errors of the device, each by NI's own number."""
 
 from pathlib import Path
 
@@ -44,7 +44,7 @@ def run(folder: Path, faults: str) -> Measured:
 def test_the_plan_is_done_though_the_device_stopped_went_away_or_was_late(
     tmp_path: Path, code: int, gaps: list[str]
 ) -> None:
-    """The file says what happened and is whole; nothing is lost that was there."""
+    """The file records what happened and is whole; nothing is lost that was there."""
     measured = run(tmp_path, f"error@6400:{code}")
     steps = read_session(tmp_path / "s.h5").provenance
     assert measured.whole

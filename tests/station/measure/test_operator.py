@@ -15,7 +15,7 @@ from jointbench.simulators.measuring.operator import Fate, SimulatedOperator
 from jointbench.simulators.plates.plates_bench import PlatesBench
 from jointbench.station.commands.verify_command import run_verify
 from jointbench.station.measure.bench_session import Measured, measure
-from jointbench.station.measure.chassis import OpenChassis, SimulatedHand
+from jointbench.station.measure.chassis import OpenChassis, OperatorOfSimulation
 from jointbench.station.measure.observer import Command, HitNews
 from jointbench.station.measure.observer import Operator as Striker
 from jointbench.station.measure.plan import Condition, read_plan
@@ -35,7 +35,7 @@ levels = ["150 N"]
 
 @dataclass
 class Operator(TextScreen):
-    """Says one thing after each of some hits; keeps what was told."""
+    """Says one thing after each of some hits; keeps what was reported."""
 
     after: dict[int, tuple[Command, ...]] = field(default_factory=dict)
     heard: list[str] = field(default_factory=list)
@@ -43,7 +43,7 @@ class Operator(TextScreen):
     _waiting: list[Command] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        """Say at once what is to be said before the first hit."""
+        """Give the commands that come before the first hit."""
         self._waiting += self.after.pop(0, ())
 
     def hit(self, news: HitNews) -> None:
@@ -70,7 +70,7 @@ class Wandering:
         """Ask for one stroke, once at the wrong place."""
         place = condition if self.asked else replace(condition, point="3")
         self.asked += 1
-        SimulatedHand(self.chassis).ask(place)
+        OperatorOfSimulation(self.chassis).ask(place)
 
 
 def session(
@@ -79,7 +79,7 @@ def session(
     *,
     fates: tuple[Fate, ...] = (Fate.GOOD,),
     on_hit: Callable[[int], None] = lambda number: None,
-    hand: Callable[[Chassis], Striker] = SimulatedHand,
+    hand: Callable[[Chassis], Striker] = OperatorOfSimulation,
 ) -> tuple[Measured, Operator]:
     """Measure two points, two hits each, with an operator who says things."""
     text = EXAMPLE.read_text(encoding="utf-8").replace("25.6 kHz", "12.8 kHz")
@@ -89,7 +89,7 @@ def session(
     path.write_text(f"{head}[hits]\n{HITS}\n[joint]{tail}", encoding="utf-8")
     operator = Operator(console("-"), after=dict(after), on_hit=on_hit)
     setup = ChassisSetup(
-        bench=PlatesBench(hand=SimulatedOperator(fates=fates)), speed=math.inf
+        bench=PlatesBench(operator=SimulatedOperator(fates=fates)), speed=math.inf
     )
     with SimulatedChassis(setup) as server:
         chassis = Chassis(server.address)
@@ -110,7 +110,7 @@ def points(folder: Path, verdict: Verdict = Verdict.OK) -> list[str]:
 
 
 def test_a_hit_rejected_by_the_operator_is_made_up_for(tmp_path: Path) -> None:
-    """It stays in the file, with who said so and what it was before."""
+    """It stays in the file, with the operator and the earlier verdict."""
     measured, _ = session(tmp_path, {1: (Command.REJECT,)})
     hits = stored(tmp_path)
     assert measured.whole
@@ -139,7 +139,7 @@ def test_undo_takes_the_last_word_back(tmp_path: Path) -> None:
 
 
 def test_undo_without_a_word_takes_the_last_hit_out(tmp_path: Path) -> None:
-    """The hand slipped, and nothing was said before."""
+    """A wrong key without an earlier command."""
     session(tmp_path, {1: (Command.UNDO,)})
     assert stored(tmp_path)[0].reason.startswith("taken back by the operator")
 
@@ -152,7 +152,7 @@ def test_rejecting_the_hit_that_ended_a_point_goes_back_to_it(tmp_path: Path) ->
 
 
 def test_repeat_sets_the_hits_of_the_point_aside(tmp_path: Path) -> None:
-    """After the first hit at point 2 that point begins anew; point 1 stays."""
+    """After the first hit at point 2 that point starts again; point 1 stays."""
     measured, _ = session(tmp_path, {3: (Command.REPEAT,)})
     assert measured.whole
     assert points(tmp_path) == ["1", "1", "2", "2"]

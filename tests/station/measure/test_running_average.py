@@ -1,4 +1,4 @@
-"""The average of a condition while it grows: the same numbers, no hit anew."""
+"""The running average of a condition: the same numbers, each hit transformed once."""
 
 import numpy as np
 import pytest
@@ -48,7 +48,7 @@ def hit(
 
 
 def at_once(accepted: list[Accepted]) -> Frf:
-    """Return the FRF of the hits joined to one recording, all transformed anew."""
+    """Return the FRF of the hits joined to one recording, all transformed again."""
     length = min(each.cut.samples.shape[1] for each in accepted)
     hits = tuple(
         Hit(i * length, i * length + TRIGGER, (i + 1) * length, "1", 50.0, *judged)
@@ -77,7 +77,7 @@ def test_an_average_that_grows_is_the_average_of_all_hits(damping: float) -> Non
 def test_a_hit_is_transformed_when_it_comes_and_hardly_ever_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Forty hits, a spoiler looked for after each: once all anew each time, 23,000."""
+    """Forty hits with a search for outliers: 23,000 if all are repeated."""
     transformed = []
     real = measure_average.hit_spectra
 

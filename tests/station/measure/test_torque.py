@@ -11,7 +11,7 @@ from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.serial_lines.mark10 import Reading
 from jointbench.acquisition.session_file.store import read_session
 from jointbench.simulators.twins.dialogue import Mark10Twin, WrenchTwin
-from jointbench.simulators.twins.twin import Twin
+from jointbench.simulators.twins.simulator import Twin
 from jointbench.station.measure.bench_session import Measured, run_measure
 from jointbench.station.measure.bolt_torques import PeakHold
 from jointbench.station.measure.plan import read_plan
@@ -38,10 +38,10 @@ def plan_file(folder: Path, line: str, hits: str = HITS) -> Path:
     return path
 
 
-def run(folder: Path, twin: Twin, wait: str = "20 s") -> Measured:
+def run(folder: Path, simulator: Twin, wait: str = "20 s") -> Measured:
     """Measure two torques with a tester."""
     return run_measure(
-        plan_file(folder, twin.name, HITS.replace("20 s", wait)),
+        plan_file(folder, simulator.name, HITS.replace("20 s", wait)),
         folder / "s.h5",
         source="sim:plates",
         overwrite=False,
@@ -61,8 +61,8 @@ def test_every_bolt_is_in_the_session_and_the_preload_is_theirs(
 ) -> None:
     """Bolts at +2, -1, 0, +3 %: P is 1.01 times 25 kN at 20 N m, hands-free."""
     wrench = WrenchTwin((20.0, 50.0), 4, (0.02, -0.01, 0.0, 0.03))
-    with Twin(wrench.answer, over_socket=over_socket) as twin:
-        measured = run(tmp_path, twin)
+    with Twin(wrench.answer, over_socket=over_socket) as simulator:
+        measured = run(tmp_path, simulator)
     found = list(bolts(tmp_path))
     assert measured.whole
     assert [b["bolt"] for b in found] == [1, 2, 3, 4] * 2
@@ -76,9 +76,9 @@ def test_a_bolt_beside_its_target_is_asked_for_again_and_both_are_kept_in_the_fi
 ) -> None:
     """The second bolt is 30 % loose, then right: nine readings for eight bolts."""
     errors = (0.0, -0.3, 0.0, 0.0, 0.0)
-    with Twin(WrenchTwin((20.0,), 4, errors).answer) as twin:
+    with Twin(WrenchTwin((20.0,), 4, errors).answer) as simulator:
         run_measure(
-            plan_file(tmp_path, twin.name, HITS.replace(', "50 N m"', "")),
+            plan_file(tmp_path, simulator.name, HITS.replace(', "50 N m"', "")),
             tmp_path / "s.h5",
             source="sim:plates",
             overwrite=False,
@@ -91,9 +91,9 @@ def test_a_bolt_beside_its_target_is_asked_for_again_and_both_are_kept_in_the_fi
 def test_a_tester_unplugged_between_bolts_is_waited_for(tmp_path: Path) -> None:
     """It breaks off in an answer and comes back; nothing is lost, the plan is done."""
     wrench = WrenchTwin((20.0, 50.0), 4)
-    twin = Twin(wrench.answer, over_socket=True, unplug_after=131, comes_back=True)
-    with twin:
-        measured = run(tmp_path, twin)
+    simulator = Twin(wrench.answer, over_socket=True, unplug_after=131, comes_back=True)
+    with simulator:
+        measured = run(tmp_path, simulator)
     assert measured.whole
     assert len(list(bolts(tmp_path))) == 8
 
@@ -123,32 +123,32 @@ def test_a_reading_that_is_none_ends_nothing_and_is_no_torque(
 ) -> None:
     """Junk bytes, numbers that are none, five hundred times the target, half a line."""
     wrench = NoisyWrench(WrenchTwin((20.0, 50.0), 4), noise)
-    with Twin(wrench.answer, over_socket=True) as twin:
-        measured = run(tmp_path, twin, "60 s")
+    with Twin(wrench.answer, over_socket=True) as simulator:
+        measured = run(tmp_path, simulator, "60 s")
     found = list(bolts(tmp_path))
     assert measured.whole
     assert [b["torque"] for b in found] == pytest.approx([20.0] * 4 + [50.0] * 4)
 
 
-def test_a_bolt_that_nobody_tightens_ends_in_one_line_and_a_valid_file(
+def test_a_bolt_that_is_not_tightened_ends_in_one_line_and_a_valid_file(
     tmp_path: Path,
 ) -> None:
     """The display stays at nothing for longer than the plan waits."""
     with (
-        Twin(Mark10Twin("0.000 Nm").answer) as twin,
+        Twin(Mark10Twin("0.000 Nm").answer) as simulator,
         pytest.raises(InstrumentError, match="bolt 1 was not tightened"),
     ):
-        run(tmp_path, twin, "0.2 s")
+        run(tmp_path, simulator, "0.2 s")
     assert read_session(tmp_path / "s.h5").recordings == ()
 
 
 def test_a_gauge_that_shows_a_force_is_no_torque_tester(tmp_path: Path) -> None:
     """The reason is in the line."""
     with (
-        Twin(Mark10Twin("12.5 N").answer) as twin,
+        Twin(Mark10Twin("12.5 N").answer) as simulator,
         pytest.raises(InstrumentError, match="a torque is needed"),
     ):
-        run(tmp_path, twin, "0.2 s")
+        run(tmp_path, simulator, "0.2 s")
 
 
 def test_a_torque_tester_without_torques_in_the_plan_is_refused(tmp_path: Path) -> None:

@@ -211,7 +211,7 @@ def test_a_hangup_that_is_ignored_stays_ignored() -> None:
 
 
 def test_who_waits_for_a_lost_device_hears_of_a_kill() -> None:
-    """Nobody looks at a note while the device is away."""
+    """No one reads a note while the device is away."""
     record = Record()
     wait = interruptible_wait(record, sleep=lambda seconds: None)
     wait(0.2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chain from recordings to modes: estimator, hand choices, lost samples."""
+"""The chain from recordings to modes: estimator, manual choices, lost samples."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -101,7 +101,7 @@ def test_a_mode_dropped_by_hand_is_gone() -> None:
 def test_options_that_mean_nothing_are_refused(
     estimator: str, keep: tuple[float, ...], said: str
 ) -> None:
-    """The message says what to write."""
+    """The message names what to write."""
     with pytest.raises(UsageError, match=said):
         modal_settings(None, None, estimator, keep, ())
 

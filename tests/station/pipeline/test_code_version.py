@@ -44,7 +44,7 @@ def forgotten():
         one.cache_clear()
 
 
-def test_a_change_of_a_module_behind_a_stage_changes_its_key_and_no_other(
+def test_a_change_of_a_module_of_a_stage_changes_its_key_and_no_other(
     forgotten, monkeypatch
 ) -> None:
     """The estimator of the FRF is edited: the Kalman stage and surfaces are not."""
@@ -133,7 +133,7 @@ def test_all_of_our_code_that_runs_in_a_stage_is_in_its_version(make_session) ->
     for stage, files in met.items():
         named = {_module(file) for file in files if file.startswith(f"{ROOT}{os.sep}")}
         ours = {name for name in named if not name.startswith("jointbench.tests")}
-        # Making and checking records is behind every stage by what it imports.
+        # Making and checking records belongs to every stage through its imports.
         assert ours <= stage_sources(stage), stage
 
 
@@ -147,7 +147,7 @@ def _module(file: str) -> str:
 
 
 def test_the_callers_of_stages_are_there() -> None:
-    """Behind every stage, each of them with a source."""
+    """Part of every stage, each with a source."""
     for name in CALLERS:
         assert sources_of(f"jointbench.{name}")
 
@@ -188,10 +188,10 @@ def test_one_thread_and_two_give_the_same_numbers_to_the_last_bit(
 def _numbers(path: Path) -> dict[str, bytes]:
     content: dict[str, bytes] = {}
 
-    def visit(name: str, item: object) -> None:
+    def recorded(name: str, item: object) -> None:
         if isinstance(item, h5py.Dataset):
             content[name] = item[()].tobytes()
 
     with h5py.File(path, "r") as file:
-        file.visititems(visit)
+        file.visititems(recorded)
     return content

@@ -68,7 +68,7 @@ def test_good_data_bring_no_warning(
     assert "or doubtful" not in shown
 
 
-def test_milliseconds_given_as_seconds_are_told_by_import_and_modal(
+def test_milliseconds_given_as_seconds_are_reported_by_import_and_modal(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """The pulse of 0.5 ms lasts half a second; the way out is in the warning."""
@@ -86,7 +86,7 @@ def test_milliseconds_given_as_seconds_are_told_by_import_and_modal(
     assert capsys.readouterr().out.count("warning: recording 'hit0'") == 2
 
 
-def test_a_block_too_short_for_the_modes_is_told(tmp_path: Path) -> None:
+def test_a_block_too_short_for_the_modes_is_reported(tmp_path: Path) -> None:
     """8.6 ms after the hit: modes 80 Hz apart need 25 ms."""
     found = modal(files(tmp_path, seconds=0.0186), tmp_path)
     assert len(found["modes"]) < 3
@@ -100,7 +100,7 @@ def test_no_mode_for_want_of_length_says_so(tmp_path: Path) -> None:
         modal(files(tmp_path, seconds=0.0145), tmp_path)
 
 
-def test_levels_that_disagree_are_told(
+def test_levels_that_disagree_are_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Frequencies fall by 0.5 % for each doubling of the force."""

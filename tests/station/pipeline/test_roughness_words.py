@@ -101,7 +101,7 @@ def test_a_contact_prediction_says_of_its_surface_what_is_known(
     assert low < found["models"][0]["normal_stiffness"] < high
 
 
-def test_numbers_given_by_hand_are_told_as_given():
+def test_numbers_given_by_hand_are_reported_as_given():
     """D and G without a spread are no measurement; with one they have an interval."""
     plain = surface_of(1.54, "1e-9 m", [], None)
     assert contact_surface_words(plain) == "D = 1.5400 (line), G = 1e-09 m as given"
@@ -114,7 +114,7 @@ def test_numbers_given_by_hand_are_told_as_given():
 def test_cautions_of_the_heights_reach_screen_json_report_and_import(
     traces, monkeypatch, capsys, tmp_path
 ):
-    """A trace that ends flat at its extreme is said to wherever it is used."""
+    """A trace that ends flat at its extreme is reported wherever it is used."""
     text = (traces / "clear.csv").read_text(encoding="ascii").splitlines()
     flat = [f"{1500 + 0.5 * i:.1f},2.0000000" for i in range(12)]
     path = tmp_path / "flat.csv"
@@ -148,7 +148,7 @@ def test_cautions_of_a_face_stand_beside_the_contact_prediction(
 
 
 def test_cautions_of_a_session_stand_among_the_remarks_of_its_results(tmp_path):
-    """What a recipe makes of a face says what is odd about its heights."""
+    """Results of a recipe report what is odd about the heights."""
     trace = rough_profile(400, dimension=1.5, roughness=1e-10, spacing=5e-7, seed=3)
     write_surfcom(trace, tmp_path / "face.tx1")
     face = read_surface(tmp_path / "face.tx1")

@@ -48,7 +48,7 @@ hardness = "1 GPa"
 
 @pytest.fixture
 def session_file(make_session) -> Path:
-    """A session of two hits and one face, its results not yet found."""
+    """A session of two hits and one surface, its results not yet found."""
     path = make_session("s.h5")
     face = rough_profile(2000, dimension=1.5, roughness=1e-10, spacing=5e-7, seed=3)
     whole = replace(read_session(path), surfaces=(replace(face, name="face"),))
@@ -100,7 +100,7 @@ def test_a_store_that_is_shared_runs_each_stage_once(session_file, tmp_path) -> 
     """What `modal` has run is there for `report`, and all of it for `process`."""
     shared = MemoryStore()
     all_uses(session_file, [shared] * 3, tmp_path)
-    hits_of_recipe = ["hits"]  # a recipe judges them anew, and finds the same
+    hits_of_recipe = ["hits"]  # a recipe judges them again, and finds the same
     wanted = MODAL_STAGES + JOINT_STAGES[:2] + hits_of_recipe
     assert sorted(shared.computed) == sorted(wanted)
 
@@ -160,7 +160,7 @@ def numbers(analysis: SessionAnalysis) -> tuple[object, ...]:
 
 
 def test_without_a_store_nothing_is_digested(session_file) -> None:
-    """No key is made, as nobody will ask for a stage again."""
+    """No key is made, as no stage will be requested again."""
     run = StageRun(NoStore())
     run_chain(read_session(session_file).recordings, run=run)
     assert set(run.stages.keys) == set(MODAL_STAGES)
@@ -181,7 +181,7 @@ def test_recordings_are_known_by_content_where_no_file_is_named(session_file) ->
 
 
 def test_limits_that_change_no_verdict_leave_the_rest_as_kept(session_file) -> None:
-    """Hits are judged anew; the FRF depends on what came of it."""
+    """Hits are judged again; the FRF depends on the verdicts."""
     session, digest = read_session(session_file), file_digest(session_file)
     shared = MemoryStore()
     process_session(session, digest, Recipe(), shared)

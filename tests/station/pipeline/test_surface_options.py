@@ -27,7 +27,7 @@ def write_table(path, heights):
 
 
 def rough(seed):
-    """Return the heights of a face of D = 1.5."""
+    """Return the heights of a surface of D = 1.5."""
     made = rough_profile(
         POINTS, spacing=SPACING, dimension=1.5, roughness=1e-10, seed=seed
     )
@@ -101,10 +101,10 @@ def test_without_options_nothing_is_added(surface):
 
 
 def test_form_and_outliers_are_removed_and_stated(surface):
-    """A bow of 20 um and two spikes hide D; without them it is that of the face.
+    """A bow of 20 um and two spikes hide D; without them it is that of the surface.
 
     The bow 2e-5 x^2 has a root mean square of 2e-5 sqrt(4 / 45) = 5.96 um; what the
-    face itself has of the second degree is part of the 2 % allowed.
+    surface itself has of the second degree is part of the 2 % allowed.
     """
     assert surface("bent.csv")[0]["files"][0]["dimension"] is None
     found, shown = surface("bent.csv", "--form", "2", "--outliers", "6")
@@ -222,5 +222,5 @@ def test_a_weierstrass_profile_is_fitted_beside(surface):
     ],
 )
 def test_an_option_that_does_not_suit_is_refused(refusal, name, options, said):
-    """One line that says what the option takes."""
+    """One line that states what the option takes."""
     assert said in refusal(name, *options)

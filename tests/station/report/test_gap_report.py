@@ -50,7 +50,7 @@ def found(verdict: str) -> Diagnosis:
 
 @pytest.mark.parametrize("verdict", VERDICTS)
 def test_a_page_has_the_picture_first_and_loads_nothing(verdict: str) -> None:
-    """The hero comes before any other figure; no address is asked for anything."""
+    """The summary figure comes first; no address is requested."""
     report = gap_report(found(verdict), title="made")
     plots = [i for s in report.sections for i in s.items if isinstance(i, Plot)]
     assert plots[0].identifier == "hero"
@@ -134,7 +134,7 @@ def test_a_rival_with_a_large_delta_score_needs_no_experiment() -> None:
 
 
 def test_every_explanation_that_was_tried_has_its_reason() -> None:
-    """No row of the ranking ends without a word."""
+    """Every row of the ranking has a reason."""
     diagnosis = found("named")
     reasons = [why_lost(one, diagnosis) for one in diagnosis.candidates]
     assert all(reasons)
@@ -205,7 +205,7 @@ def test_names_out_of_a_file_cannot_break_out_of_the_page() -> None:
     assert "<script>alert(1)" not in render(gap_report(diagnosis, title="<b>x</b>"))
 
 
-def test_a_diagnosis_without_an_exhibit_still_makes_a_page() -> None:
+def test_a_diagnosis_without_evidence_still_makes_a_report() -> None:
     """The picture is left out, the rest stays."""
     report = gap_report(replace(found("named"), evidence=None), title="made")
     assert report.sections[0].anchor == "effects"

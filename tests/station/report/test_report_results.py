@@ -24,9 +24,9 @@ KEPT = Path(__file__).parents[2] / "fixtures"
 
 def page_of(session: Path, **how: Path) -> tuple[str, dict[str, list[object]]]:
     """Return a report as text, and its JSON."""
-    told = session.with_suffix(".json")
-    page = run_report(session, out=None, model=None, json_target=str(told), **how)
-    content = json.loads(told.read_text(encoding="utf-8"))
+    reported = session.with_suffix(".json")
+    page = run_report(session, out=None, model=None, json_target=str(reported), **how)
+    content = json.loads(reported.read_text(encoding="utf-8"))
     return page.read_text(encoding="utf-8"), content
 
 
@@ -83,7 +83,7 @@ def test_every_preload_is_shown_and_each_from_its_own_results(make_session) -> N
 
 
 def test_results_of_another_state_of_the_session_are_not_shown(make_session) -> None:
-    """The session was recorded anew under the same name; the page says so."""
+    """The session was recorded again under the same name; the report states it."""
     session = make_session("s.h5")
     run_modal([session], modal_settings(None, None, "H2", (), ()))
     session.unlink()
@@ -114,7 +114,7 @@ def test_results_of_a_recipe_are_shown_where_modal_left_none(make_session) -> No
 
 @pytest.mark.parametrize("name", ["modal-1", "processed-2"])
 def test_a_report_shows_results_of_2026(tmp_path: Path, name: str) -> None:
-    """What those files do not keep is said, not made up."""
+    """What those files do not hold is reported as missing, not made up."""
     session = tmp_path / "v.h5"
     shutil.copy(KEPT / "session-1.h5", session)
     shutil.copy(KEPT / f"{name}.results.h5", tmp_path / "v.results.h5")

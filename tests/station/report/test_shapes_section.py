@@ -78,7 +78,7 @@ def test_a_direction_turns_the_motion(chain: ModalChain) -> None:
 
 
 def test_a_point_that_the_geometry_lacks_is_named(chain: ModalChain) -> None:
-    """The message says what to write."""
+    """The message names what to write."""
     points = {str(i): (0.0, 0.0, 0.0) for i in range(1, 9)}
     with pytest.raises(BadData, match="no point '9'"):
         draw_shapes(chain.result.model, Geometry.model_validate({"points": points}))

@@ -176,10 +176,10 @@ def test_nothing_to_do_opens_neither_sessions_nor_results(
     first = run(tmp_path)
     assert (first.counts[State.DONE], first.counts[State.FAILED]) == (1, 1)
 
-    def nobody(tasks, recipe):
+    def no_one(tasks, recipe):
         raise AssertionError("nothing is to be done")
 
-    again = run(tmp_path, backend=nobody)
+    again = run(tmp_path, backend=no_one)
     assert (again.counts[State.SKIPPED], again.counts[State.FAILED]) == (1, 1)
     assert again.failed[0].reason == first.failed[0].reason
 
@@ -292,7 +292,7 @@ def test_verify_takes_an_archive_and_counts_each_state(
 
 
 def test_a_line_of_the_ledger_that_was_changed_is_passed_over(tmp_path: Path) -> None:
-    """A refusal that nobody wrote refuses nothing; verify tells of it."""
+    """A refusal without a writer refuses nothing; verify reports it."""
     path = tmp_path / "x.ledger.jsonl"
     with open_ledger(path, {}) as ledger:
         ledger.write(

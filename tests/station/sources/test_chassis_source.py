@@ -27,7 +27,7 @@ def test_samples_arrive_as_the_bench_made_them_within_one_count_of_the_converter
 
 
 def test_a_sensor_too_sensitive_for_the_input_is_replaced() -> None:
-    """9 kN at 2.25 mV/N would be 20 V; what is plugged in gives 5 V, and says so."""
+    """9 kN at 2.25 mV/N would be 20 V; what is connected gives 5 V, and states it."""
     bench = TwoBodyBench(seed=3, hits=1, force_range=9000.0)
     source = ChassisSource(bench, samples=bench.samples)
     assert source.channels[0].sensitivity == pytest.approx(5.0 / 9000.0)
@@ -36,8 +36,8 @@ def test_a_sensor_too_sensitive_for_the_input_is_replaced() -> None:
 
 def test_the_runs_of_a_campaign_come_through_the_chassis() -> None:
     """Each as long as it was, under its own preload."""
-    visit = open_runs("sim:two-body-campaign?seed=2&grid=small")
-    run = visit.runs[3]
+    recorded = open_runs("sim:two-body-campaign?seed=2&grid=small")
+    run = recorded.runs[3]
     assert isinstance(run, ChassisRun)
     recorded = record(run)
     np.testing.assert_allclose(recorded.samples, run.run.samples, atol=2e-3)  # type: ignore[attr-defined]

@@ -106,12 +106,12 @@ class Steps:
             yield np.full((2, 100), self.number + block / 10)
 
 
-def visit(*runs: Steps) -> RunSequence:
-    """Return a visit of a few runs."""
+def recorded(*runs: Steps) -> RunSequence:
+    """Return a sequence of a few runs."""
     return RunSequence("steps", True, runs)
 
 
-def test_what_is_recorded_live_is_what_a_visit_recorded_in_memory_is(
+def test_what_is_recorded_live_is_what_runs_recorded_in_memory_is(
     tmp_path: Path,
 ) -> None:
     """Samples in single precision; names, times, preloads, points and hits alike."""
@@ -173,7 +173,7 @@ def test_a_recording_that_is_stopped_is_finished(tmp_path: Path, name: str) -> N
 
 def test_runs_keep_their_own_times_and_points(tmp_path: Path) -> None:
     """Blocks of one run are joined, those of two never."""
-    assert record_live(visit(Steps(1), Steps(2)), tmp_path / "s.h5")
+    assert record_live(recorded(Steps(1), Steps(2)), tmp_path / "s.h5")
     one, two = read_session(tmp_path / "s.h5").recordings
     assert (one.start_time, two.start_time) == (10.0, 20.0)
     assert (one.channels[0].point, two.channels[0].point) == ("1", "2")
@@ -184,7 +184,7 @@ def test_runs_keep_their_own_times_and_points(tmp_path: Path) -> None:
 def test_a_stop_in_the_second_run_keeps_the_block_in_hand(tmp_path: Path) -> None:
     """One whole run and one block of the next."""
     runs = Steps(1), Steps(2, stop_after=0), Steps(3)
-    assert not record_live(visit(*runs), tmp_path / "s.h5")
+    assert not record_live(recorded(*runs), tmp_path / "s.h5")
     session = read_session(tmp_path / "s.h5")
     assert [r.samples.shape[1] for r in session.recordings] == [300, 100]
     assert ends(session) == [True]
@@ -201,7 +201,7 @@ def test_a_run_that_delivers_nothing_leaves_the_runs_before_it(tmp_path: Path) -
     """An error of the instrument, and a finished file."""
     runs = Steps(1), Steps(2, blocks_made=0)
     with pytest.raises(InstrumentError, match="no sample"):
-        record_live(visit(*runs), tmp_path / "s.h5")
+        record_live(recorded(*runs), tmp_path / "s.h5")
     assert run_verify(tmp_path / "s.h5", json_target=None)
     assert stored(tmp_path / "s.h5") == 300
 
@@ -210,7 +210,7 @@ def test_a_run_with_other_channels_is_refused(tmp_path: Path) -> None:
     """One file has the channels of its first run."""
     runs = Steps(1), Steps(2, channel="hammer")
     with pytest.raises(InstrumentError, match="session of its own"):
-        record_live(visit(*runs), tmp_path / "s.h5")
+        record_live(recorded(*runs), tmp_path / "s.h5")
 
 
 def test_an_earlier_session_is_replaced_by_a_whole_one_alone(tmp_path: Path) -> None:

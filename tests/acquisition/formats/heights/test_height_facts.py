@@ -85,7 +85,7 @@ def test_a_whole_trace_with_its_settings_is_read_without_a_word(tmp_path):
 
 
 def test_a_trace_without_settings_says_what_its_pitch_rests_on(tmp_path):
-    """Nothing beside it tells whether the trace ended early."""
+    """No other file shows whether the trace ended early."""
     surface = read_surface(surfcom(tmp_path / "a.tx1"))
     assert "the pitch rests on line 1, the nominal length of 10.00000 mm" in said(
         surface
@@ -266,7 +266,7 @@ def tiny_surfcom(path):
         tiny_surfcom,
     ],
 )
-def test_a_length_that_nobody_can_trace_is_refused(tmp_path, write):
+def test_an_impossible_length_is_refused(tmp_path, write):
     """A fit band in kilometres, or in fractions of an atom, is none."""
     with pytest.raises(FormatError, match=r"m apart; a length up to 100? m|to 1 m and"):
         read_surface(write(tmp_path / "a"))

@@ -57,7 +57,7 @@ def universal(path: Path, *, unit: str = "g", count: int = 50, kind: int = 12) -
     return path
 
 
-def test_a_universal_file_tells_units_points_and_directions(tmp_path: Path) -> None:
+def test_a_universal_file_states_units_points_and_directions(tmp_path: Path) -> None:
     """N stays, g becomes m/s^2, node 7 in -z is point 7, and the rate is 6400 Hz."""
     found = read_universal(universal(tmp_path / "u.uff"), columns=None, point="1")
     np.testing.assert_allclose(found.samples[0], ROWS[0], rtol=1e-10)
@@ -70,7 +70,7 @@ def test_a_universal_file_tells_units_points_and_directions(tmp_path: Path) -> N
 def test_a_universal_file_without_a_unit_is_refused_with_what_to_type(
     tmp_path: Path,
 ) -> None:
-    """Typed as told, it is read."""
+    """With the suggested option it is read."""
     path = universal(tmp_path / "u.uff", unit="NONE")
     with pytest.raises(UnitError, match=r"force\.force:N,acceleration\.a1:"):
         read_universal(path, columns=None, point="1")
@@ -105,7 +105,7 @@ def test_a_text_without_data_sets_is_no_universal_file(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("order", [1, 2])
 def test_binary_time_histories_are_read_bit_for_bit(tmp_path: Path, order: int) -> None:
-    """Data set 58b, little and big endian; no line ends behind the values."""
+    """Data set 58b, little and big endian; no line ends after the values."""
     text = universal(tmp_path / "u.uff", unit="m/s^2").read_text(encoding="ascii")
     blocks = text.split("    -1\n    -1\n")
     parts = []
@@ -134,7 +134,7 @@ def test_a_unit_of_another_quantity_than_the_file_says_is_named(
 
 
 def test_a_mat_file_that_was_cut_is_refused_as_that(tmp_path: Path) -> None:
-    """Not as one that lacks the variable behind the cut."""
+    """Not as one without the variable after the cut."""
     path = tmp_path / "m.mat"
     content = {"t": np.arange(50) / RATE, "F": ROWS[0], "a1": ROWS[1]}
     scipy.io.savemat(path, content)
@@ -235,7 +235,7 @@ def tdms(path: Path, *, unit: str = "g", step: float = 1 / RATE) -> Path:
     return path
 
 
-def test_a_tdms_file_tells_units_and_rate(tmp_path: Path) -> None:
+def test_a_tdms_file_states_units_and_rate(tmp_path: Path) -> None:
     """N and g by its properties, the rate by the time step."""
     found = read_tdms(tdms(tmp_path / "t.tdms"), columns=None, point="5")
     np.testing.assert_allclose(found.samples[1], 9.80665 * ROWS[1])
@@ -290,7 +290,7 @@ def rattlesnake(path: Path, units: tuple[str, str] = ("N", "m/s^2")) -> Path:
     return path
 
 
-def test_a_rattlesnake_stream_tells_nodes_and_units(tmp_path: Path) -> None:
+def test_a_rattlesnake_stream_states_nodes_and_units(tmp_path: Path) -> None:
     """Node 104 in -x measures acceleration."""
     path = rattlesnake(tmp_path / "r.nc4")
     (found,) = read_rattlesnake(path, columns=None, point="9")
@@ -351,7 +351,7 @@ def test_a_rattlesnake_stream_that_lacks_samples_is_refused(tmp_path: Path) -> N
 
 
 def test_a_rattlesnake_stream_in_volts_is_refused(tmp_path: Path) -> None:
-    """A drive's volts are none of ours."""
+    """A drive's volts are not supported."""
     path = rattlesnake(tmp_path / "r.nc4", units=("V", "m/s^2"))
     with pytest.raises(UnitError, match="'V'"):
         read_rattlesnake(path, columns=None, point="1")

@@ -81,11 +81,11 @@ def test_a_header_that_says_all_units_is_taken_at_its_word(tmp_path, header):
         ("t [s],F [N],a1 [xy]\n", "the unit 'xy' is not known"),
         ("t,F,a1\n", "does not say their units; its header reads 't,F,a1'"),
         ("F [N],G [N],a1 [g]\n", "not one time"),
-        ("", "does not say their units; say"),
+        ("", "does not say their units; describe"),
     ],
 )
 def test_what_a_header_lacks_is_said(tmp_path, header, says):
-    """A header that says some units is not told that it says none."""
+    """A header with some units is not reported as having none."""
     path = write(tmp_path / "a.csv", header=header)
     with pytest.raises(UnitError, match=says):
         read_recording(path, columns=None)

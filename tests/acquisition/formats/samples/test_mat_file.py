@@ -51,7 +51,7 @@ def test_what_is_no_row_of_numbers_is_refused(
 
 
 def test_samples_that_are_not_finite_are_refused(tmp_path: Path) -> None:
-    """The line says which sample."""
+    """The line names the sample."""
     row = ROW.copy()
     row[17] = np.nan
     with pytest.raises(BadData, match="sample 17"):

@@ -36,6 +36,12 @@ NO_SETTINGS = {
     "_STALE": "mark of a coordinate that is not known",
     "BODIES": "the schema of campaign files",
     "EXACT": "model error, beside the laws it belongs to",
+    "_TRIED_PRELOADS": "trial input of the check of an installed effect",
+    "_TRIED_PROGRESS": "the same",
+    "_TRIED_SAMPLES": "the same",
+    "_TRIED_RATE": "the same",
+    "_TRIED_LINES": "the same",
+    "_TRIED_DAMPING": "the same",
 }
 """Numbers at the top of a module that are no settings, and what they are."""
 

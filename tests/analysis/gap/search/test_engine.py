@@ -151,7 +151,7 @@ def test_the_residual_of_a_wrong_effect_is_recognised_by_its_shape() -> None:
     cube = effect("cube")
     probe = replace(cube, effect=replace(cube.effect, family=PROBE_FAMILY))
     outcome = run(replace(bench, probes=(probe,)))
-    assert "look like: cube, curve:y" in outcome.acceptance.reason
+    assert "resembles a cube at curve:y" in outcome.acceptance.reason
     assert names(outcome) == ["square"]
 
 

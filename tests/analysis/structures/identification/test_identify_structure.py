@@ -83,8 +83,8 @@ def test_sensitivities_agree_with_differences(
             step = np.zeros(problem.size)
             step[column] = 1e-5
             ahead, _ = residuals(problem, at + step)
-            behind, _ = residuals(problem, at - step)
-            numeric = (ahead - behind) / 2e-5
+            below, _ = residuals(problem, at - step)
+            numeric = (ahead - below) / 2e-5
             scale = np.abs(numeric).max()
             assert np.abs(numeric - slopes[:, column]).max() < limit * scale
 
@@ -183,7 +183,7 @@ def test_an_open_parameter_has_no_sd_and_the_range_of_all_admissible(
         "rig", MeasuredModes(frequency, 0.002 * frequency), None, none, none
     )
     found = identify_structure(reduced, [evidence], search=StructureSearch(starts=16))
-    told = structure_json(found, reduced.names)["parameters"]
+    reported = structure_json(found, reduced.names)["parameters"]
     for one in found.parameters:
         assert not one.identifiable
         low, high = one.interval
@@ -191,8 +191,8 @@ def test_an_open_parameter_has_no_sd_and_the_range_of_all_admissible(
         assert low is not None
         assert low < min(standing)
         assert high is None or max(standing) < high
-        assert told[one.name]["sd"] is None
-        assert told[one.name]["interval_95"] == [low, high]
+        assert reported[one.name]["sd"] is None
+        assert reported[one.name]["interval_95"] == [low, high]
     known = JointValues(np.array([6e8, 1.0, 1.0]), np.zeros(3))
     sure = identify_structure(
         reduced,
@@ -274,7 +274,7 @@ def test_states_that_share_nothing_are_found_as_if_alone(
     assert len(states_apart(problem)) == 2
 
 
-def test_a_slack_joint_is_told_from_a_tight_one(
+def test_a_slack_joint_is_distinguished_from_a_tight_one(
     reduced: ReducedModel, rows: FloatArray, truth: JointValues
 ) -> None:
     """A stiffness of zero in one direction predicts, and every frequency falls."""

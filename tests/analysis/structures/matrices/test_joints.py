@@ -110,7 +110,7 @@ def test_a_joint_that_touches_nothing_is_named(marble: Material) -> None:
 
 
 def test_a_support_that_holds_too_little_leaves_mechanisms(marble: Material) -> None:
-    """Springs along the normal alone: three motions cost nothing, and say so."""
+    """Springs along the normal alone: three motions have zero strain energy."""
     body = solid_body("block", box_mesh(PLATE, (4, 3, 1)), marble)
     springs = Support("block", "z-", SupportKind.SPRINGS, (1e8, 0.0, 0.0))
     structure = build_structure([body], [], supports=[springs])

@@ -87,7 +87,7 @@ def test_a_sensor_beside_the_body_is_refused(
     block: Structure, small: ReducedModel
 ) -> None:
     """So is one on a body that does not exist, or without a direction."""
-    with pytest.raises(BadData, match=r"does not lie on the body|lies .* from"):
+    with pytest.raises(BadData, match=r"is not on the body|is .* from"):
         readout(block, small, [MountedSensor("s", "block", (0.3, 0.1, 0.1), (0, 0, 1))])
     with pytest.raises(UsageError, match="no body 'wheel'"):
         readout(block, small, [MountedSensor("s", "wheel", (0.1, 0.1, 0.1), (0, 0, 1))])

@@ -167,6 +167,6 @@ def test_close_and_slow_modes_are_iterated_until_their_bound_is_met(
 
 
 def test_a_bound_that_rounding_keeps_up_says_so(plates: Structure) -> None:
-    """No tolerance is met below rounding: the message does not blame the box first."""
+    """No tolerance is met below rounding: the message does not name the box first."""
     with pytest.raises(BadData, match=r"solved to rounding.*larger tolerance"):
         reduce_structure(plates, modes=8, box=(1e6, 1e8), tolerance=1e-18)

@@ -4,8 +4,7 @@
 import math
 
 import numpy as np
-from scipy.integrate import quad
-from sheet_entries import (
+from printed_entries import (
     ELASTIC,
     ENTRIES,
     STAGE_1,
@@ -14,6 +13,7 @@ from sheet_entries import (
     surface_of,
     symbols,
 )
+from scipy.integrate import quad
 
 from jointbench.analysis.contact import printed_formulas_2023 as eq
 from jointbench.analysis.contact.asperity import interference

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A genetic algorithm on full solves beside ours, one run, same data.
+"""Compare a genetic algorithm on full solves with the station's search, same data.
 
-python benchmarks/structures/race.py [--cells 16 10 2] [--members 50] [--generations 10]
+python benchmarks/structures/search_comparison.py [--cells 16 10 2] [--members 50]
+    [--generations 10]
 """
 
 import argparse
@@ -54,7 +55,7 @@ def main() -> None:
     count = RIGID + ELASTIC
     target = solve_full(structure, TRUTH.stiffness, count).natural_frequency[RIGID:]
     print(f"{structure.size} degrees of freedom, {ELASTIC} frequencies as data")
-    ours = race_ours(structure, target)
+    ours = search_station(structure, target)
     objective = squared_frequency_errors(
         lambda logs: solve_full(structure, np.exp(logs), count).natural_frequency[
             RIGID:
@@ -90,7 +91,7 @@ def worst_log(logs: FloatArray) -> float:
     return float(np.abs(logs - np.log(TRUTH.stiffness)).max())
 
 
-def race_ours(structure: Structure, target: FloatArray) -> tuple[float, float]:
+def search_station(structure: Structure, target: FloatArray) -> tuple[float, float]:
     """Reduce, search by least squares and two populations; return CPU seconds."""
     begin = cpu()
     model = reduce_structure(structure, modes=RIGID + ELASTIC)

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""States of the sheet's reference model: areas, parts, energies, maxima."""
+"""States of the reference model: areas, parts, energies, maxima."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import minimize_scalar
-from sheet_entries import (
+from printed_entries import (
     material_of,
     surface_of,
 )
+from scipy.optimize import minimize_scalar
 
 from jointbench.analysis.contact.asperity_laws import FullyPlastic
 from jointbench.analysis.contact.curve import contact_curve
@@ -22,7 +22,7 @@ SEED["consistent"] = Interaction.SELF_CONSISTENT
 
 
 def in_reference(i, interaction, name=None, load=None, **changes):
-    """Return the sums of the sheet's reference model, which predates the pinned one."""
+    """Return the sums of the reference model, which predates the pinned one."""
     name = name or ("modified_2d" if i["D"] < 2 else "friction_3d")
     second = {1.236: PRINTED_STAGE_2}.get(i["m2"], contact_model("ke_2d").second)
     model = replace(

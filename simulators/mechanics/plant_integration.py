@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A plant marched through time under a force, from the state it has come to."""
+"""Time integration of a plant under a force, from a given state."""
 
 from dataclasses import dataclass
 
@@ -11,12 +11,12 @@ from jointbench.simulators.mechanics.joint_laws import (
     resting_sliders,
 )
 from jointbench.simulators.mechanics.plant import Plant, plant_matrices
-from jointbench.simulators.mechanics.time_integration import LinearPart, march
+from jointbench.simulators.mechanics.time_integration import LinearPart, integrate
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlantState:
-    """All that a plant carries from one stretch of time to the next.
+    """State of a plant between two time integrations.
 
     Attributes:
         time: [s].
@@ -49,7 +49,7 @@ def step_plant(
     time_step: float,
     state: PlantState | None = None,
 ) -> tuple[FloatArray, PlantState]:
-    """March the plant through time under a force on one body.
+    """Integrate the plant in time under a force on one body.
 
     Args:
         plant: the bodies, links and laws.
@@ -66,7 +66,7 @@ def step_plant(
     _, stiffness, damping = plant_matrices(plant)
     inverse_mass = 1 / np.asarray(plant.masses, dtype=float)
     values, sliders = start.values.copy(), start.sliders.copy()
-    acceleration = march(
+    acceleration = integrate(
         LinearPart(inverse_mass, stiffness, damping),
         pack_laws(plant.laws),
         np.array(force, dtype=float),

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Single numbers of the sheet: jumps of laws, the rig, the five fits, Mindlin."""
+"""Single printed numbers: jumps of laws, the rig, the five fits, Mindlin."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
-from sheet_entries import (
+from printed_entries import (
     ELASTIC,
     material_of,
     surface_of,

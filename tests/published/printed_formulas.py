@@ -4,8 +4,7 @@
 import math
 
 import numpy as np
-from scipy.integrate import quad
-from sheet_entries import (
+from printed_entries import (
     ELASTIC,
     PLASTIC,
     STAGE_1,
@@ -14,6 +13,7 @@ from sheet_entries import (
     mended,
     surface_of,
 )
+from scipy.integrate import quad
 
 from jointbench.analysis.contact.asperity import (
     asperity_load,
