@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Would parts of the records rather have parameters of their own?
+"""Test whether parts of the records need separate parameters.
 
-A law that imitates the true one leaves misfits that no effect of the catalogue takes,
-but that differ from level to level, channel to channel, early to late, low to high
-frequency: parameters that fit all records together are then not the best of any part.
-These tests ask no catalogue, so they also see what is missing from it.
+A law that imitates the true one leaves residuals that no effect of the catalogue
+explains, but that differ between levels, channels, early and late samples, or low and
+high frequency: the parameters of all records together are then not optimal for any
+part. These tests need no catalogue, so they also detect effects that it lacks.
 
 Source:
     Chow 1960, Econometrica 28, 591, for parameters that are the same in all parts;
-    here as a score test, so that no part is fitted again.
+    implemented as a score test, so that no part is fitted again.
 """
 
 import itertools
@@ -26,12 +26,12 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 
 @dataclass(frozen=True, slots=True)
 class Unlike:
-    """The cut of the records whose parts differ most.
+    """The division of the records whose parts differ most.
 
     Attributes:
-        view: how the records were cut.
-        chance: that noise alone makes the parts differ so much [-].
-        excess: chi2 that own parameters would take beyond their number.
+        view: name of the division.
+        chance: probability of such a difference under noise alone [-].
+        excess: drop of chi2 by separate parameters, minus their number.
     """
 
     view: str
@@ -48,12 +48,12 @@ class _Cells:
 
 
 def most_unlike(bench: Bench, fit: Fit, allowed: float) -> Unlike:
-    """Cut the records every way and return the cut whose parts differ most.
+    """Divide the records in every way and return the division that differs most.
 
     Args:
-        bench: that was fitted.
+        bench: on which the fit was found.
         fit: a minimum.
-        allowed: chi2 that the error of the model itself may make of it.
+        allowed: chi2 that the model error may contribute.
     """
     shape = bench.blocks.shape
     slopes = fit.jacobian / np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
@@ -83,7 +83,7 @@ def most_unlike(bench: Bench, fit: Fit, allowed: float) -> Unlike:
 def _time_cells(
     slopes: FloatArray, residual: FloatArray, shape: tuple[int, int, int]
 ) -> _Cells:
-    """Return records by channels by early and late, halved by what the slopes weigh."""
+    """Return cells of record, channel and half, halved by the power of the slopes."""
     j, r = slopes.reshape(*shape, -1), residual.reshape(shape)
     weight = np.cumsum(np.einsum("rctn,rctn->t", j, j))
     half = int(np.searchsorted(weight, 0.5 * weight[-1])) + 1
@@ -96,7 +96,7 @@ def _time_cells(
 def _band_cells(
     slopes: FloatArray, residual: FloatArray, shape: tuple[int, int, int]
 ) -> _Cells:
-    """Return bands of frequency, each as much to the slopes, by channels."""
+    """Return cells of frequency band and channel; bands have equal slope power."""
     n = shape[2]
     unit = np.sqrt(2.0 / n)
     r = scipy.fft.rfft(residual.reshape(shape), axis=2) * unit
@@ -114,7 +114,7 @@ def _band_cells(
 
 
 def _pooled(cells: _Cells, words: list[str]) -> _Cells:
-    """Return cells with the records of one word taken together."""
+    """Return cells with the records of each word summed."""
     kinds = {w: [i for i, x in enumerate(words) if x == w] for w in words}
     return _Cells(
         np.array([cells.gram[rows].sum(axis=0) for rows in kinds.values()]),
@@ -129,7 +129,7 @@ def _test(
     slopes: FloatArray,
     allowed: float,
 ) -> Unlike:
-    """Let every part along `axes` have its own parameters."""
+    """Test separate parameters for every part along `axes`."""
     n = slopes.shape[1]
     others = tuple(k for k in range(cells.gradient.ndim - 1) if k not in axes)
     gram = cells.gram.sum(axis=others).reshape(-1, n, n)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Judging: noise estimated at the winner, rivals fitted again there, and the gate."""
+"""Judge the best fit: noise estimated at it, rivals refitted, criteria applied."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ OVERTAKEN = JUDGEMENT.overtaking_rounds
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PredictedGains:
-    """What directed tests of a fit foretold of one more effect on it.
+    """Gains that directed tests of a fit predict for one more effect.
 
     Attributes:
-        onto: the fit.
+        onto: fit that the effect is added to.
         screening: its directed tests.
     """
 
@@ -43,12 +43,13 @@ def judge(
     progress: Progress,
     predicted_gains: PredictedGains | None = None,
 ) -> tuple[Bench, list[Fit], Acceptance]:
-    """Estimate the noise at the winner, refit the leaders there and judge.
+    """Estimate the noise at the best fit, refit its rivals with that noise, and judge.
 
-    Noise, scatter and settling of the hits are known no better than the fit at which
-    they were estimated, so they and the winner are brought to agree. Rivals are then
-    fitted with the same noise; one that overtakes is judged in its turn. Where the
-    winner fails, those that were held back are settled each by itself.
+    Noise, scatter and settling of the hits are only as accurate as the fit at which
+    they are estimated, so fit and estimates are iterated to convergence. Rivals are
+    then fitted with the same noise; a rival that overtakes the best fit is judged next.
+    If the best fit fails, fits that its noise estimate may have disadvantaged are
+    judged, each with its own noise estimate.
     """
     if not fits:
         return bench, [], accept(bench, base, base, None)
@@ -82,18 +83,18 @@ def judge(
 
 
 def far_off(bench: Bench, fit: Fit) -> bool:
-    """Tell whether a fit leaves a misfit of many times the noise."""
+    """Return whether the residual of a fit is many times the noise."""
     return fit.chi2 > bench.policy.far_chi2 * bench.blocks.dof
 
 
 def _brought_near(
     bench: Bench, fit: Fit, progress: Progress
 ) -> tuple[Bench, Fit] | None:
-    """Return a fit on a bench where it is not far off, or None where it always is.
+    """Return the fit on a bench where it is near the records, or None if there is none.
 
-    Nothing can be learnt of noise and scatter there, and rivals are no better. In a
-    quiet campaign the scatter alone may lead it off; then it is fitted about the hits
-    as they settled.
+    Noise and scatter cannot be estimated far from the records. In a quiet campaign the
+    scatter alone may cause the distance; then the model is expanded about the settling
+    of each hit.
     """
     if not far_off(bench, fit):
         return bench, fit
@@ -109,10 +110,10 @@ def _brought_near(
 
 
 def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
-    """Return the fits behind the winner that may still overtake it.
+    """Return the rivals that may still overtake the best fit.
 
-    What the winner gained by being settled, the next few may gain too: their costs
-    are those under a noise that was estimated where less was explained.
+    The gain of the best fit by its own noise estimate is also possible for the next
+    few: their costs are based on a noise estimate at a worse fit.
     """
     reach = (
         JUDGEMENT.refit_score
@@ -134,15 +135,15 @@ def _close(found: "_Judged", rest: Sequence[Fit]) -> list[Fit]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Judged:
-    """A fit before and after it was settled, with all that it was judged by.
+    """A fit before and after convergence with its noise, and its judgement.
 
     Attributes:
         first: the fit before.
         fit: the fit after.
         bench: with the noise estimated at it.
-        base: fit without effects that it is held against.
-        left: directed tests of what it leaves.
-        acceptance: its judgement.
+        base: fit without effects, for comparison.
+        left: directed tests of its residual.
+        acceptance: result of the acceptance criteria.
     """
 
     first: Fit
@@ -156,7 +157,7 @@ class _Judged:
 def _judged(
     bench: Bench, ranked: Sequence[Fit], base: Fit, progress: Progress
 ) -> _Judged:
-    """Settle the first of some fits and judge it."""
+    """Iterate the first fit with its noise, and judge it."""
     bench, fit = _settled(bench, ranked[0], progress)
     left = _left_by(bench, fit)
     base = _alike(bench, fit, base)
@@ -165,11 +166,11 @@ def _judged(
 
 
 def _alike(bench: Bench, fit: Fit, base: Fit) -> Fit:
-    """Return the base under the noise of a fit, where its effect may be worth nothing.
+    """Return the base, refitted with the noise of a fit whose effect may be zero.
 
-    A trend over the records that is in no catalogue was taken for scatter once any
-    effect was in. The base of before, to which there was no scatter, then makes that
-    effect look needed, though its amplitude is none.
+    A trend over the records that no effect of the catalogue describes may be counted as
+    scatter once any effect is fitted. Compared with the earlier base, without scatter,
+    that effect would appear necessary although its amplitude is zero.
     """
     limit = bench.policy.amplitude_limit
     if len(fit.candidates) != 1 or weakest_amplitude(fit) > limit:
@@ -185,9 +186,9 @@ def _own_settling(
     progress: Progress,
     tried: set[frozenset[str]],
 ) -> _Judged:
-    """Return the first of those held back that passes by itself, or what failed.
+    """Return the first fit accepted with its own noise estimate, or the failed one.
 
-    Those that were reached are added to `tried`.
+    The fits judged are added to `tried`.
     """
     for f in held:
         tried.add(labels_of(f.candidates))
@@ -204,11 +205,11 @@ def _held_back(
     predicted_gains: PredictedGains,
     tried: Collection[frozenset[str]],
 ) -> list[Fit]:
-    """Return the fits of which their directed tests foretold more than was gained.
+    """Return the fits whose predicted gain exceeds the gain of the best fit.
 
-    An expansion about another fit holds back one that differs from it; it may even
-    have lost the race. What scatters cannot be told where a fit misses by more than
-    noise. What was tried by itself before comes out the same.
+    An expansion about one fit is a disadvantage for others, which may have been dropped
+    in the selection rounds. Scatter cannot be estimated at a fit that does not explain
+    the records. Fits that were tried alone before are skipped.
     """
     if (
         not failed.bench.expanded
@@ -228,30 +229,30 @@ def _held_back(
 
 
 def _part_of(fewer: Fit, more: Fit) -> bool:
-    """Tell whether a fit is another one without some of its effects.
+    """Return whether a fit is another one without some of its effects.
 
-    What an effect is worth is read from such a fit, so its noise must be the same.
+    The gain of an effect is computed from such a fit, so its noise must be the same.
     """
     return labels_of(fewer.candidates) < labels_of(more.candidates)
 
 
 def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
-    """Bring a fit and the noise estimated at it to agree, unless it runs away.
+    """Alternate fit and noise estimate until they converge or the fit diverges.
 
-    A trend that is scatter by one fit and none by the next goes to and fro for ever.
-    Then the fit that leaves more is taken: there the least is called scatter.
+    A trend that counts as scatter in every other round makes the iteration alternate
+    without end. Then the fit with the higher cost is used: it has the least scatter.
     """
     earlier, before = np.inf, fit.cost
     for _ in range(JUDGEMENT.settling_rounds):
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
-        to_and_fro = (
+        alternates = (
             abs(fit.cost - earlier) < JUDGEMENT.repeated_cost and fit.cost > before
         )
         if (
             abs(fit.cost - before) < JUDGEMENT.settled_cost
-            or to_and_fro
+            or alternates
             or far_off(bench, fit)
         ):
             break
@@ -260,6 +261,6 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
 
 
 def _left_by(bench: Bench, fit: Fit) -> Screening:
-    """Test what a fit leaves for all other effects and the probes."""
+    """Test the residual of a fit for all other effects and the probes."""
     others = [c for c in bench.candidates if c not in fit.candidates]
     return screen(bench, fit, [*others, *bench.probes])

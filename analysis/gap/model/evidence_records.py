@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a picture of a gap is drawn from, and what it tells in words."""
+"""Evidence of a gap: curves for the figures, and sentences."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,19 +9,20 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curves:
-    """The telling record: the one channel of one hit that holds most of the misfit.
+    """Representative record: the channel of the hit with most of the residual.
 
     Attributes:
         record: its number, from 0.
-        condition: where and how hard it was hit, in words.
+        condition: hit point, level and preload, as text.
         channel: name.
         unit: of the response.
-        share: of the whole excess that sits in it [-].
+        share: its share of the total excess [-].
         time: from the start of the record [s], shape (n,).
         measured: [unit], shape (n,).
         before: base model, same shape.
         after: model with the effects, same shape.
-        residual_before: measured less base, with what hits scatter by taken out [unit].
+        residual_before: measured minus base model, without the scatter between hits
+            [unit].
         residual_after: the same with the effects [unit].
         sigma: noise of a sample [unit].
     """
@@ -47,7 +48,7 @@ class Curves:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spectra:
-    """The telling condition in the frequency domain.
+    """Representative condition in the frequency domain.
 
     Attributes:
         condition: in words.
@@ -57,7 +58,7 @@ class Spectra:
         measured: magnitude of the H1 estimate over the repeats [unit], shape (n,).
         before: of the base model for the same forces, same shape.
         after: of the model with the effects, same shape.
-        residual_before: rms over all records and channels, over the noise [-].
+        residual_before: rms over all records and channels, relative to the noise [-].
         residual_after: the same with the effects [-].
     """
 
@@ -79,7 +80,7 @@ class Spectra:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RecordEstimates:
-    """What stiffness and damping of the joint each record would like by itself.
+    """Stiffness and damping of the joint, estimated from each record separately.
 
     Attributes:
         link: name of the joint.
@@ -88,10 +89,10 @@ class RecordEstimates:
         order: rank in time, same shape.
         hit: name of the body hit, one for each record.
         stiffness: relative change from the base [-], (n_records, 2): before, after.
-        stiffness_sd: of it [-], same shape.
+        stiffness_sd: its standard deviation [-], same shape.
         damping: relative change from the base [-], same shape.
-        damping_sd: of it [-], same shape.
-        share: of the excess that such freedom would take, before [-].
+        damping_sd: its standard deviation [-], same shape.
+        share: share of the excess that separate estimates explain, before [-].
     """
 
     link: str
@@ -113,15 +114,15 @@ class RecordEstimates:
 
 @dataclass(frozen=True, slots=True)
 class CampaignLimits:
-    """How much a right model may leave.
+    """Acceptance limits of a campaign.
 
     Attributes:
         chi2_per_dof: of the fit shown as after [-].
-        chi2_allowed: largest that still counts as explained [-].
-        remaining: directed test that comes closest to its limit, or exceeds it most,
-            in units of chi2; None where none was made.
+        chi2_allowed: largest accepted chi2/dof [-].
+        remaining: drop of chi2 in the directed test closest to its limit, or furthest
+            above it; None if there is no test.
         remaining_allowed: its limit, in units of chi2.
-        deviation_allowed: largest distance of a base parameter from its sheet [sigma].
+        deviation_allowed: largest accepted prior deviation of a base parameter [sd].
     """
 
     chi2_per_dof: float
@@ -133,7 +134,7 @@ class CampaignLimits:
 
 @dataclass(frozen=True, slots=True)
 class DirectedTest:
-    """What one effect by itself would take, to first order.
+    """Drop of chi2 by one effect alone, to first order.
 
     Attributes:
         label: effect and site.
@@ -148,20 +149,20 @@ class DirectedTest:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GapEvidence:
-    """The evidence in a form that can be drawn and told.
+    """Evidence of a gap for figures and text.
 
     Attributes:
-        tried: the explanation shown as after, in words; empty for the base itself.
-        where: one sentence on where the base's misfit sits.
-        look: what the misfit looks like, one sentence each.
-        advice: what to do where no effect explains it; empty where none is missing.
-        view: the view that tells most: level, hit point, preload, frequency, or sheet
-            where only the base's own parameters show it.
-        relative: by view and slice, misfit over response, before [-].
-        curves: the telling record.
-        spectra: the telling condition.
+        tried: the explanation shown as after, as text; empty for the base itself.
+        where: one sentence that locates the residual of the base.
+        look: signature of the residual, one sentence each.
+        advice: what to do if no effect explains it; empty if none is missing.
+        view: the most significant view: level, hit point, preload, frequency, or
+            priors if only the base parameters show the gap.
+        relative: residual over response by view and slice, before [-].
+        curves: representative record.
+        spectra: representative condition.
         record_estimates: of each record for the joint; None if the model has no joint.
-        limits: what a right model may leave.
+        limits: acceptance limits.
         tests: directed tests of the base, largest first.
         force_unit: of force and level.
     """
@@ -181,7 +182,7 @@ class GapEvidence:
 
 
 def evidence_json(evidence: GapEvidence) -> dict[str, Any]:
-    """Return the words and numbers of an exhibit, without its curves."""
+    """Return the text and numbers of the evidence, without its curves."""
     curves, limits = evidence.curves, evidence.limits
     return {
         "localisation": evidence.where,

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Compiled march of the nonlinear link force along a known linear motion.
+"""Compiled time integration of the nonlinear link force along a linear motion.
 
-Only the difference e between the motion with and without the effect is stepped, so
-that a force law of amplitude 0 leaves the linear response untouched to the last bit.
-The link's own compliance is a sum of modes, each stepped exactly for a force that is
-a straight line within the step (first-order hold); the force at the end of a step is
-found from the motion predicted with an extrapolated force, whose error is of the
-order dt^2/m of a second difference and far below the noise.
+Only the difference between the motion with and without the effect is integrated, so
+that a force law of amplitude 0 leaves the linear response unchanged to the last bit.
+The link's compliance is a sum of modes, each integrated exactly for a force that is
+linear within the step (first-order hold); the force at the end of a step is computed
+from the motion predicted with an extrapolated force, whose error is of the order
+dt^2/m of a second difference and far below the noise.
 
 All that a step calls is compiled into it: handing arrays over would cost more than the
 step.
@@ -52,7 +52,7 @@ _LAW = 3 * LANES
 
 
 class IntegrationLaws(NamedTuple):
-    """All force laws of a link as the compiled march wants them.
+    """All force laws of a link in the arrays of the time integration.
 
     They lie in common arrays: a law that is handed over as an array of its own, or cut
     out of one as a view, costs more at every step than what is done with it.
@@ -110,7 +110,7 @@ def _forces(
     p: FloatArray,
     curves: FloatArray,
 ) -> None:
-    """Write the force of law `a` in every lane, unless it is one of sliders."""
+    """Write the force of law `a`, other than a slider law, in every lane."""
     kind, first, second, own = kinds[a], p[a, 0], p[a, 1], a * _LAW + _OWN
     if kind == POLYNOMIAL:
         for k in range(LANES):
@@ -134,10 +134,10 @@ def _forces(
 
 @compiled()
 def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> FloatArray:
-    """Return what a march keeps of its lanes, at rest.
+    """Return the initial state of the lanes, at rest.
 
     Modes are scaled by their residues, so that a real part is a displacement; each is
-    stepped by its growth and by first-order-hold weights.
+    advanced by its growth and by first-order-hold weights.
     """
     w = np.zeros(_MODES + poles.shape[0] * _MODE)
     for m in range(poles.shape[0]):
@@ -157,7 +157,7 @@ def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> Float
 
 @compiled(fastmath=True, inline="always")
 def _predict(w: FloatArray, n_modes: int) -> None:
-    """Step the modes in place with a guessed force, and add them to the motion."""
+    """Advance the modes in place with an estimated force; add them to the motion."""
     for m in range(n_modes):
         at = _MODES + m * _MODE
         for k in range(LANES):
@@ -186,7 +186,7 @@ def _integrate_lanes(
     first: int,
     out: FloatArray,
 ) -> None:
-    """March the records from `first` on, as many as there are lanes."""
+    """Integrate as many records as there are lanes, beginning at `first`."""
     n_modes, n_laws = (w.size - _MODES) // _MODE, laws.kinds.size
     states = np.zeros((LANES, laws.slips.size, 2))
     active = np.zeros((n_laws, LANES), dtype=np.int64)
@@ -252,18 +252,18 @@ def integrate_link_force(
     laws: IntegrationLaws,
     needs_velocity: bool,
 ) -> FloatArray:
-    """Return the force of all laws of a link along the coupled motion.
+    """Integrate the force of all laws of a link along the coupled motion.
 
     Args:
         displacement: linear motion across the link [m], shape (n_steps, n_columns):
-            a column a record, and columns of zeros up to a multiple of `LANES`.
-        velocity: its rate [m/s], same shape; not looked at unless needed.
+            one column per record, and zero columns up to a multiple of `LANES`.
+        velocity: its rate [m/s], same shape; ignored unless needed.
         poles: of the link's compliance [rad/s], shape (n_modes, n_records), one of
             each conjugate pair.
-        residues: of it, doubled for a pair [m/N rad/s], same shape.
+        residues: of the compliance, doubled for a pair [m/N rad/s], same shape.
         dt: step [s].
         laws: that act together.
-        needs_velocity: True where one of them looks at it.
+        needs_velocity: True if one of them depends on the velocity.
 
     Returns:
         Force of the laws together [N], shape (n_steps, n_columns).
