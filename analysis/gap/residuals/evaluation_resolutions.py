@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How thoroughly a residual is evaluated, from a first look to the last digit."""
+"""Resolutions of a residual: window and step of the time integration."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 
 @dataclass(frozen=True, slots=True)
 class Resolution:
-    """How thoroughly a residual is evaluated.
+    """Resolution at which a residual is evaluated.
 
     Attributes:
         window: decay of the exponential window [s], or None for the whole record;
             short windows make the cost of a misplaced resonance smooth.
-        oversampling: steps of the nonlinear march per sample.
+        oversampling: steps of the time integration per sample.
     """
 
     window: float | None = None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Joint least squares of base and effects: the problem."""
+"""Joint least-squares problem of base and effects."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -8,8 +8,8 @@ linear within the step (first-order hold); the force at the end of a step is com
 from the motion predicted with an extrapolated force, whose error is of the order
 dt^2/m of a second difference and far below the noise.
 
-All that a step calls is compiled into it: handing arrays over would cost more than the
-step.
+All functions called in a step are inlined: passing arrays would take longer than the
+step itself.
 """
 
 import math
@@ -35,38 +35,38 @@ QUADRATIC_DAMPING = 4
 CURVES = 5
 LANES = RESPONSE.lanes
 
-# What a march keeps of its lanes lies in two plain arrays, each quantity at a place
-# that the compiler knows: with an array for each, a step takes twice as long.
+# The state of all lanes is in two plain arrays, each quantity at an offset that is a
+# compile-time constant: with one array per quantity, a step takes twice as long.
 _FORCE, _GUESS, _BEFORE, _MOTION, _SPEED, _SLOPE = (i * LANES for i in range(6))
-"""Places of the force of all laws, its guess, the last motion, the motion, its rate,
-and what a unit of force takes of that rate within a step."""
+"""Offsets of the force of all laws, its estimate, the last motion, the motion, its
+rate, and the change of that rate per unit force within a step."""
 _MODES = 6 * LANES
 _REAL, _IMAGINARY, _TURN, _QUARTER, _START, _START_I, _END, _END_I, _POLE, _POLE_I = (
     i * LANES for i in range(10)
 )
-"""Places within a mode: its motion, growth, hold weights and pole (re, im)."""
+"""Offsets within a mode: its motion, growth, hold weights and pole (re, im)."""
 _MODE = 10 * LANES
 _OWN, _EARLIER, _EXTRAPOLATED = (i * LANES for i in range(3))
-"""Places within a law: its force, that of the step before, and what is hoped for."""
+"""Offsets within a law: its force, that of the previous step, and the extrapolation."""
 _LAW = 3 * LANES
 
 
 class IntegrationLaws(NamedTuple):
     """All force laws of a link in the arrays of the time integration.
 
-    They lie in common arrays: a law that is handed over as an array of its own, or cut
-    out of one as a view, costs more at every step than what is done with it.
+    Common arrays are used because passing each law as an array or a view would take
+    longer at every step than its evaluation.
 
     Attributes:
         kinds: which laws, shape (n_laws,).
         p: their parameters, shape (n_laws, 2).
-        ends: where the sliders of each law begin, and end, shape (n_laws + 1,).
-        slips: slip displacements of the sliders [m], rising within a law, shape
+        ends: first slider of each law, and the end of the last, shape (n_laws + 1,).
+        slips: slip displacements of the sliders [m], ascending within a law, shape
             (n_sliders,).
         weights: stiffness of each slider [N/m], same shape.
-        tables: of sliders, four rows a law, shape (4 n_laws, n_points).
-        tops: what goes with them, shape (n_laws, 7).
-        curves: of curve laws, three rows a law, shape (3 n_laws, n_points).
+        tables: of sliders, four rows per law, shape (4 n_laws, n_points).
+        tops: properties of these tables, see `slide`, shape (n_laws, 7).
+        curves: of curve laws, three rows per law, shape (3 n_laws, n_points).
     """
 
     kinds: IntArray
@@ -190,7 +190,7 @@ def _integrate_lanes(
     n_modes, n_laws = (w.size - _MODES) // _MODE, laws.kinds.size
     states = np.zeros((LANES, laws.slips.size, 2))
     active = np.zeros((n_laws, LANES), dtype=np.int64)
-    # Taken out once: each look into a tuple counts a reference up and down.
+    # Unpacked once: each access to a tuple changes a reference count.
     kinds, p, ends, slips, weights, tables, tops, curves = laws
     sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * _LAW)
     for i in range(displacement.shape[0]):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Put the force laws of a link into the common arrays of the compiled march."""
+"""Pack the force laws of a link into the arrays of the time integration."""
 
 from collections.abc import Sequence
 
@@ -19,7 +19,7 @@ CURVE_ROWS = 3
 
 
 def pack_laws(laws: Sequence[Law]) -> IntegrationLaws:
-    """Return laws that act together at one link as the march wants them."""
+    """Return laws that act together at one link in packed arrays."""
     p = np.zeros((len(laws), PARAMETERS))
     for row, law in zip(p, laws, strict=True):
         row[: law.parameters.size] = law.parameters
@@ -37,7 +37,7 @@ def pack_laws(laws: Sequence[Law]) -> IntegrationLaws:
 
 
 def _rows(laws: Sequence[Law], kind: int, count: int) -> FloatArray:
-    """Return the tables of one kind of law, so many rows a law, zeros for others."""
+    """Return the tables of one kind of law, `count` rows per law, zeros for others."""
     own = [law.tables if law.kind == kind else None for law in laws]
     width = max((t.shape[1] for t in own if t is not None), default=1)
     rows = [np.zeros((count, width)) if t is None else t for t in own]

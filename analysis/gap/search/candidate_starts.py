@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Starts of a race: a candidate set, as far as a directed test foretells it."""
+"""Start values of a set of candidates, predicted by a directed test."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ SHARES = SEARCH.start_shares
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CandidateFit:
-    """One start of one candidate set, as far as it has come."""
+    """One start of a set of candidates, and its fit so far."""
 
     problem: FitProblem
     x: FloatArray
@@ -33,23 +33,23 @@ class CandidateFit:
 
     @property
     def label(self) -> str:
-        """The candidates in words, in an order of their own."""
+        """The candidates as text, sorted by label."""
         return words_of(self.problem.candidates)
 
 
 def along(
     problem: FitProblem, fit: Fit, direction: Direction, resolution: Resolution
 ) -> CandidateFit:
-    """Return the best start on the way that a directed test foretells.
+    """Return the best start along the step that a directed test predicts.
 
-    The effect comes in and the base gives way together; what is far from small is
-    not foretold well, so shorter ways are looked at too.
+    The step changes effect and base together; the prediction is inaccurate for large
+    effects, so shorter steps are also evaluated.
 
     Args:
-        problem: of the fit's effects and the one tested, in that order.
-        fit: that was tested.
-        direction: the test.
-        resolution: at which starts are compared.
+        problem: of the fit's effects and the tested one, in that order.
+        fit: fit that was tested.
+        direction: the directed test.
+        resolution: at which the starts are compared.
     """
     full = np.concatenate([fit.x + direction.shift, direction.coordinates])
     trials = [np.concatenate([fit.x, direction.coordinates])]
@@ -68,12 +68,12 @@ def along(
 
 
 def started(bench: Bench, fit: Fit, direction: Direction) -> Fit:
-    """Return a first fit of what a directed test points to.
+    """Return a first fit of the candidate of a directed test.
 
     Args:
         bench: measurement and model.
-        fit: what the candidate is added to.
-        direction: the test.
+        fit: fit that the candidate is added to.
+        direction: the directed test.
     """
     problem = make_problem(bench, (*fit.candidates, direction.candidate))
     candidate_fit = along(problem, fit, direction, MIDDLE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Descend to a minimum of the cost: Levenberg and Marquardt, coarse to fine."""
+"""Minimise the cost by the Levenberg-Marquardt method, coarse to fine."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 
 
 def _steps_of(problem: FitProblem, x: FloatArray) -> FloatArray:
-    """Return the difference steps of x, turned inwards at a bound."""
+    """Return the difference steps of x, directed inwards at a bound."""
     step = np.full(x.size, SEARCH.base_step)
     tail = slice(problem.n_base, None)
     step[tail] = SEARCH.effect_step * np.maximum(np.abs(x[tail]), 1e-2)
@@ -27,13 +27,13 @@ def jacobian_of(
     residual: FloatArray,
     resolution: Resolution,
 ) -> FloatArray:
-    """Difference the residual.
+    """Return the Jacobian of the residual by differences, shape (n_rows, n).
 
     Args:
-        problem: what is fitted.
-        x: where, shape (n,).
+        problem: least-squares problem.
+        x: coordinates, shape (n,).
         residual: at x, shape (n_rows,).
-        resolution: how thoroughly.
+        resolution: of the residual.
     """
     columns = np.empty((x.size, residual.size))
     steps = _steps_of(problem, x)
@@ -59,18 +59,18 @@ def minimise(
     jacobian_resolution: Resolution | None = None,
     exact_slopes: bool = True,
 ) -> Fit:
-    """Descend from one start.
+    """Minimise the cost from one start.
 
     Args:
-        problem: what is fitted.
+        problem: least-squares problem.
         start: coordinates, shape (n,).
         resolution: window and step of the residual.
-        iterations: at most.
-        rival: cost of the best so far; a descent that at its pace would need very
-            many more steps to come there is given up.
-        jacobian_resolution: a cheaper stage for the slopes, or None for the same.
-        exact_slopes: difference the slopes once more at the end, which an
-            intermediate stage does not need.
+        iterations: largest number of steps.
+        rival: cost of the best fit so far; a descent that would need very many more
+            steps to reach it is stopped.
+        jacobian_resolution: coarser resolution for the slopes, or None for the same.
+        exact_slopes: difference the slopes once more at the end, which intermediate
+            fits do not need.
     """
 
     def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
@@ -120,7 +120,7 @@ def minimise(
 
 
 def _pruned(problem: FitProblem, x: FloatArray, r: FloatArray) -> Fit:
-    """Return the fit of a start at which the model runs away."""
+    """Return the fit of a start at which the model diverges."""
     return Fit(
         x,
         problem.n_base,
@@ -140,13 +140,13 @@ def _excess(problem: FitProblem, cost: float) -> float:
 def _predicted_drop(
     problem: FitProblem, x: FloatArray, r: FloatArray, j: FloatArray, moved: FloatArray
 ) -> float:
-    """Return the drop of the cost that the linear model foretold."""
+    """Return the drop of the cost predicted by the linear model."""
     left = r + j @ (moved - x)
     return float(r @ r - left @ left + problem.penalty(x) - problem.penalty(moved))
 
 
 def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatArray:
-    """Update slopes by what a step has shown, at the price of no evaluation.
+    """Update slopes from the residuals of a step, without further evaluation.
 
     Source:
         Broyden 1965, Math. Comp. 19, 577, eq. (4.5), with parameters scaled by the
@@ -173,11 +173,11 @@ def _step(
     damping: float,
     resolution: Resolution,
 ) -> tuple[_Moved | None, float]:
-    """Try ever shorter steps until one goes down.
+    """Try successively shorter steps until one lowers the cost.
 
-    Effects hand stiffness and damping to the base and back, so their valleys are long
-    and curved. A step that climbed a wall is first led back down by what the data fix
-    well, with the slopes at hand, and only then shortened.
+    Effects and base can exchange stiffness and damping, so the valleys of the cost are
+    long and curved. A step that raises the cost is first corrected along the
+    well-determined directions, with the known slopes, and only then shortened.
     """
     hessian = j.T @ j + np.diag(problem.prior)
     gradient = j.T @ r + problem.prior * (x - problem.centre)
@@ -210,7 +210,7 @@ def _step(
 
 
 def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve, or return the least of all solutions where two parameters are one."""
+    """Solve, with the smallest solution if parameters are linearly dependent."""
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-14)[0])
 
 
@@ -220,14 +220,14 @@ def _moved(problem: FitProblem, x: FloatArray, step: FloatArray) -> FloatArray:
 
 
 def cost_at(problem: FitProblem, x: FloatArray, resolution: Resolution) -> float:
-    """Return the cost at x, infinite where the model runs away."""
+    """Return the cost at x, infinite if the model diverges."""
     return _looked_at(problem, x, resolution)[1]
 
 
 def chi2_between(
     problem: FitProblem, x: FloatArray, coarse: Resolution, fine: Resolution
 ) -> float:
-    """Return the chi2 by which two stages differ at x; NaN where one runs away."""
+    """Return the chi2 between two resolutions at x; NaN if one diverges."""
     one, two = (_looked_at(problem, x, resolution)[0] for resolution in (coarse, fine))
     with np.errstate(all="ignore"):
         return float(np.sum((two - one) ** 2))
@@ -239,7 +239,7 @@ def _looked_at(
     with np.errstate(all="ignore"):
         try:
             r = problem.residual(x, resolution)
-        except np.linalg.LinAlgError:  # a model whose modes cannot be told apart
+        except np.linalg.LinAlgError:  # a model with coincident modes
             return np.full(problem.bench.blocks.group.size, np.inf), np.inf
         cost = float(r @ r) + problem.penalty(x)
     return r, cost if np.isfinite(cost) else np.inf
@@ -255,7 +255,7 @@ BASE_RESOLUTIONS: _Resolutions = (
 def fit_coarse_to_fine(
     problem: FitProblem, start: FloatArray, resolutions: _Resolutions
 ) -> Fit:
-    """Fit coarse to fine; the last stage decides."""
+    """Fit coarse to fine; the result is that of the last resolution."""
     x = start
     for resolution, iterations in resolutions[:-1]:
         x = minimise(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The race of the candidates: joint refits, coarse to fine, the hopeless dropped."""
+"""Selection rounds: joint fits of all candidates, pruned from coarse to fine."""
 
 from collections.abc import Callable, Sequence
 
@@ -47,7 +47,7 @@ STARTS = SEARCH.shape_starts
 
 
 def score(bench: Bench, fit: Fit) -> float:
-    """Return the cost of a fit with a charge for every parameter."""
+    """Return the score of a fit: its cost plus a charge for each parameter."""
     charge, policy = 0.0, bench.policy
     for candidate in fit.candidates:
         charge += policy.parameter_charge * len(candidate.effect.parameters)
@@ -62,17 +62,17 @@ def run_selection(
     candidates: Sequence[Candidate],
     progress: Progress,
 ) -> list[Fit]:
-    """Fit base plus one more effect for every candidate worth it.
+    """Fit the base with one more effect, for each promising candidate.
 
     Args:
         bench: measurement and model.
-        fit: what the candidates are added to.
+        fit: fit that the candidates are added to.
         screening: directed tests of that fit.
-        candidates: what to try.
-        progress: told what is being tried.
+        candidates: to be fitted.
+        progress: receives the label of each candidate.
 
     Returns:
-        One fit for each candidate that came far enough, best score first.
+        One fit for each candidate that was not pruned, best score first.
     """
     candidate_fits = _near(bench, fit, screening, candidates)
     if fit.chi2 > bench.policy.far_chi2 * bench.blocks.dof:
@@ -83,15 +83,15 @@ def run_selection(
 def continue_selection(
     bench: Bench, fits: Sequence[Fit], progress: Progress
 ) -> list[Fit]:
-    """Race fits of a shorter window over the whole records.
+    """Continue fits of a shorter window over the whole records.
 
     Args:
         bench: measurement and model.
-        fits: where to start from.
-        progress: told what is being tried.
+        fits: starts.
+        progress: receives the label of each candidate.
 
     Returns:
-        One fit for each that came far enough, best score first.
+        One fit for each start that was not pruned, best score first.
     """
     problems = [make_problem(bench, f.candidates) for f in fits]
     candidate_fits = [
@@ -104,7 +104,7 @@ def continue_selection(
 def _run_rounds(
     bench: Bench, candidate_fits: list[CandidateFit], progress: Progress
 ) -> list[Fit]:
-    """Run starts to the end, the hopeless dropped on the way."""
+    """Run all selection rounds, and fit the remaining candidates to the end."""
     for iterations, keep, alike in SEARCH.selection_rounds:
         candidate_fits = _best_of_each(
             _keep(_round(candidate_fits, iterations, progress), keep), alike
@@ -132,7 +132,7 @@ def finish(
     x: FloatArray,
     progress: Progress,
 ) -> Fit:
-    """Fit to the end, at the step that the march of its start needs."""
+    """Fit to convergence, at the step size that the start requires."""
     resolution = _step_for(problem, x)
     progress(f"{words_of(problem.candidates)} (fine)")
     families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}
@@ -144,10 +144,10 @@ def finish(
 
 
 def _step_for(problem: FitProblem, x: FloatArray) -> Resolution:
-    """Return eight steps a sample where four err by more than the noise hides.
+    """Return eight steps per sample if the error of four exceeds the noise.
 
-    A stop of 75,000 times the noise is marched too coarsely by four, and a second law
-    makes up for the error.
+    Four steps are too few for a stop of 75,000 times the noise, and a second law would
+    compensate the error.
     """
     return (
         FINE
@@ -159,7 +159,7 @@ def _step_for(problem: FitProblem, x: FloatArray) -> Resolution:
 def _round(
     candidate_fits: Sequence[CandidateFit], iterations: int, progress: Progress
 ) -> list[CandidateFit]:
-    """Let all take some steps, best first, so that the slow see whom to catch."""
+    """Run some steps of every start, best first, as a reference for slow ones."""
     best: float | None = None
     done: list[CandidateFit] = []
     for r in _keep(candidate_fits, len(candidate_fits)):
@@ -172,7 +172,7 @@ def _round(
 def _near(
     bench: Bench, fit: Fit, screening: Screening, candidates: Sequence[Candidate]
 ) -> list[CandidateFit]:
-    """Start where the directed tests point to, on the whole record."""
+    """Return starts predicted by the directed tests, on the whole records."""
     candidate_fits: list[CandidateFit] = []
     least = SEARCH.least_drop_share * max(screening.largest, 1e-9)
     for candidate in candidates:
@@ -194,7 +194,10 @@ def _far(
     candidates: Sequence[Candidate],
     progress: Progress,
 ) -> list[CandidateFit]:
-    """Start far off, under short windows that forgive a misplaced resonance."""
+    """Return starts far from the base, from fits under short windows.
+
+    Under a short window, a misplaced resonance changes the cost smoothly.
+    """
     candidate_fits: list[CandidateFit] = []
     for candidate in candidates:
         problem = make_problem(bench, (*fit.candidates, candidate))
@@ -230,10 +233,10 @@ def _started(problem: FitProblem, x: FloatArray) -> CandidateFit:
 
 
 def _swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
-    """Start where an effect hands back to the base what the base took of it.
+    """Return a start at which an effect takes over its share from the base.
 
-    An added mass is exactly a larger mass: along such a direction only the priors
-    change, and the amplitude at which they are happiest follows in one step.
+    An added mass is equivalent to a larger mass: along such a direction only the priors
+    change, and their optimal amplitude follows in one step.
     """
     first = candidate.effect.parameters[0]
     plain = bench.residual(fit.base, fit.terms, MIDDLE)
@@ -252,7 +255,7 @@ def _swapped(bench: Bench, fit: Fit, candidate: Candidate) -> FloatArray:
 def _from_nominal(
     problem: FitProblem, fit: Fit, directions: Sequence[Direction]
 ) -> CandidateFit:
-    """Start from the nominal sheet: the base has lost its way."""
+    """Return a start from the nominal parameters, for a diverged base."""
     start = np.zeros_like(fit.x)
     start[fit.n_base :] = fit.x[fit.n_base :]
     tail = directions[0].coordinates if directions else np.zeros(1)
@@ -265,7 +268,7 @@ def _from_nominal(
 
 
 def _trying(candidate_fit: CandidateFit, done: Sequence[CandidateFit]) -> str:
-    """Name the candidate of the moment, and the best so far."""
+    """Return the label of the current candidate and of the best so far."""
     if not done:
         return candidate_fit.label
     best = min(done, key=lambda r: r.cost)
@@ -292,7 +295,7 @@ def _run(
 def _best_of_each(
     candidate_fits: Sequence[CandidateFit], count: int
 ) -> list[CandidateFit]:
-    """Return the best starts of each set of effects, the best first."""
+    """Return the best starts of each set of effects, best first."""
     kept: list[CandidateFit] = []
     for r in sorted(candidate_fits, key=lambda r: r.cost):
         if sum(k.label == r.label for k in kept) < count:
