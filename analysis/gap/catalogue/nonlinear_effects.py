@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Catalogue v1, part 2: force laws of links, and channels that bend the signal."""
+"""Catalogue v1, part 2: force laws of links, and nonlinear channels."""
 
 import numpy as np
 
@@ -89,7 +89,7 @@ def _iwan_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _bouc_wen(v: FloatArray) -> Law:
-    """Bouc and Wen with b + g = 1: a factor of both is another yield displacement."""
+    """Bouc and Wen with b + g = 1: a common factor scales the yield displacement."""
     return _sliders(v[:1], v[1:2], 1.0, float(v[3]), float(v[2]))
 
 
@@ -119,7 +119,7 @@ def _saturation_report(v: FloatArray) -> tuple[Reported, ...]:
 def _hum(
     model: FloatArray, measured: FloatArray, v: FloatArray, rate: float
 ) -> FloatArray:
-    """Add a line whose phase, free in every record, is the best one."""
+    """Add a line whose phase is fitted in each record."""
     if v[0] == 0.0:
         return model
     phase = 2 * np.pi * v[1] / rate * np.arange(model.shape[-1])
@@ -236,7 +236,7 @@ IWAN = LumpedEffect(
         },
         report=_iwan_report,
         has_sliders=True,
-        # A real element has as many sliders as its maker gave it.
+        # The number of sliders of a real element is unknown.
         model_error=5e-5,
     ),
     ("link",),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Diagnose a campaign: the loop's outcome, put into a verdict with its evidence."""
+"""Diagnose a campaign: verdict and evidence from the outcome of the search."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -40,7 +40,7 @@ from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
-UNFORETOLD_WORDS = (
+UNPREDICTED_WORDS = (
     "; held out, a condition is not predicted by the others: it shows the effect "
     "alone, so add conditions next to it"
 )
@@ -56,38 +56,38 @@ def diagnose(
     policy: Policy = STANDARD,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Find, name and add what a model misses.
+    """Find and name the effects that a model lacks, and add them.
 
     Args:
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
         policy: thresholds of the verdict.
-        progress: told what is being tried, one line at a time.
+        progress: receives one line for each step of the search.
 
     Returns:
-        Verdict and evidence; `unknown` with a reason where the campaign cannot show
-        more (one level, no repeats, too few records).
+        Verdict and evidence; `unknown` with a reason if the campaign is insufficient
+        (one level, no repeats, too few records).
 
     Raises:
         UsageError: `without` holds a name that no entry has.
 
     Source:
         Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63, 425, for the question; the
-        rules of naming are those of `jointbench.analysis.gap.judgement.naming`.
+        acceptance criteria are those of `jointbench.analysis.gap.judgement.naming`.
     """
     bench = make_bench(campaign, without=without, entries=entries, policy=policy)
     outcome = investigate(bench, progress or (lambda line: None))
     final = outcome.bench
     if not isinstance(final, LumpedBench):
-        raise TypeError("the loop must hand back the bench it was given")
+        raise TypeError("the search must return a bench of the type it was given")
     return conclude(outcome, final, limits=campaign_limits(campaign, policy))
 
 
 def conclude(
     outcome: SearchOutcome, bench: LumpedBench, *, limits: str = ""
 ) -> Diagnosis:
-    """Put an outcome into words and numbers."""
+    """Derive the diagnosis from the outcome of a search."""
     base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
     outcome = replace(outcome, base=base)
     verdict = verdict_on(outcome, bench, limits)
@@ -138,7 +138,7 @@ def conclude(
         policy=bench.policy,
     )
     if finding is Finding.NAMED and not found.predicted:
-        return replace(found, reason=verdict.reason + UNFORETOLD_WORDS)
+        return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)
     return found
 
 
@@ -171,7 +171,7 @@ def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
 
 
 def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
-    """Return what the confidence of one explanation rests on."""
+    """Return the quantities from which the confidence of a fit is computed."""
     own = {c.label for c in fit.candidates}
     others = [
         score(bench, f)
@@ -182,31 +182,31 @@ def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
     margin = (min(others) if others else DIAGNOSIS.no_rival_score) - score(bench, fit)
     allowed = max(outcome.acceptance.allowed, 1e-12)
     slack = 1.0 - max(outcome.acceptance.excess, 0.0) / allowed
-    sure = weakest(fit, (outcome.base, *outcome.ranked))
-    return Evidence(margin, slack, sure, len(fit.candidates))
+    distance = weakest(fit, (outcome.base, *outcome.ranked))
+    return Evidence(margin, slack, distance, len(fit.candidates))
 
 
 def _effects(
     outcome: SearchOutcome, bench: LumpedBench, fits: Sequence[Fit]
 ) -> tuple[NamedEffect, ...]:
-    """Return the effects of some explanations, each as in the first that holds it.
+    """Return the effects of explanations, each as in the first that contains it.
 
-    What all rivals hold is as sure as all of them together.
+    The confidence of an effect is the sum over the rivals that contain it.
     """
     found: dict[str, NamedEffect] = {}
     for fit in fits:
         evidence = evidence_of(outcome, bench, fit)
-        sure = confidence_of(evidence) / len(fits)
+        confidence = confidence_of(evidence) / len(fits)
         for k, (label, term) in enumerate(zip(_labels(fit), fit.terms, strict=True)):
             if label in found:
                 one = found[label]
-                found[label] = replace(one, confidence=one.confidence + sure)
+                found[label] = replace(one, confidence=one.confidence + confidence)
                 continue
             found[label] = NamedEffect(
                 term.candidate.effect.name,
                 str(term.candidate.site),
                 estimates_of(bench, fit, k),
-                sure,
+                confidence,
                 evidence,
             )
     return tuple(found.values())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Choose what shows a misfit best: the telling record, its spectrum, its wishes."""
+"""Prepare the evidence of a gap: representative record, spectra, estimates."""
 
 from typing import Any
 
@@ -42,12 +42,12 @@ _UNITS = {
 def make_evidence(
     bench: LumpedBench, base: Fit, outcome: SearchOutcome, finding: Finding
 ) -> GapEvidence:
-    """Put the evidence of an outcome into a form that can be drawn and told.
+    """Prepare the evidence of an outcome for figures and text.
 
     Args:
-        bench: with its noise as estimated at the end.
+        bench: with its final noise estimate.
         base: fit without effects on that bench.
-        outcome: of the loop on that bench.
+        outcome: of the search on that bench.
         finding: the verdict on it.
     """
     best = outcome.best if outcome.best.candidates else base
@@ -93,12 +93,12 @@ def _cube(bench: LumpedBench, fit: Fit) -> FloatArray:
 
 
 def _deviates(bench: LumpedBench, base: Fit) -> bool:
-    """Return whether a base parameter lies beyond the limit of its prior."""
+    """Return whether a prior deviation exceeds its limit."""
     return bool(np.abs(base.prior_deviations).max() > bench.policy.prior_limit)
 
 
 def _limits(outcome: SearchOutcome, bench: LumpedBench) -> CampaignLimits:
-    """Repeat the limits of the gate."""
+    """Return the acceptance limits of the outcome."""
     return CampaignLimits(
         chi2_per_dof=1.0 + outcome.acceptance.excess,
         chi2_allowed=1.0 + outcome.acceptance.allowed,
@@ -126,7 +126,7 @@ def _representative(
     whitened: tuple[FloatArray, FloatArray],
     models: tuple[FloatArray, FloatArray],
 ) -> tuple[Curves, Spectra]:
-    """Draw the channel of the record that holds the largest share of the excess."""
+    """Return curves of the record and channel with the largest share of the excess."""
     counted = counted_samples(bench)
     excess = np.maximum(np.sum(whitened[0] ** 2, axis=2) - counted, 0.0)
     if not excess.any():
@@ -175,7 +175,7 @@ def _condition(bench: LumpedBench, record: int) -> str:
 
 
 def _window(bench: LumpedBench, residual: FloatArray) -> tuple[int, int]:
-    """Return the samples that hold the hit and most of the misfit."""
+    """Return the range of samples with the hit and most of the residual."""
     rate, n = bench.campaign.sample_rate, residual.size
     if bench.campaign.continuous:
         peak = int(np.argmax(np.abs(residual)))
@@ -252,7 +252,7 @@ def _residual_spectra(
     counts = np.diff(np.append(starts, bands.size))
     found = []
     for residual in whitened:
-        # Lead and tail carry no weight: what is left of a record sets the floor to 1.
+        # Lead and tail have no weight: the counted samples normalise noise to 1.
         power = np.mean(np.abs(np.fft.rfft(residual, axis=2)) ** 2, axis=(0, 1))
         power /= max(counted_samples(bench), 1)
         found.append(np.sqrt(np.add.reduceat(power[1:], starts) / counts))
@@ -260,7 +260,7 @@ def _residual_spectra(
 
 
 def _bands(frequency: NDArray[np.floating[Any]]) -> IntArray:
-    """Number lines from the second on into bands: single lines, then log-spaced."""
+    """Assign lines, from the second on, to bands: single lines, then log-spaced."""
     decades = np.log10(frequency[1:] / frequency[1])
     return np.asarray(np.floor(DIAGNOSIS.figure_bands * decades), dtype=np.int64)
 
@@ -268,7 +268,7 @@ def _bands(frequency: NDArray[np.floating[Any]]) -> IntArray:
 def _record_estimates(
     bench: LumpedBench, base: Fit, best: Fit
 ) -> RecordEstimates | None:
-    """Let each record by itself choose stiffness and damping of the joint."""
+    """Estimate stiffness and damping of the joint from each record separately."""
     model, campaign = bench.campaign.model, bench.campaign
     joint = next((i for i, link in enumerate(model.links) if link.joint), None)
     if joint is None:
@@ -297,8 +297,8 @@ def _freed(
     """Regress each record's residual on columns of the slopes.
 
     Returns:
-        Changes of the logarithms and their sd, (n_records, n_columns), and the chi2
-        that they take in all.
+        Changes of the logarithms and their sd, (n_records, n_columns), and the total
+        drop of chi2.
     """
     records = bench.campaign.response.shape[0]
     slopes = fit.jacobian[:, columns].reshape(records, -1, len(columns))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The loop: base, null test, race, gate, name, add, repeat, take back."""
+"""The search: base, null test, selection, judgement, further effects, removal."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -41,18 +41,18 @@ from jointbench.analysis.gap.search.selection_round import (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SearchOutcome:
-    """What the loop found, before it is put into words.
+    """Result of the search, from which a diagnosis is derived.
 
     Attributes:
-        bench: with its noise as estimated at the end.
+        bench: with its final noise estimate.
         base: fit without effects.
         base_acceptance: the null test.
         base_screening: its directed tests.
-        best: the winning fit; the base where nothing is missing.
+        best: the best fit; the base if no effect is missing.
         acceptance: its judgement.
-        ranked: rivals of the last round, best first.
-        level: rivals that are not told apart, the winner first.
-        given_up: whether the search for a further effect was ended for its cost.
+        ranked: fits of the last round, best first.
+        level: fits that cannot be distinguished, the best first.
+        given_up: whether the search for a further effect reached its effort limit.
     """
 
     bench: Bench
@@ -67,7 +67,7 @@ class SearchOutcome:
 
 
 def investigate(bench: Bench, progress: Progress) -> SearchOutcome:
-    """Run the whole loop on a bench."""
+    """Run the search on a bench."""
     with counted() as effort:
         return _investigate(bench, progress, effort)
 
@@ -119,7 +119,7 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Round:
-    """What a round ended with: the bench with its noise, fits best first, the gate."""
+    """Result of a round: bench with its noise, fits (best first), acceptance."""
 
     bench: Bench
     fits: list[Fit]
@@ -129,7 +129,7 @@ class _Round:
 def _one_more(
     found: _Round, firsts: Sequence[Fit], base: Fit, progress: Progress
 ) -> _Round | None:
-    """Add one more effect to each of some fits; None where none of them earns it."""
+    """Add one more effect to some fits; None if the gain of each is insufficient."""
     bench, alone = found.bench, len(firsts[0].candidates) == 1
     if alone and far_off(bench, firsts[0]):
         more = continue_selection(bench, far_pairs(bench, progress), progress)
@@ -159,9 +159,10 @@ def judged(
     progress: Progress,
     predicted_gains: PredictedGains | None = None,
 ) -> _Round:
-    """Judge, and take back what was needless only once the winner was settled.
+    """Judge, and remove effects that have become unnecessary.
 
-    A delay that led the base to where a relaxation is seen may end at nothing.
+    A delay may move the base to where a relaxation becomes visible, and then end at
+    amplitude zero.
     """
     found = _Round(*judge(bench, fits, base, progress, predicted_gains))
     best = found.fits[0]
@@ -174,7 +175,7 @@ def judged(
 
 
 def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
-    """Let other slider laws start where one ended that does not explain the records."""
+    """Start other slider laws from one that does not explain the records."""
     if found.acceptance.passed or not found.fits or far_off(found.bench, found.fits[0]):
         return found
     more = other_sliders(found.bench, found.fits[0], progress)
@@ -185,9 +186,9 @@ def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
 
 
 def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
-    """Put other effects in the place of each, if that helps.
+    """Replace each effect of the best fit by others, if that lowers the score.
 
-    What is not told apart from the best was fitted again when that was judged.
+    Fits that cannot be distinguished from the best were refitted when it was judged.
     """
     near = score(found.bench, found.fits[0]) + found.bench.policy.rival_score_one_site
     close = [f for f in found.fits if score(found.bench, f) < near]
@@ -200,9 +201,10 @@ def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
 
 
 def _worth_more(found: _Round, base: Fit) -> bool:
-    """Tell whether the best fit is worth one more effect.
+    """Return whether one more effect is added to the best fit.
 
-    Three at one link explain anything, and a pair that leaves much is no part of it.
+    Three effects at one link can imitate any law, and a pair that leaves a large
+    residual is not part of the correct explanation.
     """
     if not found.acceptance.unexplained or not found.fits:
         return False
@@ -217,11 +219,11 @@ def _worth_more(found: _Round, base: Fit) -> bool:
 
 
 def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome | None:
-    """Return that nothing is missing, if the base alone fits from where it was led.
+    """Return the null result if the base alone fits from the base of the best fit.
 
-    In a quiet campaign whose joint settles from hit to hit the base may stop in a
-    wrong valley (3 of 1,500 without an effect). An effect that leads it out looks as
-    if it explained all that the base had missed.
+    In a quiet campaign with a joint that settles from hit to hit, the fit of the base
+    may stop in a wrong minimum (3 of 1,500 campaigns without an effect). An effect that
+    moves the base out of it would appear to explain the whole residual.
     """
     if (
         not found.fits
@@ -241,7 +243,7 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome |
 
 
 def _take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
-    """Take effects of the best fit away that a later one has made needless."""
+    """Remove effects of the best fit that a later one has made unnecessary."""
     best, found = fits[0], list(fits)
     for k in range(len(best.candidates)):
         kept = tuple(c for i, c in enumerate(best.candidates) if i != k)
@@ -262,7 +264,7 @@ def _best_of_each(fits: Sequence[Fit]) -> list[Fit]:
 
 
 def _add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
-    """Try the best further effects on the best fits."""
+    """Fit the best further effects on the best fits."""
     found: list[Fit] = []
     tried: set[frozenset[str]] = set()
     for first in _hopeful(bench, fits):
@@ -282,14 +284,14 @@ def _addable(bench: Bench, fit: Fit) -> list[Candidate]:
 
 
 def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
-    """Return the fits that a second effect may yet bring ahead of all others."""
+    """Return the fits that may become the best with a second effect."""
     dof = bench.blocks.dof
     least = max(fits[0].cost - dof, DIAGNOSIS.noise_excess * dof)
     return [f for f in fits if f.cost - dof < DIAGNOSIS.second_cost_ratio * least]
 
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
-    """Choose seconds by predicted drop, and those that only the priors see."""
+    """Choose second effects by predicted drop, and those that only priors show."""
     deviating = np.abs(first.prior_deviations).max() > DIAGNOSIS.prior_candidates_sd
     chosen: list[Candidate] = []
     for d in screening.directions:

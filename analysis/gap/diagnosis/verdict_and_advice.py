@@ -39,8 +39,8 @@ def verdict_on(
     """Derive the verdict from a search outcome.
 
     Args:
-        outcome: of the loop on that bench.
-        bench: with its noise as estimated at the end.
+        outcome: of the search on that bench.
+        bench: with its final noise estimate.
         limits: reason why the campaign allows no verdict but `unknown`, or empty.
     """
     if limits:

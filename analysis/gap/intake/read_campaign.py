@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read `two-body-campaign/1` files: hits on two bodies, with a nominal sheet."""
+"""Read `two-body-campaign/1` files: hits on two bodies, and nominal parameters."""
 
 import json
 from pathlib import Path
@@ -26,7 +26,7 @@ BODIES = 2
 NOMINAL_KEYS = ("m1", "m2", "k0", "kj", "c0", "cj")
 
 _Record = tuple[str, h5py.Group]
-"""What messages call a record, and the record."""
+"""Name of a record in messages, and the record."""
 
 
 def read_campaign(path: Path) -> Campaign:
@@ -36,10 +36,10 @@ def read_campaign(path: Path) -> Campaign:
         path: HDF5 file of schema ``two-body-campaign/1``.
 
     Raises:
-        FormatError: it is not such a file, or a part is missing or malformed.
-        HostileFile: it claims more records or samples than a campaign can have.
-        BadData: it cannot be opened, a sample is not finite, the records are too
-            short, or the sheet has a value that is not positive.
+        FormatError: the file has another format, or a part is missing or malformed.
+        HostileFile: the file claims more records or samples than a campaign can have.
+        BadData: the file cannot be opened, a sample is not finite, the records are too
+            short, or a nominal value is not positive.
     """
     with open_guarded(path) as file:
         try:
@@ -52,7 +52,7 @@ def read_campaign(path: Path) -> Campaign:
 
 
 def _campaign(path: Path, file: h5py.File) -> Campaign:
-    """Read what is small first: samples come last, once all else is in order."""
+    """Read a campaign; samples are read last, after all other parts are checked."""
     where = named(path)
     _require_schema(where, file)
     records = _records(where, file)
@@ -83,7 +83,7 @@ def _require_schema(where: str, file: h5py.File) -> None:
     if schema != SCHEMA:
         raise FormatError(
             f"{where} has schema {shown(schema or 'none')}, not {SCHEMA!r}; "
-            "`jointbench inspect` tells what is in it"
+            "`jointbench inspect` shows its contents"
         )
 
 
@@ -104,13 +104,13 @@ def _records(where: str, file: h5py.File) -> list[_Record]:
     for place, record in records:
         if not isinstance(record, h5py.Group):
             raise FormatError(
-                f"{place} is no group; store 'force' and 'accel' in a group each record"
+                f"{place} is not a group; store 'force' and 'accel' in a group"
             )
     return records
 
 
 def _lengths(records: list[_Record]) -> list[int]:
-    """Return the different lengths of the records, once all shapes are in order."""
+    """Return the different lengths of the records, after a check of all shapes."""
     lengths = set()
     for place, record in records:
         force = _dataset(place, record, "force")
@@ -172,7 +172,7 @@ def _finite_samples(place: str, dataset: h5py.Dataset) -> FloatArray:
 
 
 def _nominal_attribute(where: str, file: h5py.File, name: str) -> dict[str, float]:
-    """Return the numbers of a sheet; a missing one is for the model to name."""
+    """Return the numbers of a JSON attribute; the model checks for missing ones."""
     text = read_attribute(file, name)
     try:
         found = json.loads(str(text))

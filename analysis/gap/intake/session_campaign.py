@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A campaign out of recordings from a bench: hits, levels, preloads, points."""
+"""Make a campaign from recordings of a bench: hits, levels, preloads, points."""
 
 import itertools
 from collections.abc import Sequence
@@ -32,14 +32,14 @@ def session_campaign(
     Args:
         name: as the user knows it.
         recordings: with judged hits, in the order recorded, each with its preload.
-        nominal: the model that should explain them.
+        nominal: model that should explain them.
 
     Returns:
-        The campaign, and why accepted hits were left out of it, a line each.
+        The campaign, and one line with the reason for each accepted hit left out.
 
     Raises:
         BadData: a preload is missing, a hit point belongs to no body, channels
-            measure something else than the sheet says, or hits cannot be cut.
+            measure another quantity than the model, or hits cannot be cut.
     """
     _require_quantity(recordings, nominal)
     cut = cut_hits(recordings, [channel.name for channel in nominal.model.channels])
@@ -66,10 +66,10 @@ def session_campaign(
 
 
 def nominal_levels(peaks: FloatArray) -> FloatArray:
-    """Group peak forces into the levels that the operator aimed at.
+    """Group peak forces into the levels intended by the operator.
 
-    A level ends where the next larger peak stands apart, or where it would span more
-    than a factor of 2.5; it is called by its geometric mean, to two digits.
+    A level ends at a large step to the next peak, or before it would span more than a
+    factor of 2.5; its value is its geometric mean, to two digits.
 
     Args:
         peaks: largest force of each hit [N], shape (n_hits,), above zero.
@@ -110,7 +110,7 @@ def _peaks(cut: CutHits) -> FloatArray:
 def _require_quantity(
     recordings: Sequence[Recording], nominal: NominalParameters
 ) -> None:
-    """Raise `BadData` where a channel measures something else than the sheet says."""
+    """Raise `BadData` if a channel measures another quantity than the model."""
     wanted = QUANTITIES[nominal.model.output]
     names = {channel.name for channel in nominal.model.channels}
     for recording in recordings:
@@ -145,8 +145,8 @@ def _reference(preload: FloatArray, nominal: NominalParameters) -> float:
     if len(values) > 1:
         shown = ", ".join(f"{value:g}" for value in values)
         raise BadData(
-            f"the hits have the preloads {shown} N, and the model does not say to "
-            "which its values belong; add preload_reference to its [gap] table"
+            f"the hits have the preloads {shown} N, and the model does not state "
+            "to which its values belong; add preload_reference to its [gap] table"
         )
     return float(values[0])
 

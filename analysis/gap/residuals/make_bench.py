@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Make the bench of a campaign: catalogue at its sites, gate, scales and groups."""
+"""Make the bench of a campaign: candidates, time gate, scales and groups."""
 
 from dataclasses import replace
 
@@ -37,7 +37,7 @@ def make_bench(
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
-        policy: thresholds that its fits are judged by.
+        policy: thresholds for its fits.
 
     Raises:
         UsageError: `without` holds a name that no entry has.
@@ -76,11 +76,11 @@ def force_time_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
     """Return the samples that hold the hits, and the noise outside them [N]."""
     n = force.shape[1]
     sigma = float(np.std(force[:, n // 2 :]))
-    loud = np.abs(force) > np.maximum(
+    strong = np.abs(force) > np.maximum(
         RESIDUALS.hit_noise_sd * sigma,
         RESIDUALS.hit_share * np.abs(force).max(axis=1, keepdims=True),
     )
-    where = np.flatnonzero(loud.any(axis=0))
+    where = np.flatnonzero(strong.any(axis=0))
     if where.size == 0 or np.ptp(where) > n // 2:
         return (0, n), 0.0
     first = max(int(where[0]) - RESIDUALS.force_padding, 0)
@@ -111,7 +111,7 @@ def _blocks(campaign: Campaign) -> Blocks:
 
 
 def _scales(bench: LumpedBench) -> dict[str, float]:
-    """Characteristic sizes at the nominal sheet, from which starts are scaled."""
+    """Return characteristic sizes at the nominal parameters, which scale starts."""
     model, excitation = bench.campaign.model, bench.excitation
     theta = model.nominal
     joint = model.first_joint

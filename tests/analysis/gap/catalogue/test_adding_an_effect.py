@@ -196,7 +196,7 @@ def test_a_hook_is_refused_at_a_site_where_it_would_act_on_something_else(
     given = f"{hook}={HOOKS[hook]}"
     assert len(read_effects(own_effect(tmp_path, right, given))) == 1
     for site in wrong:
-        message = f"its hook {hook} sits on {' or '.join(right)}, not on {site}$"
+        message = f"its hook {hook} acts on a {' or a '.join(right)}, not on a {site}$"
         with pytest.raises(UsageError, match=message):
             read_effects(own_effect(tmp_path, (*right, site), given))
 
@@ -205,7 +205,7 @@ def test_a_rise_is_refused_at_a_body(tmp_path: Path) -> None:
     """It would change the joint whose index is that of the body."""
     hooks = STIFFER + ", rise=lambda conditions, v: v[0] * conditions.preload"
     assert len(read_effects(own_effect(tmp_path, ("link",), hooks))) == 1
-    with pytest.raises(UsageError, match="its hook rise sits on link, not on body"):
+    with pytest.raises(UsageError, match="its hook rise acts on a link, not on a body"):
         read_effects(own_effect(tmp_path, ("link", "body"), hooks))
 
 
