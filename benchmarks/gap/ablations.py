@@ -4,7 +4,7 @@
 Usage: OMP_NUM_THREADS=1 python benchmarks/gap/ablations.py FOLDER RUNS.jsonl [--jobs 2]
        python benchmarks/gap/ablations.py --page RUNS.jsonl > docs/gap-ablations.md
 
-Half of the campaigns hide one effect, half nothing; RUNS.jsonl goes on where it was.
+Half of the campaigns hide one effect, half nothing; RUNS.jsonl is continued.
 """
 
 import argparse
@@ -25,11 +25,11 @@ from outcomes import NAMEABLE, Run, word_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 
 ONE_TEST = 7.88
-"""99.5 % of chi2 with one degree of freedom: what a single test would ask for."""
+"""99.5 % of chi2 with one degree of freedom: the limit of a single test."""
 KINDS = ("null", "single")
 
 
-def no_coarse_resolutions() -> None:
+def no_coarse_stages() -> None:
     """Fit whole records from the first step on."""
     from jointbench.analysis.gap.diagnosis import base_fit
     from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
@@ -38,14 +38,14 @@ def no_coarse_resolutions() -> None:
 
 
 def no_bootstrap() -> None:
-    """Hold the largest of all directed tests against the limit of one."""
+    """Compare the largest of all directed tests with the limit of one test."""
     from jointbench.analysis.gap.search import screening
 
     screening.null_threshold = lambda *_, **__: ONE_TEST
 
 
-def no_prior_deviations() -> None:
-    """Let the base go where it likes at no price, and ask nothing of it."""
+def no_priors() -> None:
+    """Fit the base without priors, and accept any base."""
     from jointbench.analysis.gap.residuals import joint_fit as fit
 
     free = fit.make_problem
@@ -60,13 +60,13 @@ def no_prior_deviations() -> None:
 
 
 def one_start() -> None:
-    """Give a candidate one start of its own, as its directed test foretells it."""
+    """Give each candidate one start, as its directed test predicts it."""
     from jointbench.analysis.gap.search import candidate_starts
-    from jointbench.analysis.gap.search import selection_round as selection
+    from jointbench.analysis.gap.search import selection_round as race
 
-    selection.STARTS = 1
+    race.STARTS = 1
     candidate_starts.SHARES = (1.0,)
-    selection.HUGE = np.inf
+    race.HUGE = np.inf
 
 
 def _everywhere(name: str, value: Any) -> None:
@@ -79,20 +79,20 @@ def _everywhere(name: str, value: Any) -> None:
 
 VARIANTS: Mapping[str, Callable[[], None]] = {
     "whole engine": lambda: None,
-    "without coarse-to-fine": no_coarse_resolutions,
+    "without coarse-to-fine": no_coarse_stages,
     "without bootstrap null": no_bootstrap,
-    "without prior pulls": no_prior_deviations,
+    "without priors": no_priors,
     "without multi-start": one_start,
     "without group scoring": lambda: None,
 }
 POLICIES: Mapping[str, Policy] = {
     "without coarse-to-fine": replace(STANDARD, far_chi2=np.inf),
-    "without prior pulls": replace(STANDARD, prior_limit=np.inf),
+    "without priors": replace(STANDARD, prior_limit=np.inf),
     "without group scoring": replace(
         STANDARD, parts_chance=-1.0, parts_chance_base=-1.0
     ),
 }
-"""Thresholds of the variants that a policy alone makes, or helps to make."""
+"""Policies of the variants that change thresholds."""
 
 
 def switch_off(variant: str) -> None:
@@ -103,7 +103,7 @@ def switch_off(variant: str) -> None:
 
 
 def chosen(folder: Path, count: int) -> list[Path]:
-    """Return as many campaigns of each kind."""
+    """Return the same number of campaigns of each kind."""
     chosen: list[Path] = []
     for kind in KINDS:
         paths = folder.glob(f"{kind}-*.json")
@@ -113,7 +113,7 @@ def chosen(folder: Path, count: int) -> list[Path]:
 
 
 def run_all(folder: Path, runs: Path, count: int, jobs: int) -> None:
-    """Diagnose what is not yet in the file."""
+    """Diagnose the campaigns that are not yet in the file."""
     done = set()
     if runs.exists():
         for line in runs.read_text(encoding="utf-8").splitlines():
@@ -141,19 +141,20 @@ def _key(path: Path) -> tuple[str, int]:
 
 
 def page(runs: list[Run], engine: str) -> str:
-    """Return the page: what each part buys, on what all variants have judged."""
+    """Return the page, from the campaigns that all variants have judged."""
     judged = Counter((r["kind"], r["seed"]) for r in runs)
     runs = [r for r in runs if judged[r["kind"], r["seed"]] == len(VARIANTS)]
     lines = [
-        "# What each part of the gap engine buys",
+        "# What each part of the gap engine contributes",
         "",
-        "Made by `benchmarks/gap/ablations.py`: the same campaigns, one part switched "
-        "off at a time. Right: the very name, or none where nothing is missing. Wrong: "
-        "another name, or any where nothing is missing. The rest is doubt: ambiguous, "
-        "unknown, or none where an effect is hidden. Margins are log-uniform from 1 to "
-        "10,000, so that a part of the effects cannot be named by anyone. Without "
-        "multi-start a candidate has one start of its own; without group scoring no "
-        "part of the records is asked whether it wants parameters of its own.",
+        "Made by `benchmarks/gap/ablations.py`: the same campaigns with one part "
+        "switched off at a time. Right: the exact name, or none where nothing is "
+        "missing. Wrong: another name, or any name where nothing is missing. All other "
+        "verdicts are undecided: ambiguous, unknown, or none where an effect is "
+        "hidden. Margins are log-uniform from 1 to 10,000, so that some of the effects "
+        "cannot be named by any method. Without multi-start each candidate has one "
+        "start; without group scoring no part of the records is tested for separate "
+        "parameters.",
         f"Engine: {engine}." if engine else "",
         "",
         "| engine | nothing missing: right, wrong, of | margin >= 50: right, wrong, of "

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Learn the confidence of a name from judged campaigns, never those of the page.
+"""Fit the confidence of a name to judged campaigns, never to those of the page.
 
 Usage: python benchmarks/gap/calibrate.py RUNS.jsonl [RUNS.jsonl ...]
 
-Campaigns whose effect no catalogue holds are weighted as one in ten: how often that
-happens at a bench nobody knows, and a confidence has to assume something.
+Campaigns whose effect is in no catalogue are weighted as one in ten: the true share at
+a bench is unknown, and a confidence needs an assumption.
 
-A logistic model of the evidence (`confidence`), fitted to all
-names that were told, right or wrong, with a weak pull towards "more evidence, more
-confidence"; prints the coefficients to be written there.
+A logistic model of the evidence (`confidence`) is fitted to all names, right or wrong,
+with a weak prior that more evidence gives more confidence. Prints the coefficients for
+that module.
 """
 
 import argparse
@@ -26,7 +26,7 @@ PRIOR_WEIGHT = 0.5
 BOUNDS = [(None, None), (0.0, None), (0.0, None), (0.0, None), (None, 0.0)]
 """More evidence never lowers a confidence, a second effect never raises it."""
 OUTSIDE = 0.1
-"""Share of campaigns assumed to hide what no catalogue has."""
+"""Assumed share of campaigns whose effect is in no catalogue."""
 
 
 def main() -> None:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Of right names: sites, parameters, force curves, what is left of gap and pull."""
+"""Of right names: sites, parameters, force curves, gap and prior deviation."""
 
 from collections.abc import Sequence
 
 import numpy as np
-from outcomes import Run, reported_by, share_text, word_of
+from outcomes import Run, named_by, share_text, word_of
 
 FRICTION = ("jenkins", "iwan", "bouc_wen")
 
@@ -19,7 +19,7 @@ def site_share(runs: Sequence[Run]) -> str:
     mine = [r for r in runs if r["kind"] in {"single", "pair"}]
     mine = [r for r in mine if word_of(r) == "right"]
     hits = sum(
-        dict(reported_by(r)) == dict(zip(r["truth"], r["sites"], strict=True))
+        dict(named_by(r)) == dict(zip(r["truth"], r["sites"], strict=True))
         for r in mine
     )
     return share_text(hits, len(mine))
@@ -73,11 +73,11 @@ def error_of(run: Run) -> float:
     from jointbench.simulators.hidden.effect_draws import specimen_scales
 
     effect = run["found"]["effects"][0]
-    reported = {name: one["value"] for name, one in effect["parameters"].items()}
+    named = {name: one["value"] for name, one in effect["parameters"].items()}
     travel = specimen_scales(draw_design(run["seed"])).elongation
     r = np.linspace(0.0, travel, 200)
     truth = softening(effect["name"], run["parameters"][0], r)
-    error = np.abs(softening(effect["name"], reported, r) - truth).max()
+    error = np.abs(softening(effect["name"], named, r) - truth).max()
     return float(error / np.abs(truth).max())
 
 
@@ -119,10 +119,10 @@ def shrinkage(runs: Sequence[Run]) -> str:
 
 
 def prior_deviations(runs: Sequence[Run]) -> str:
-    """Return pulls of effects that only the priors see, where they were > 5 sigma.
+    """Return prior deviations of effects that only the priors show, above 5 sigma.
 
-    Of six base values that are right one lies beyond 2 sigma in a quarter of all
-    campaigns, so that the value that was pulled most is followed, and all beside it.
+    Of six correct base values one is beyond 2 sigma in a quarter of all campaigns, so
+    the value that deviated most is followed, and all values are counted as well.
     """
     rows = []
     for run in right_singles(runs):
@@ -133,7 +133,7 @@ def prior_deviations(runs: Sequence[Run]) -> str:
         if abs(most["before"]) > 5:
             rows.append((most, max(abs(p["after"]) for p in every)))
     if not rows:
-        return "none was pulled more than 5 sigma"
+        return "no prior deviation above 5 sigma"
     before = np.median([abs(most["before"]) for most, _ in rows])
     after = np.array([abs(most["after"]) for most, _ in rows])
     return (
@@ -144,7 +144,7 @@ def prior_deviations(runs: Sequence[Run]) -> str:
 
 
 def fisher(runs: Sequence[Run]) -> str:
-    """Return the told sd over the Fisher bound, for effects of one parameter.
+    """Return the stated sd over the Fisher bound, for effects of one parameter.
 
     The bound follows from the truth alone: what rho is to the whole effect, 1 is to
     one sd of its only parameter, with base and priors free to follow.

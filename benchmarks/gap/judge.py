@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Diagnose a folder of campaigns and put each answer beside its truth.
+"""Diagnose a folder of campaigns and store each verdict with the truth.
 
 Usage: python benchmarks/gap/judge.py FOLDER RUNS.jsonl [--jobs 2] [--kind single]
 
-One JSON line a campaign: truth, the whole diagnosis, CPU seconds. Campaigns that the
-file already holds are passed over, so that an interrupted run goes on where it was.
+One JSON line per campaign: truth, the whole diagnosis, CPU seconds. Campaigns that are
+already in the file are skipped, so that an interrupted run can be continued.
 With --whole those of the kind "hidden" are judged by the whole catalogue, and count as
 single effects.
 """
@@ -51,12 +51,12 @@ def judge_one(
 
 
 def key_of(run: dict[str, Any]) -> str:
-    """Return what tells one campaign from all others."""
+    """Return the key that identifies a campaign."""
     return f"{run['kind']}-{run['seed']}"
 
 
 def main() -> None:
-    """Diagnose what is not yet in the file."""
+    """Diagnose the campaigns that are not yet in the file."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("runs", type=Path)

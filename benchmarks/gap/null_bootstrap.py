@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Draw whole campaigns from fitted bases and see how often the null test cries wolf.
+"""Draw whole campaigns from fitted bases and count false alarms of the null test.
 
 Usage: python benchmarks/gap/null_bootstrap.py runs.jsonl --draws 250
        python benchmarks/gap/null_bootstrap.py runs.jsonl --table > docs/gap-null.md
 
 A simulated campaign without a hidden effect is fitted; from its base, noise and
-scatter new campaigns are drawn (response noise, force noise carried through, gain and
-settling of every hit, the nominal sheet), and base fit, noise estimate and directed
-tests are run on each as on any campaign. A run goes on where the file ends.
+scatter new campaigns are drawn (response noise, propagated force noise, gain and
+settling of every hit, nominal parameters), and base fit, noise estimate and directed
+tests are run on each as on any campaign. A run continues where the file ends.
 """
 
 import argparse
@@ -79,7 +79,7 @@ def fitted(campaign: Campaign) -> tuple[LumpedBench, Fit]:
     """Fit the base of a campaign and estimate its noise, as the engine does."""
     bench, fit = fit_base(make_bench(campaign))
     if not isinstance(bench, LumpedBench):
-        raise TypeError("the loop must hand back the bench it was given")
+        raise TypeError("the loop must return the bench it was given")
     return bench, fit
 
 
@@ -100,29 +100,29 @@ def drawn_campaign(bench: LumpedBench, fit: Fit, rng: np.random.Generator) -> Ca
     first, last = bench.time_gate
     force[:, first:last] = campaign.force[:, first:last]
     force += noise.force_sigma * rng.standard_normal(force.shape)
-    drawn_nominal = theta * np.exp(-bench.base_sd * rng.standard_normal(theta.size))
+    nominal = theta * np.exp(-bench.base_sd * rng.standard_normal(theta.size))
     return replace(
         campaign,
         response=response,
         force=force,
-        model=with_nominal(campaign.model, drawn_nominal),
+        model=with_nominal(campaign.model, nominal),
     )
 
 
-def with_nominal(model: LumpedModel, drawn_nominal: FloatArray) -> LumpedModel:
+def with_nominal(model: LumpedModel, nominal: FloatArray) -> LumpedModel:
     """Return a model with other nominal values, shape (n_base,)."""
     n, links = len(model.bodies), len(model.links)
     return replace(
         model,
         bodies=tuple(
             replace(b, mass=float(m))
-            for b, m in zip(model.bodies, drawn_nominal, strict=False)
+            for b, m in zip(model.bodies, nominal, strict=False)
         ),
         links=tuple(
             replace(
                 x,
-                stiffness=float(drawn_nominal[n + i]),
-                damping=float(drawn_nominal[n + links + i]),
+                stiffness=float(nominal[n + i]),
+                damping=float(nominal[n + links + i]),
             )
             for i, x in enumerate(model.links)
         ),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Directions of the null test, projected anew: its check and what widens it."""
+"""Directions of the null test, projected again: its check and what widens it."""
 
 from dataclasses import dataclass
 
@@ -78,7 +78,7 @@ def linearised_drops(
 def score_variance(bench: LumpedBench, fit: Fit, tested: Directions) -> FloatArray:
     """Return the variance of each score, 1 where the noise is as whitened.
 
-    The force's noise is carried through sample by sample of the gate, in place of the
+    The force noise is propagated sample by sample inside the time gate, in place of the
     few smooth shapes that the engine whitens.
 
     Returns:

@@ -12,38 +12,37 @@ Run = dict[str, Any]
 QUANTILES = (0.5, 0.9, 0.99, 0.995)
 NOMINAL = 0.005
 ROOM = 1.3
-"""Room that the gate leaves over the threshold."""
+"""Factor on the threshold from which the engine searches for an effect."""
 Z95 = 1.96
 
-HEAD = """# How often the gap engine cries wolf
+HEAD = """# False alarms of the gap engine
 
-Made by `benchmarks/gap/null_bootstrap.py`: simulated campaigns in which nothing is
-missing are fitted, whole campaigns are drawn from each fitted base (noise of the
-channels, noise of the force carried through, gain and settling of every hit as
-estimated, a fresh nominal sheet), and base fit, noise estimate and all directed tests
-run on each as on any campaign. Draw k of parent s has the seed [s, 2, k].
+Made by `benchmarks/gap/null_bootstrap.py`. Simulated campaigns without a missing effect
+are fitted. From each fitted base model (parent) whole campaigns are drawn, with channel
+noise, propagated force noise, the estimated gain and settling of every hit, and newly
+drawn nominal parameters. Base fit, noise estimate and all directed tests run on each
+draw as on any campaign. Draw k of parent s has the seed [s, 2, k].
 
-The responses are those of the first route; at each parent's base they were verified
+The responses are those of the first method; for each parent they were verified
 by the second integrator: at most {apart:.1e} of a channel's peak apart, {chi2:.1e}
 units of chi2 in a whole campaign.
 """
 LIMIT = """
 ## The largest directed drop
 
-"Linearised" is what the engine's threshold rests on: {linearised} draws of the maximum
+"Linearised" is the basis of the engine's threshold: {linearised} draws of the maximum
 of correlated chi2 variables from the directions themselves. "Full" is the largest drop
 of the drawn campaigns. The threshold is the engine's own for that draw, at 99.5 %.
-The statistic holds hum, which the linearised draws leave out.
+The statistic includes hum, which the linearised draws omit.
 
 | grid | scatter | seed | n | linearised 50 / 90 / 99 / 99.5 % | full, same | \
 over the threshold | over 1.3 x it |
 |---|---|---|---|---|---|---|---|
 """
 GLOBAL = """
-## The global gate
+## The global acceptance criterion
 
-| seed | chi2/dof, mean | its sd | sd the gate reckons with | largest distance [sd] | \
-refused by the gate |
+| seed | chi2/dof, mean | its sd | assumed sd | largest distance [sd] | rejected |
 |---|---|---|---|---|---|
 """
 
@@ -109,17 +108,17 @@ def _sd_of_chi2(draws: Sequence[Run]) -> float:
 
 def _global_row(head: Run, draws: Sequence[Run]) -> str:
     chi2 = np.array([draw["chi2_per_dof"] for draw in draws])
-    reckoned = head["noise_sd"]
+    assumed = head["noise_sd"]
     refused = sum(bool(draw["reason"]) for draw in draws)
     return (
         f"| {head['seed']} | {chi2.mean():.4f} | {_sd_of_chi2(draws):.4f} | "
-        f"{reckoned:.4f} | {np.abs(chi2 - 1).max() / reckoned:.1f} | "
+        f"{assumed:.4f} | {np.abs(chi2 - 1).max() / assumed:.1f} | "
         f"{share(refused, len(draws))} |\n"
     )
 
 
 def _pooled(heads: Sequence[Run], draws: dict[int, list[Run]]) -> str:
-    """Return what all parents together say of limit and gate."""
+    """Return limit and criterion pooled over all parents."""
     lines = []
     for words, wanted in (("without", False), ("with", True)):
         mine = [
@@ -133,27 +132,27 @@ def _pooled(heads: Sequence[Run], draws: dict[int, list[Run]]) -> str:
         count = over(mine)
         low, high = wilson(count, len(mine))
         verdict = (
-            "the limit has its size"
+            "the limit is consistent"
             if low <= NOMINAL <= high
             else f"the limit is too {'low' if low > NOMINAL else 'high'}"
         )
         needed = np.quantile([d["largest"] / d["threshold"] for d in mine], 0.995)
-        loud = Counter(
+        above = Counter(
             d["which"].split("@")[0] for d in mine if d["largest"] > d["threshold"]
         )
-        names = ", ".join(f"{name} {k}" for name, k in loud.most_common()) or "none"
+        names = ", ".join(f"{name} {k}" for name, k in above.most_common()) or "none"
         lines.append(
             f"- Campaigns {words} scatter from hit to hit: of {len(mine)} draws, "
-            f"{share(count, len(mine))} are over the threshold, 0.5 % is wanted: "
+            f"{share(count, len(mine))} are over the threshold, 0.5 % is expected: "
             f"{verdict}. "
             f"The full 99.5 % quantile is {needed:.3g} times the threshold. "
-            f"Over {ROOM} times the threshold, where the gate is set: "
-            f"{share(over(mine, ROOM), len(mine))}. What was over: {names}.\n"
+            f"Over {ROOM} times the threshold, where the search begins: "
+            f"{share(over(mine, ROOM), len(mine))}. Effects over it: {names}.\n"
         )
     ratio = np.median([_sd_of_chi2(draws[h["seed"]]) / h["noise_sd"] for h in heads])
     lines.append(
-        f"- Global gate: chi2/dof scatters by {ratio:.2f} of the sd that the gate "
-        "reckons with (median of the parents).\n"
+        f"- Global criterion: chi2/dof scatters by {ratio:.2f} times the assumed sd "
+        "(median of the parents).\n"
     )
     return "".join(lines)
 
@@ -164,17 +163,16 @@ def _force_noise(heads: Sequence[Run]) -> str:
     if not widest:
         return ""
     return (
-        "- Noise of the force: carried through sample by sample of the gate, it gives "
-        "the widest score of a parent a variance of at least "
+        "- Noise of the force: propagated sample by sample inside the time gate, it "
+        "gives the widest score of a parent a variance of at least "
         f"{min(widest):.2f} to {max(widest):.2f} where the linearised draws have 1. "
-        "What the whitening leaves out are the upper modes: its smooth shapes cannot "
-        "shake them.\n"
+        "The whitening omits the upper modes, which its smooth shapes do not excite.\n"
     )
 
 
 def _scatter(heads: Sequence[Run], draws: dict[int, list[Run]]) -> str:
     """Return how often too little scatter was found, and what that does."""
-    low, loud, count = 0, 0, 0
+    low, above, count = 0, 0, 0
     for head in heads:
         if head["scatter"] <= 0:
             continue
@@ -183,13 +181,13 @@ def _scatter(heads: Sequence[Run], draws: dict[int, list[Run]]) -> str:
             pairs = zip(draw["found_scatter"], head["found_scatter"], strict=True)
             if any(own < 0.5 * true for own, true in pairs):
                 low += 1
-                loud += draw["largest"] > ROOM * draw["threshold"]
+                above += draw["largest"] > ROOM * draw["threshold"]
     if not count:
         return ""
     return (
         f"- Scatter from hit to hit: in {low} of {count} draws with scatter repeats "
-        "held a scatter below half of what was drawn; of these "
-        f"{loud} are over {ROOM} times the threshold.\n"
+        "had a scatter below half of the drawn value; of these "
+        f"{above} are over {ROOM} times the threshold.\n"
     )
 
 
@@ -201,8 +199,8 @@ def _noise_estimate(draws: dict[int, list[Run]]) -> str:
     apart = [d["largest"] - d["known"]["largest"] for d in known]
     low, middle, high = np.quantile(apart, [0.05, 0.5, 0.95])
     return (
-        f"- Noise estimate: {len(known)} draws without scatter were judged a second "
-        "time with the noise they were drawn from in place of its estimate. The "
+        f"- Noise estimate: {len(known)} draws without scatter were judged again with "
+        "their true noise in place of the estimate. The "
         f"estimate moves the largest drop by {middle:.2f} in the median, and by "
         f"{low:.2f} to {high:.2f} in 90 % of them.\n"
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the answer to one campaign is worth, and which campaigns share a bar."""
+"""The score of a verdict, and the sets of campaigns that share a target."""
 
 from collections.abc import Callable, Sequence
 from math import sqrt
@@ -23,27 +23,25 @@ WORDS = (
 )
 
 
-def reported_by(run: Run) -> list[tuple[str, str]]:
-    """Return names and sites of what was told."""
+def named_by(run: Run) -> list[tuple[str, str]]:
+    """Return names and sites of what was named."""
     return [(e["name"], e["site"]) for e in run["found"].get("effects", [])]
 
 
 def word_of(run: Run) -> str:
-    """Return what a verdict is worth: the exact names, or honest doubt."""
+    """Return the score of a verdict: the exact names, or correct doubt."""
     verdict = run["found"]["verdict"]
     if verdict in {"crash", "unknown", "none"}:
         return str(verdict)
-    truth, reported = set(run["truth"]), {name for name, _ in reported_by(run)}
+    truth, named = set(run["truth"]), {name for name, _ in named_by(run)}
     if verdict == "ambiguous":
-        inside = (
-            bool(truth) and truth <= reported and run["kind"] not in NOT_IN_CATALOGUE
-        )
+        inside = bool(truth) and truth <= named and run["kind"] not in NOT_IN_CATALOGUE
         return "ambiguous, truth in it" if inside else "ambiguous, wrong"
     if run["kind"] in NOT_IN_CATALOGUE:
         return "wrong name"
-    if run["kind"] == "pair" and reported < truth:
+    if run["kind"] == "pair" and named < truth:
         return "one of two"
-    return "right" if reported == truth else "wrong name"
+    return "right" if named == truth else "wrong name"
 
 
 def wilson(hits: int, count: int) -> tuple[float, float]:

@@ -25,7 +25,7 @@ from outcomes import (
     NAMEABLE,
     WORDS,
     Run,
-    reported_by,
+    named_by,
     sets_of,
     share_text,
     wilson,
@@ -59,20 +59,20 @@ def confusion(sets: dict[str, list[Run]]) -> list[str]:
 
 
 def matrix(runs: Sequence[Run]) -> list[str]:
-    """Return, effect by effect, what was told of a single hidden effect."""
-    lines = ["| truth | n | told |", "|---|---|---|"]
+    """Return the verdicts for each single hidden effect."""
+    lines = ["| truth | n | verdict |", "|---|---|---|"]
     singles = [run for run in runs if run["kind"] == "single"]
     for name in sorted({run["truth"][0] for run in singles}):
         mine = [run for run in singles if run["truth"] == [name]]
         count = Counter(_answer(run) for run in mine)
-        reported = ", ".join(f"{answer} {n}" for answer, n in count.most_common())
-        lines.append(f"| {name} | {len(mine)} | {reported} |")
+        stated = ", ".join(f"{answer} {n}" for answer, n in count.most_common())
+        lines.append(f"| {name} | {len(mine)} | {stated} |")
     return lines
 
 
 def _answer(run: Run) -> str:
     if run["found"]["verdict"] == "named":
-        return " + ".join(sorted({name for name, _ in reported_by(run)}))
+        return " + ".join(sorted({name for name, _ in named_by(run)}))
     return str(run["found"]["verdict"])
 
 
@@ -87,21 +87,21 @@ def null_test(runs: Sequence[Run]) -> str:
     far = sum(t["largest"] > 1.3 * t["limit"] for t in tests)
     return (
         f"over the 99.5 % limit {share_text(above, len(tests))}, over 1.3 times the "
-        f"limit, where the engine looks further, {share_text(far, len(tests))}"
+        f"limit, where the engine searches for an effect, {share_text(far, len(tests))}"
     )
 
 
 def reliability(runs: Sequence[Run]) -> list[str]:
-    """Return confidence against how often it was right, in bins."""
+    """Return the share of right verdicts against stated confidence, in bins."""
     named = [r for r in runs if r["found"]["verdict"] == "named"]
-    confidences = [min(e["confidence"] for e in r["found"]["effects"]) for r in named]
+    stated = [min(e["confidence"] for e in r["found"]["effects"]) for r in named]
     right = [word_of(r) == "right" for r in named]
-    lines = ["| confidence | n | mean told | right |", "|---|---|---|---|"]
+    lines = ["| confidence | n | mean stated | right |", "|---|---|---|---|"]
     edges = (0.0, 0.5, 0.8, 0.9, 0.95, 0.99, 1.001)
     for low, high in itertools.pairwise(edges):
-        mine = [k for k, c in enumerate(confidences) if low <= c < high]
+        mine = [k for k, c in enumerate(stated) if low <= c < high]
         if mine:
-            mean = np.mean([confidences[k] for k in mine])
+            mean = np.mean([stated[k] for k in mine])
             hits = sum(right[k] for k in mine)
             lines.append(
                 f"| {low:g} to {min(high, 1.0):g} | {len(mine)} | {100 * mean:.1f} % | "
@@ -111,10 +111,10 @@ def reliability(runs: Sequence[Run]) -> list[str]:
 
 
 def trivial(sets: dict[str, list[Run]]) -> list[str]:
-    """Score answerers that do not think, in the same words."""
+    """Score trivial strategies in the same terms."""
     lines = [
-        "| set | ours right | ours wrong | always unknown | always cubic: right, "
-        "wrong | biggest shrink: right, wrong |",
+        "| set | jointbench right | jointbench wrong | always unknown | always cubic: "
+        "right, wrong | largest reduction: right, wrong |",
         "|---|---|---|---|---|---|",
     ]
     for name, mine in sets.items():
@@ -140,7 +140,7 @@ def trivial(sets: dict[str, list[Run]]) -> list[str]:
 
 
 def _biggest(run: Run) -> set[str]:
-    """Return the names of the explanation with the smallest misfit."""
+    """Return the names of the explanation with the smallest residual."""
     tried = [c for c in run["found"].get("candidates", []) if c["effects"] != ["none"]]
     if not tried:
         return set()
@@ -150,7 +150,10 @@ def _biggest(run: Run) -> set[str]:
 
 def failures(runs: Sequence[Run]) -> list[str]:
     """List every wrong name, wrong ambiguity, crash and lost clear case."""
-    lines = ["| campaign | truth | margins | told | reason |", "|---|---|---|---|---|"]
+    lines = [
+        "| campaign | truth | margins | verdict | reason |",
+        "|---|---|---|---|---|",
+    ]
     for run in runs:
         word = word_of(run)
         lost = (
@@ -164,7 +167,7 @@ def failures(runs: Sequence[Run]) -> list[str]:
             lines.append(
                 f"| {run['kind']} {run['seed']} | {truth} | "
                 f"{', '.join(f'{m:.3g}' for m in run['margins'])} | {word}: "
-                f"{', '.join('@'.join(t) for t in reported_by(run))} | "
+                f"{', '.join('@'.join(t) for t in named_by(run))} | "
                 f"{run['found']['reason']} |"
             )
     return lines
@@ -176,9 +179,9 @@ def page(runs: list[Run], engine: str) -> str:
     parts = [
         ["# Gap engine on fresh simulated campaigns", ""],
         [
-            "Made by `benchmarks/gap/campaigns.py`, `judge.py` and `page.py`. Counts, "
-            "with 95 % Wilson intervals in %; time is CPU time of one core, on a "
-            "machine that was busy with other work as well.",
+            "Made by `benchmarks/gap/campaigns.py`, `judge.py` and `page.py`. Counts "
+            "with 95 % Wilson intervals in %; time is CPU time of one core of a "
+            "machine that was also busy with other work.",
             f"Engine: {engine}." if engine else "",
             "",
         ],
@@ -186,14 +189,18 @@ def page(runs: list[Run], engine: str) -> str:
         [f"Null test where nothing is missing: {null_test(runs)}.", ""],
         [f"Site of right names: {site_share(runs)}.", ""],
         [f"Gap on held-out records, right names: {shrinkage(runs)}.", ""],
-        [f"Prior deviation seen by priors alone: {prior_deviations(runs)}.", ""],
-        ["## What was told of each effect", "", *matrix(runs), ""],
+        [
+            "Prior deviation where only the priors show the effect: "
+            f"{prior_deviations(runs)}.",
+            "",
+        ],
+        ["## Verdict for each hidden effect", "", *matrix(runs), ""],
         ["## Parameters of right names", "", *coverage(runs), ""],
-        [f"Sd told over the Fisher bound, one parameter: {fisher(runs)}.", ""],
+        [f"Stated sd over the Fisher bound, one parameter: {fisher(runs)}.", ""],
         [f"Force curves of hysteretic laws: {force_curves(runs)}.", ""],
         ["## Confidence", "", *reliability(runs), ""],
-        ["## Beside answerers that do not think", "", *trivial(sets), ""],
-        ["## What went wrong", "", *failures(runs), ""],
+        ["## Comparison with trivial strategies", "", *trivial(sets), ""],
+        ["## Wrong and missed verdicts", "", *failures(runs), ""],
     ]
     return "\n".join(line for part in parts for line in part)
 

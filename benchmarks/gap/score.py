@@ -23,7 +23,7 @@ from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 def judge(names: set[str], found: Diagnosis, *, hidden: bool) -> str:
     """Return what a diagnosis is worth against the true names."""
     verdict = found.verdict.value
-    reported = {e.name for e in found.effects}
+    named = {e.name for e in found.effects}
     if hidden and verdict == "unknown":
         return "right"
     if verdict == "none":
@@ -31,8 +31,8 @@ def judge(names: set[str], found: Diagnosis, *, hidden: bool) -> str:
     if verdict == "unknown":
         return "unknown"
     if verdict == "ambiguous":
-        return "ambiguous with truth" if names <= reported else "ambiguous without"
-    return "right" if reported == names and not hidden else "WRONG"
+        return "ambiguous with truth" if names <= named else "ambiguous without"
+    return "right" if named == names and not hidden else "WRONG"
 
 
 def kind_of(names: set[str]) -> str:
@@ -42,14 +42,14 @@ def kind_of(names: set[str]) -> str:
 
 def line(case: str, names: set[str], found: Diagnosis, word: str, took: float) -> str:
     """Return the line of one campaign."""
-    reported = " | ".join(
+    named = " | ".join(
         f"{e.name}@{e.site} {e.confidence:.2f} "
         + " ".join(f"{p.name}={p.value:.5g}+-{p.sd:.2g}" for p in e.parameters)
         for e in found.effects
     )
     return (
         f"{case} {','.join(sorted(names)) or 'none':40s} {word:20s} "
-        f"{found.verdict.value:9s} {reported} gap {found.gap_before.value:.3g} -> "
+        f"{found.verdict.value:9s} {named} gap {found.gap_before.value:.3g} -> "
         f"{found.gap_after.value:.3g} {took:.1f} s {found.reason}"
     )
 
