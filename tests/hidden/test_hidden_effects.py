@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Effects hidden by the simulators' own physics, found by the engine: fixed seeds.
+"""Effects hidden by the simulators are found by the engine: fixed seeds.
 
 The statistics over many campaigns: benchmarks/gap and docs/gap-confusion.md.
 """
@@ -35,9 +35,9 @@ def diagnosed(
     *without: str,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Return the diagnosis of a campaign after a way through its file.
+    """Write a campaign to a file, and return its diagnosis.
 
-    Whatever it is, its sentences go together, and with what is hidden.
+    Its sentences must not contradict each other or the hidden effects.
     """
     path = folder / "campaign.h5"
     write_campaign(campaign, path)
@@ -56,13 +56,13 @@ def test_nothing_hidden_is_nothing_found(
 
 
 @pytest.mark.parametrize("second_start", [True, False])
-def test_a_base_in_a_wrong_valley_is_led_out_of_it(
+def test_a_base_in_a_wrong_minimum_is_found_again(
     second_start: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It starts again about the hits as they settled, before any effect is tried.
+    """It starts again with the settling of each hit, before any effect is fitted.
 
-    Without that a loosening leads it out, and the base explains the records from there;
-    a few rivals are enough to see that one does.
+    Without it, a fit of loosening moves the base to where it explains the records;
+    a few candidates are enough for that.
     """
     left_out: set[str] = set()
     if not second_start:
@@ -127,8 +127,8 @@ def test_two_large_effects_are_both_named(tmp_path: Path) -> None:
     assert found.gap_before.chi2_per_dof > 30.0
 
 
-def test_an_added_mass_beside_a_relaxation_is_named_too(tmp_path: Path) -> None:
-    """The records show the relaxation, hardly anything but the sheet the mass."""
+def test_an_added_mass_and_a_relaxation_are_both_named(tmp_path: Path) -> None:
+    """The records show the relaxation, but almost only the priors show the mass."""
     mass = HiddenEffect("added_mass", {"m": 0.4, "dof": 0.0})
     relaxation = HiddenEffect("maxwell", {"k": 1.809e6, "tau": 1.327e-4})
     plain = quick_campaign(93061)
@@ -142,9 +142,9 @@ def test_an_added_mass_beside_a_relaxation_is_named_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["extra_damping", "hidden_mode", "saturation"])
-def test_an_effect_out_of_the_catalogue_gets_no_other_name(
+def test_an_effect_outside_the_catalogue_gets_no_other_name(
     name: str, tmp_path: Path
 ) -> None:
-    """Something is missing, and it is said that it is not known."""
+    """An effect is missing, and the verdict is that it is unknown."""
     campaign = quick_campaign(931, effects=(name,), size=0.3, grid="small", noise=0.05)
     assert diagnosed(campaign, tmp_path, name).verdict is Finding.UNKNOWN

@@ -274,7 +274,7 @@ def integrate_link_force(
         count = min(LANES, n_records - first)
         own_poles = np.full((n_modes, LANES), -1.0 + 0.0j)
         own_residues = np.zeros((n_modes, LANES), dtype=np.complex128)
-        # One by one: the check of shapes behind a slice takes seconds to compile.
+        # Copied in a loop: the shape check of a slice takes seconds to compile.
         for m in range(n_modes):
             for k in range(count):
                 own_poles[m, k] = poles[m, first + k]

@@ -1,4 +1,4 @@
-"""Outcomes of the gap engine made by hand: no race, so that tests stay fast."""
+"""Outcomes of the gap engine without a selection, so that tests stay fast."""
 
 from dataclasses import replace
 
@@ -32,12 +32,12 @@ def outcome_of(
     """Fit the base and the tried effects to a campaign with hidden ones.
 
     Args:
-        hidden: name, site and values of what is in the campaign.
+        hidden: name, site and values of the effects in the campaign.
         tried: name and site of single explanations, best first.
         seed: of the noise.
-        rivals: how many of them are not told apart.
-        continuous: as if a shaker had done it, that never stops.
-        at_truth: start each try at the hidden values, which is quick and sure.
+        rivals: number of them that cannot be distinguished.
+        continuous: as if excited by a shaker without a pause.
+        at_truth: start each fit at the hidden values, which is fast and reliable.
     """
     campaign = made.made_campaign(hidden, seed=seed)
     if continuous:

@@ -1,4 +1,4 @@
-"""The evidence of a gap: does it point to where the truth is, and say it right?"""
+"""The evidence of a gap locates and describes the true cause."""
 
 import json
 from dataclasses import replace
@@ -35,7 +35,7 @@ FOUND_DELAY = ("delay", "channel:a1")
 
 @cache
 def case(name: str) -> tuple[SearchOutcome, LumpedBench, GapEvidence]:
-    """Return an outcome with its exhibit."""
+    """Return an outcome with its evidence."""
     hidden, tried = {
         "none": ([], ()),
         "delay": ([LATE], (FOUND_DELAY,)),
@@ -48,8 +48,8 @@ def case(name: str) -> tuple[SearchOutcome, LumpedBench, GapEvidence]:
     return outcome, bench, make_evidence(bench, outcome.base, outcome, finding)
 
 
-def test_a_linear_cause_recurs_whole_at_every_level() -> None:
-    """A late channel: the same misfit per force from 30 to 1000 N."""
+def test_the_residual_of_a_linear_cause_recurs_fully_at_every_level() -> None:
+    """A delayed channel: the same residual per force from 30 to 1000 N."""
     outcome, bench, _ = case("delay")
     difference = bench.campaign.response - bench.response(outcome.base.base, ())
     found = recurrences(bench, difference)
@@ -58,7 +58,7 @@ def test_a_linear_cause_recurs_whole_at_every_level() -> None:
 
 
 def test_a_cubic_spring_does_not_recur_in_softer_hits() -> None:
-    """The misfit of 1000 N is less than half of itself in softer hits, or turned."""
+    """Less than half of the residual at 1000 N recurs in softer hits."""
     outcome, bench, evidence = case("cubic")
     difference = bench.campaign.response - bench.response(outcome.base.base, ())
     found = recurrences(bench, difference)
@@ -69,9 +69,9 @@ def test_a_cubic_spring_does_not_recur_in_softer_hits() -> None:
 
 
 def test_a_base_bent_by_the_hardest_hits_makes_no_cause_linear() -> None:
-    """As in the demo: heavier masses leave a misfit in proportion to every hit.
+    """As in the demo: heavier masses leave a residual in proportion to every hit.
 
-    Over that bent base the misfit recurs by more than 90 %; with the base fitted to the
+    With that base the residual recurs by more than 80 %; with the base fitted to the
     softer hits it does not, although the law is the same.
     """
     outcome, bench, _ = case("cubic")
@@ -84,21 +84,21 @@ def test_a_base_bent_by_the_hardest_hits_makes_no_cause_linear() -> None:
 
 
 def test_the_representative_record_of_a_cubic_spring_is_a_hardest_hit() -> None:
-    """Its condition is said in words."""
+    """Its condition is stated as text."""
     evidence = case("cubic")[2]
     assert "1000 N" in evidence.curves.condition
     assert evidence.curves.share > 0.2
 
 
 def test_a_fault_of_one_channel_is_located_on_it() -> None:
-    """A late a1 is no matter of a0, although the base bends a0 as well."""
+    """A delay of a1 is not located on a0, although the base changes a0 as well."""
     evidence = case("delay")[2]
     assert "a1" in evidence.where
     assert evidence.curves.channel == "a1"
 
 
-def test_where_nothing_is_missing_nothing_is_said() -> None:
-    """No sentence, and a misfit that is the noise within 10 %."""
+def test_a_complete_model_has_no_sentences() -> None:
+    """No sentence, and a residual equal to the noise within 10 %."""
     evidence = case("none")[2]
     assert (evidence.where, evidence.look, evidence.advice) == ("", (), "")
     curves = evidence.curves
@@ -128,7 +128,7 @@ def test_the_response_function_of_a_right_model_is_the_measured_one() -> None:
 
 
 def test_record_estimates_follow_the_stiffness_of_the_preload() -> None:
-    """A joint that goes as preload to the 0.01: 1 % of ln 2 more at twice the load."""
+    """Stiffness ~ preload^0.01: 1 % of ln 2 more at twice the preload."""
     record_estimates = case("preload")[2].record_estimates
     assert record_estimates is not None
     like = (record_estimates.level == 300.0) & (np.array(record_estimates.hit) == "m2")
@@ -140,14 +140,14 @@ def test_record_estimates_follow_the_stiffness_of_the_preload() -> None:
 
 
 def test_a_mass_that_the_base_absorbs_is_recognised_by_its_prior() -> None:
-    """Records met to their noise, with m2 many sd off: no sentence about levels."""
+    """The records are explained, with m2 many sd off: no sentence about levels."""
     evidence = case("mass")[2]
     assert "m2 +" in evidence.where
     assert evidence.view == "priors"
 
 
-def test_the_limits_are_those_that_the_fit_was_judged_by() -> None:
-    """No directed test of a sound base is beyond the limit that is shown with it."""
+def test_the_limits_are_those_of_the_acceptance_criteria() -> None:
+    """No directed test of a complete base exceeds the limit shown with it."""
     outcome, _, evidence = case("none")
     assert outcome.acceptance.passed
     assert evidence.limits.chi2_per_dof < evidence.limits.chi2_allowed
@@ -158,7 +158,7 @@ def test_the_limits_are_those_that_the_fit_was_judged_by() -> None:
 
 
 def test_a_fit_without_directed_tests_shows_no_limit_of_them() -> None:
-    """The outcome made by hand tests nothing of its winner."""
+    """This outcome has no directed tests of its best fit."""
     outcome, _, evidence = case("delay")
     assert outcome.acceptance.left is None
     assert evidence.limits.remaining is None
@@ -166,7 +166,7 @@ def test_a_fit_without_directed_tests_shows_no_limit_of_them() -> None:
 
 @pytest.mark.parametrize("known", [{ODD}, {EVEN}, {ODD, EVEN}])
 def test_symmetry_is_reported_only_where_both_laws_were_tested(known: set[str]) -> None:
-    """What is taken out of the catalogue takes no 0 %."""
+    """An effect outside the catalogue is not reported as 0 %."""
     shares = {ODD: 0.9, EVEN: 0.2}
     tests = [DirectedTest(f"{n}@link:joint", 10.0, shares[n]) for n in sorted(known)]
     line = symmetry(tests)
@@ -175,7 +175,7 @@ def test_symmetry_is_reported_only_where_both_laws_were_tested(known: set[str]) 
 
 
 def test_the_directed_tests_put_the_truth_first() -> None:
-    """A delay of a1 takes nearly the whole misfit to first order."""
+    """A delay of a1 explains nearly the whole residual to first order."""
     first = case("delay")[2].tests[0]
     assert first.label == "delay@channel:a1"
     assert 0.9 < first.share <= 1.0
@@ -189,7 +189,7 @@ def test_the_json_of_the_evidence_holds_words_and_no_samples() -> None:
 
 
 def test_a_shaken_bench_without_hits_has_evidence_too() -> None:
-    """No hit to cut out and no level to compare: the sentences go without them."""
+    """Without hits and levels, no sentence mentions them."""
     outcome, bench = outcomes.outcome_of([LATE], continuous=True)
     evidence = make_evidence(bench, outcome.base, outcome, Finding.UNKNOWN)
     assert "a1" in evidence.where

@@ -1,4 +1,4 @@
-"""A long record of one input and one output: cut, diagnosed, scored on what is left."""
+"""A long record of one input and one output: cut, diagnosed, scored on the rest."""
 
 from dataclasses import replace
 
@@ -52,8 +52,8 @@ def linear_record(*, noise: float = 2e-3) -> tuple[SingleRecord, FloatArray]:
     return SingleRecord("made", force, clean + added, RATE), added
 
 
-def test_a_linear_record_misses_nothing_and_its_error_is_the_noise() -> None:
-    """On samples no fit has seen, the base leaves what was added and no more."""
+def test_a_linear_record_needs_no_effect_and_its_error_is_the_noise() -> None:
+    """On samples not used for the fit, the error of the base is the added noise."""
     record, added = linear_record()
     found, (score,) = diagnose_record(record, TRAINING, (SCORED,), NOMINAL)
     assert found.verdict is Finding.NONE
@@ -66,7 +66,7 @@ def test_a_linear_record_misses_nothing_and_its_error_is_the_noise() -> None:
 
 
 def test_the_lead_is_simulated_and_not_scored() -> None:
-    """It stands before each start; its samples carry no weight."""
+    """It precedes each start; its samples have no weight."""
     record, _ = linear_record()
     campaign = stretch_campaign(record, TRAINING, NOMINAL)
     assert campaign.force.shape == (2, 2300)
@@ -86,7 +86,7 @@ def test_a_stretch_beyond_the_record_is_refused(stretch: Stretch) -> None:
 
 
 def test_rows_of_other_lengths_and_nan_are_refused() -> None:
-    """No sample is made up."""
+    """Samples are never filled in."""
     row = np.zeros(100)
     with pytest.raises(SamplingError, match="same length"):
         SingleRecord("r", row, row[1:], RATE)

@@ -57,7 +57,7 @@ def run(
 
 
 def test_points_levels_preloads_and_order_come_from_the_recordings() -> None:
-    """A point belongs to the body whose channel sits there; channels by name."""
+    """A point belongs to the body of the channel at that point; channels by name."""
     runs = [
         run("first", point="3", peak=95.0),
         run("second", point="1", peak=105.0, preload=8000.0),
@@ -103,7 +103,7 @@ def test_peaks_are_grouped_into_the_levels_aimed_at() -> None:
         ),
     ],
 )
-def test_what_is_missing_is_said_with_the_way_out(
+def test_a_missing_fact_is_reported_with_advice(
     recording: Recording, nominal: NominalParameters, words: str
 ) -> None:
     """A preload, a body for a point, the right quantity."""
