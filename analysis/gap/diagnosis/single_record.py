@@ -27,7 +27,7 @@ class SingleRecord:
     """A long record of one input and one output.
 
     Attributes:
-        name: as the user knows it.
+        name: of the record, chosen by the user.
         excitation: input, shape (n_samples,).
         response: output, shape (n_samples,).
         sample_rate: [Hz].

@@ -116,14 +116,14 @@ def _lengths(records: list[_Record]) -> list[int]:
         force = _dataset(place, record, "force")
         if force.ndim != 1:
             raise FormatError(
-                f"{place} has 'force' of shape {force.shape}, one axis is wanted; "
+                f"{place} has 'force' of shape {force.shape}, one axis is required; "
                 "store the samples of one hit"
             )
         wanted = (BODIES, force.size)
         accel = _dataset(place, record, "accel")
         if accel.shape != wanted:
             raise FormatError(
-                f"{place} has 'accel' of shape {accel.shape}, {wanted} is wanted; "
+                f"{place} has 'accel' of shape {accel.shape}, {wanted} is required; "
                 "store a row for each body, as long as 'force'"
             )
         lengths.add(int(force.size))
@@ -183,7 +183,7 @@ def _nominal_attribute(where: str, file: h5py.File, name: str) -> dict[str, floa
         ) from error
     if not isinstance(found, dict):
         raise FormatError(
-            f"{where} has {name!r} of {shown(text)}, a JSON object is wanted; "
+            f"{where} has {name!r} of {shown(text)}, a JSON object is required; "
             f"write it with the keys {', '.join(NOMINAL_KEYS)}"
         )
     return {
@@ -197,7 +197,7 @@ def _hit(place: str, record: h5py.Group) -> int:
     number = _finite(place, record, "hit_dof")
     if number not in range(BODIES):
         raise FormatError(
-            f"{place} has 'hit_dof' of {number:g}, 0 or 1 is wanted; "
+            f"{place} has 'hit_dof' of {number:g}, 0 or 1 is required; "
             "write 0 for a hit on m1, 1 for one on m2"
         )
     return int(number)
@@ -226,13 +226,13 @@ def _finite(place: str, target: h5py.Group, name: str) -> float:
 def _number(place: str, name: str, value: Any) -> float:
     if value is None:
         raise FormatError(
-            f"{place} lacks {name!r}, one number is wanted; "
+            f"{place} lacks {name!r}, one number is required; "
             "give a complete campaign file"
         )
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise FormatError(
-            f"{place} has {name!r} of {shown(value)}, a number is wanted; "
+            f"{place} has {name!r} of {shown(value)}, a number is required; "
             "write it without a unit"
         ) from error

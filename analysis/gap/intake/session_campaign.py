@@ -30,7 +30,7 @@ def session_campaign(
     """Make a campaign of the accepted hits of recordings.
 
     Args:
-        name: as the user knows it.
+        name: of the campaign, chosen by the user.
         recordings: with judged hits, in the order recorded, each with its preload.
         nominal: model that should explain them.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Settings of the judgement: caps, tolerances and limits of what a record shows."""
+"""Settings of the judgement: caps, tolerances and limits of a record."""
 
 from dataclasses import dataclass
 

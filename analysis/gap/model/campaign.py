@@ -15,7 +15,7 @@ class Campaign:
     """Hits under known conditions, and the model that should explain them.
 
     Attributes:
-        name: as the user knows it.
+        name: of the campaign, chosen by the user.
         sample_rate: [Hz].
         force: hammer force [N], shape (n_records, n_samples).
         response: shape (n_records, n_channels, n_samples), in the model's output.

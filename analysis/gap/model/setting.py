@@ -33,7 +33,7 @@ class Setting:
         name: of the field that holds it.
         value: in force.
         unit: of the value; "-" if it has none.
-        purpose: what it does.
+        purpose: of the setting.
         basis: how it was set, and on which campaigns.
         kind: decision or numerical.
         effect: effect of a change by 30 % down and up on the verdicts of the sweep

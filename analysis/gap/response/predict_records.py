@@ -92,9 +92,11 @@ def motion(
     bodies = range(len(model.bodies))
     variant = np.arange(excitation.hit.size) if h.shape[2] > 1 else 0
     linear = [h[i, excitation.hit, variant] * excitation.spectrum for i in bodies]
-    bent = [a for a in actions if a.entry.law is not None]
-    for link in sorted({a.index for a in bent}):
-        laws = [a.entry.law(a.values) for a in bent if a.index == link if a.entry.law]
+    nonlinear = [a for a in actions if a.entry.law is not None]
+    for link in sorted({a.index for a in nonlinear}):
+        laws = [
+            a.entry.law(a.values) for a in nonlinear if a.index == link if a.entry.law
+        ]
         link_force = _link_force(
             model, theta, excitation, actions, linear, link, laws, oversampling
         )
