@@ -32,9 +32,9 @@ KINDS = ("null", "single")
 def no_coarse_stages() -> None:
     """Fit whole records from the first step on."""
     from jointbench.analysis.gap.diagnosis import base_fit
-    from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+    from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 
-    base_fit.BASE_STAGES = ((FULL, 19), (FULL, 20))
+    base_fit.BASE_RESOLUTIONS = ((FULL, 19), (FULL, 20))
 
 
 def no_bootstrap() -> None:
@@ -61,11 +61,11 @@ def no_priors() -> None:
 
 def one_start() -> None:
     """Give each candidate one start, as its directed test predicts it."""
-    from jointbench.analysis.gap.search import race_starts
+    from jointbench.analysis.gap.search import candidate_starts
     from jointbench.analysis.gap.search import selection_round as race
 
     race.STARTS = 1
-    race_starts.SHARES = (1.0,)
+    candidate_starts.SHARES = (1.0,)
     race.HUGE = np.inf
 
 

@@ -43,8 +43,8 @@ def judge_one(
     campaign = read_campaign(truth_path.with_suffix(".h5"))
     start = time.process_time()
     try:
-        told = diagnose(campaign, without=without, policy=policy)
-        found: dict[str, Any] = diagnosis_json(told)
+        diagnosis = diagnose(campaign, without=without, policy=policy)
+        found: dict[str, Any] = diagnosis_json(diagnosis)
     except Exception as error:  # noqa: BLE001 - a crash is an outcome to be counted
         found = {"verdict": "crash", "reason": f"{type(error).__name__}: {error}"}
     return truth | {"found": found, "seconds": time.process_time() - start}

@@ -34,8 +34,8 @@ from null_page import QUANTILES, page
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
-from jointbench.analysis.gap.judgement.naming import gate
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
+from jointbench.analysis.gap.judgement.naming import accept
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -97,7 +97,7 @@ def drawn_campaign(bench: LumpedBench, fit: Fit, rng: np.random.Generator) -> Ca
     response *= 1.0 + scatter[0] * rng.standard_normal((records, 1, 1))
     response += noise.sigma[:, :, None] * rng.standard_normal(response.shape)
     force = np.zeros_like(campaign.force)
-    first, last = bench.gate
+    first, last = bench.time_gate
     force[:, first:last] = campaign.force[:, first:last]
     force += noise.force_sigma * rng.standard_normal(force.shape)
     nominal = theta * np.exp(-bench.base_sd * rng.standard_normal(theta.size))
@@ -132,7 +132,7 @@ def with_nominal(model: LumpedModel, nominal: FloatArray) -> LumpedModel:
 def judge(bench: LumpedBench, fit: Fit) -> dict[str, Any]:
     """Return what the null test makes of a fitted base."""
     tested = screen(bench, fit, bench.candidates)
-    verdict = gate(bench, fit, fit, tested)
+    verdict = accept(bench, fit, fit, tested)
     fixed = {(c.label, *u[1:]) for c, u in fixed_starts(bench)}
     return {
         "largest": tested.largest,
@@ -144,7 +144,7 @@ def judge(bench: LumpedBench, fit: Fit) -> dict[str, Any]:
         "threshold": tested.threshold,
         "which": tested.directions[0].candidate.label,
         "chi2_per_dof": fit.chi2 / bench.blocks.dof,
-        "pull": float(np.abs(fit.pulls).max()),
+        "pull": float(np.abs(fit.prior_deviations).max()),
         "reason": verdict.reason,
     }
 

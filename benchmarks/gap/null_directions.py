@@ -84,7 +84,7 @@ def score_variance(bench: LumpedBench, fit: Fit, tested: Directions) -> FloatArr
     Returns:
         Shape (n_directions,).
     """
-    first, last = bench.gate
+    first, last = bench.time_gate
     width, records = last - first, bench.campaign.hit.size
     force = np.zeros((width, bench.campaign.force.shape[1]))
     force[:, first:last] = bench.noise.force_sigma * np.eye(width)

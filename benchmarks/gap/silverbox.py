@@ -30,7 +30,7 @@ def main() -> None:
     began = time.perf_counter()
     given = read_record(parser.parse_args().path, read_toml(MODEL, BenchModel))
     found, scores = diagnose_record(
-        given.record, given.training, given.scored, given.sheet, progress=print
+        given.record, given.training, given.scored, given.nominal, progress=print
     )
     print(found.verdict, found.effects, found.reason)
     for ranked in found.candidates:

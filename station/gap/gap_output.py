@@ -50,10 +50,10 @@ def show_on(screen: Console, found: Diagnosis) -> None:
         )
     screen.print()
     _say(screen, "gap", _gap_words(found))
-    if found.exhibit is not None and found.exhibit.where:
-        _say(screen, "where", found.exhibit.where)
+    if found.evidence is not None and found.evidence.where:
+        _say(screen, "where", found.evidence.where)
         if found.verdict is Finding.UNKNOWN:
-            _say(screen, "looks", *found.exhibit.look)
+            _say(screen, "looks", *found.evidence.look)
     _say(screen, "limits", _limit_words(found))
     where = _where(found)
     if where:
@@ -95,7 +95,7 @@ def _effects(found: Diagnosis) -> list[tuple[str, str, str, str]]:
 
 def _gap_words(found: Diagnosis) -> str:
     before, after = found.gap_before, found.gap_after
-    deviation = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+    deviation = max((abs(b) for b, _ in found.prior_deviations.values()), default=0.0)
     if found.verdict not in (Finding.NAMED, Finding.AMBIGUOUS):
         return (
             f"{short(before.value)} on held-out records; largest prior deviation "
@@ -107,15 +107,15 @@ def _gap_words(found: Diagnosis) -> str:
     return (
         f"{short(before.value)} before, {short(after.value)} after, on held-out "
         f"records{shrink}; largest prior deviation {short(deviation)} sd before, "
-        f"{short(after.pull)} sd after"
+        f"{short(after.prior_deviation)} sd after"
     )
 
 
 def _limit_words(found: Diagnosis) -> str:
     largest, limit = found.null_statistic
     words = f"null test {short(largest)} (limit {short(limit)})"
-    if found.exhibit is not None:
-        limits = found.exhibit.limits
+    if found.evidence is not None:
+        limits = found.evidence.limits
         words += (
             f"; final chi2/dof {limits.chi2_per_dof:.4g} (limit "
             f"{limits.chi2_allowed:.4g})"
@@ -131,7 +131,7 @@ def _limit_words(found: Diagnosis) -> str:
 
 def _where(found: Diagnosis) -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
-    priors = found.exhibit is not None and found.exhibit.view == PRIORS
+    priors = found.evidence is not None and found.evidence.view == PRIORS
     if found.verdict is Finding.NONE or priors:
         return rows
     for view in found.gap_before.views:
@@ -152,9 +152,9 @@ def _candidates(found: Diagnosis) -> list[tuple[str, str, str, str, str]]:
     return [
         (
             _short(" + ".join(one.effects)),
-            short(one.behind),
+            short(one.delta_score),
             f"{one.chi2_per_dof:.4g}",
-            short(one.pull),
+            short(one.prior_deviation),
             why_lost(one, found),
         )
         for one in found.candidates[:_MOST_CANDIDATES]

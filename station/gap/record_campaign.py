@@ -14,7 +14,7 @@ from jointbench.analysis.gap.diagnosis.single_record import (
     StretchScore,
 )
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.gap_model import nominal_parameters
 from jointbench.station.schemas.record_model import RecordTable, StretchTable, stands_in
@@ -42,7 +42,7 @@ class RecordToExamine:
     record: SingleRecord
     training: Stretch
     scored: tuple[Stretch, ...]
-    nominal: Sheet
+    nominal: NominalParameters
     unit: str
     factor: float
     remarks: tuple[str, ...]
@@ -142,7 +142,7 @@ def _centred(values: FloatArray, table: RecordTable) -> FloatArray:
     return values - values.mean() if table.remove_mean else values
 
 
-def _driven(table: RecordTable, bench: BenchModel, nominal: Sheet) -> int:
+def _driven(table: RecordTable, bench: BenchModel, nominal: NominalParameters) -> int:
     if table.driven is None:
         return nominal.model.index(nominal.model.channels[0].body)
     names = list(bench.bodies)

@@ -25,7 +25,7 @@ from jointbench.analysis.gap.catalogue.installed_effects import (
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.intake.session_campaign import session_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.lumped.identified import Identification
 from jointbench.signal.fractal.fractal_fit import fit_fractal
@@ -169,7 +169,7 @@ def gap_stage(
 def gap_of(
     name: str,
     judged: Sequence[Recording],
-    nominal: Sheet,
+    nominal: NominalParameters,
     *,
     without: frozenset[str],
     entries: tuple[LumpedEffect, ...] = CATALOGUE,

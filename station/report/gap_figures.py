@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.model.evidence_records import Spectra, Wishes
+from jointbench.analysis.gap.model.evidence_records import RecordEstimates, Spectra
 from jointbench.station.report.gap_style import (
     AFTER,
     BEFORE,
@@ -56,8 +56,8 @@ def spectrum(
     )
     traces = [floor]
     for values, name, color in (
-        (spectra.misfit_before, "base model", BEFORE),
-        (spectra.misfit_after, tried, AFTER),
+        (spectra.residual_before, "base model", BEFORE),
+        (spectra.residual_after, tried, AFTER),
     ):
         if name:
             traces.append(line(f, values, name, color=color, axes=axes, legend=shown))
@@ -66,7 +66,7 @@ def spectrum(
 
 def spectrum_axes(spectra: Spectra) -> tuple[dict[str, object], dict[str, object]]:
     """Return the axes of `spectrum`, both logarithmic."""
-    top = max(float(spectra.misfit_before.max()), SMALLEST_TOP)
+    top = max(float(spectra.residual_before.max()), SMALLEST_TOP)
     span = [float(np.log10(LOWEST_BAR)), float(np.log10(2.0 * top))]
     return axis("frequency [Hz]", log=True), axis(
         "residual over noise [-]", log=True, range=span
@@ -91,7 +91,7 @@ def response_function(spectra: Spectra, *, tried: str) -> Figure:
 
 
 def record_estimate_figure(
-    estimates: Wishes, *, against: str, tried: str, unit: str
+    estimates: RecordEstimates, *, against: str, tried: str, unit: str
 ) -> Figure:
     """Return joint stiffness and damping estimated from each record separately.
 
@@ -121,7 +121,7 @@ def record_estimate_figure(
 
 
 def _estimate_points(
-    estimates: Wishes, x: FloatArray, column: int, name: str, color: str
+    estimates: RecordEstimates, x: FloatArray, column: int, name: str, color: str
 ) -> Sequence[Trace]:
     return [
         {

@@ -3,7 +3,7 @@
 
 from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Gap
-from jointbench.analysis.gap.model.evidence_records import Exhibit
+from jointbench.analysis.gap.model.evidence_records import GapEvidence
 from jointbench.station.report.gap_bars import view_grid
 from jointbench.station.report.gap_figures import (
     record_estimate_figure,
@@ -64,8 +64,8 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
 
 def _lead(found: Diagnosis, title: str) -> str:
     text = f"Campaign {title}. Verdict: {found.verdict.value}."
-    if found.exhibit is not None and found.exhibit.where:
-        where = found.exhibit.where
+    if found.evidence is not None and found.evidence.where:
+        where = found.evidence.where
         shown = found.verdict in (Finding.NAMED, Finding.AMBIGUOUS)
         text += f" Without the effect, {where}." if shown else f" Base model: {where}."
     return text
@@ -80,10 +80,10 @@ def _tiles(found: Diagnosis) -> tuple[Tile, ...]:
         tiles.append(Tile("gap after", short(after.value), note))
         if before.value > SMALL_GAP:
             tiles.append(Tile("reduced by", percent(found.shrink)))
-    largest = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+    largest = max((abs(b) for b, _ in found.prior_deviations.values()), default=0.0)
     deviation = f"{short(largest)} sd"
     if _after(found) is not None:
-        deviation = f"{short(largest)} → {short(after.pull)} sd"
+        deviation = f"{short(largest)} → {short(after.prior_deviation)} sd"
     tiles.append(Tile("largest prior deviation", deviation, "acceptable up to 4 sd"))
     return tuple(tiles)
 
@@ -98,26 +98,26 @@ def _sure(found: Diagnosis) -> str:
 
 def _tried(found: Diagnosis) -> str:
     """Return the legend of the model with the effects; empty for the base model."""
-    if found.exhibit is None or not found.exhibit.tried:
+    if found.evidence is None or not found.evidence.tried:
         return ""
-    words = effect_words(found.exhibit.tried)
+    words = effect_words(found.evidence.tried)
     refused = found.verdict is Finding.UNKNOWN
     return f"best fit: {words} (rejected)" if refused else f"with {words}"
 
 
 def _picture(found: Diagnosis) -> tuple[Item, ...]:
-    exhibit = found.exhibit
-    if exhibit is None:
+    evidence = found.evidence
+    if evidence is None:
         return ()
     figure = summary_figure(
-        exhibit,
+        evidence,
         found.gap_before,
         _after(found),
         title=headline(found),
         tried=_tried(found),
-        pulls=found.pulls,
+        prior_deviations=found.prior_deviations,
     )
-    return (Plot("hero", _summary_caption(found, exhibit), figure, SUMMARY_HEIGHT),)
+    return (Plot("hero", _summary_caption(found, evidence), figure, SUMMARY_HEIGHT),)
 
 
 def _after(found: Diagnosis) -> Gap | None:
@@ -126,15 +126,15 @@ def _after(found: Diagnosis) -> Gap | None:
     return found.gap_after if shown else None
 
 
-def _summary_caption(found: Diagnosis, exhibit: Exhibit) -> str:
-    curves = exhibit.curves
+def _summary_caption(found: Diagnosis, evidence: GapEvidence) -> str:
+    curves = evidence.curves
     text = (
         f"Record {curves.record}, {curves.condition}: channel {curves.channel}, which "
         f"holds {100 * curves.share:.0f} % of the residual. "
     )
-    if not exhibit.where:
+    if not evidence.where:
         text = f"Record {curves.record}, {curves.condition}: channel {curves.channel}. "
-    if exhibit.tried:
+    if evidence.tried:
         text += "Below: residual before and after, and the final residual magnified. "
     return text + "The scatter of repeated hits is removed. " + SAVE_HINT
 
@@ -156,9 +156,9 @@ def _effects(found: Diagnosis) -> tuple[Item, ...]:
     if rows:
         columns = ("effect", "parameter", "value ± sd", "95 %", "unit", "confidence")
         items.append(DataTable("Missing from the model.", columns, rows))
-    if found.verdict is Finding.UNKNOWN and found.exhibit is not None:
+    if found.verdict is Finding.UNKNOWN and found.evidence is not None:
         items.append(Text("Signature of the residual:"))
-        items += [Text(f"– {line}.") for line in found.exhibit.look]
+        items += [Text(f"– {line}.") for line in found.evidence.look]
     if next_step(found):
         items.append(Text(f"Next step: {next_step(found)}.", "notice"))
     return tuple(items)
@@ -170,14 +170,14 @@ def _interval(value: float, sd: float) -> str:
 
 def _where(found: Diagnosis) -> tuple[Item, ...]:
     items: list[Item] = []
-    exhibit, tried = found.exhibit, _tried(found)
-    if exhibit is not None and exhibit.where:
-        items.append(Text(f"{exhibit.where[:1].upper()}{exhibit.where[1:]}."))
+    evidence, tried = found.evidence, _tried(found)
+    if evidence is not None and evidence.where:
+        items.append(Text(f"{evidence.where[:1].upper()}{evidence.where[1:]}."))
         if found.verdict is not Finding.UNKNOWN:
-            items += [Text(f"– {line}.") for line in exhibit.look]
+            items += [Text(f"– {line}.") for line in evidence.look]
     items.append(_where_table(found))
-    if exhibit is not None:
-        items += _spectra(exhibit, tried)
+    if evidence is not None:
+        items += _spectra(evidence, tried)
     names = [
         view.name
         for view in found.gap_before.views
@@ -190,33 +190,33 @@ def _where(found: Diagnosis) -> tuple[Item, ...]:
     return tuple(items)
 
 
-def _spectra(exhibit: Exhibit, tried: str) -> list[Item]:
+def _spectra(evidence: GapEvidence, tried: str) -> list[Item]:
     items: list[Item] = [
         Plot(
             "spectrum",
             "By frequency: rms residual of all records over the noise; 1 is noise.",
-            residual_spectrum(exhibit.spectra, tried=tried),
+            residual_spectrum(evidence.spectra, tried=tried),
             340,
         ),
         Plot(
             "response",
-            f"Frequency response, {exhibit.spectra.condition}.",
-            response_function(exhibit.spectra, tried=tried),
+            f"Frequency response, {evidence.spectra.condition}.",
+            response_function(evidence.spectra, tried=tried),
             340,
         ),
     ]
-    if exhibit.wishes is not None:
-        against = "preload" if exhibit.view == "preload" else "level"
+    if evidence.record_estimates is not None:
+        against = "preload" if evidence.view == "preload" else "level"
         items.append(
             Plot(
                 "wishes",
                 "Stiffness and damping of the joint estimated from each record "
                 "separately, relative to the model; 0 for a correct model.",
                 record_estimate_figure(
-                    exhibit.wishes,
+                    evidence.record_estimates,
                     against=against,
                     tried=tried,
-                    unit=exhibit.force_unit,
+                    unit=evidence.force_unit,
                 ),
                 320,
             )
@@ -245,9 +245,9 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
     rows = tuple(
         (
             "base model" if one.effects == ("none",) else " + ".join(one.effects),
-            short(one.behind),
+            short(one.delta_score),
             f"{one.chi2_per_dof:.5g}",
-            short(one.pull),
+            short(one.prior_deviation),
             why_lost(one, found),
         )
         for one in found.candidates[:MOST_CANDIDATES]
@@ -267,15 +267,15 @@ def _candidates(found: Diagnosis) -> tuple[Item, ...]:
         f"({policy.rival_score_one_site:g} where one site has two effects)."
     )
     items: list[Item] = [DataTable(caption, columns, rows)]
-    if found.exhibit is not None and found.verdict is not Finding.NONE:
-        items.append(_tests(found.exhibit))
+    if found.evidence is not None and found.verdict is not Finding.NONE:
+        items.append(_tests(found.evidence))
     return tuple(items)
 
 
-def _tests(exhibit: Exhibit) -> DataTable:
+def _tests(evidence: GapEvidence) -> DataTable:
     rows = tuple(
         (test.label, short(test.drop), f"{100 * test.share:.0f} %")
-        for test in exhibit.tests
+        for test in evidence.tests
     )
     columns = ("single effect", "predicted drop of chi2", "share of the residual")
     return DataTable("Directed tests before any fit, to first order.", columns, rows)
@@ -284,7 +284,7 @@ def _tests(exhibit: Exhibit) -> DataTable:
 def _limits(found: Diagnosis) -> tuple[Item, ...]:
     largest, limit = found.null_statistic
     noise = found.noise
-    force_unit = found.exhibit.force_unit if found.exhibit is not None else "N"
+    force_unit = found.evidence.force_unit if found.evidence is not None else "N"
     rows = [
         (
             "null test of the base",
@@ -294,8 +294,8 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
             "once in 200 campaigns; the search starts at 1.3 times the limit",
         )
     ]
-    if found.exhibit is not None:
-        limits = found.exhibit.limits
+    if found.evidence is not None:
+        limits = found.evidence.limits
         rows.append(
             (
                 "final chi2/dof",
@@ -335,7 +335,7 @@ def _base(found: Diagnosis) -> DataTable:
 def _deviations(found: Diagnosis) -> DataTable:
     rows = tuple(
         (name, f"{before:+.2f}", f"{after:+.2f}")
-        for name, (before, after) in found.pulls.items()
+        for name, (before, after) in found.prior_deviations.items()
     )
     return DataTable(
         "Prior deviation: distance of each parameter from its nominal value [sd].",

@@ -10,7 +10,7 @@ _MAINLY = 0.6
 _SEEN = {"level": "at", "hit point": "from hits on", "preload": "at preload"}
 SMALL_GAP = 0.3
 """Gap below which the records are nearly met: priors or a directed test decide."""
-PRIORS = "sheet"
+PRIORS = "priors"
 """View of a gap that shows in the prior deviations only; the key of JSON files."""
 
 
@@ -77,8 +77,8 @@ def _unknown(found: Diagnosis) -> str:
 def _explains(found: Diagnosis) -> str:
     several = found.verdict is Finding.NAMED and len(found.effects) > 1
     verb = "explain" if several else "explains"
-    priors = found.exhibit is None or found.exhibit.view == PRIORS
-    if not found.foretold:
+    priors = found.evidence is None or found.evidence.view == PRIORS
+    if not found.predicted:
         return f"{verb} the records, but only one condition shows it"
     if found.gap_before.value < SMALL_GAP and not priors:
         largest, limit = found.null_statistic
@@ -87,11 +87,12 @@ def _explains(found: Diagnosis) -> str:
             f"{largest:.0f}, noise rarely by more than {limit:.0f}"
         )
     if found.gap_before.value < SMALL_GAP:
-        before = max((abs(b) for b, _ in found.pulls.values()), default=0.0)
+        before = max((abs(b) for b, _ in found.prior_deviations.values()), default=0.0)
+        after = found.gap_after.prior_deviation
         verb = "bring" if several else "brings"
         return (
             f"{verb} the parameters back to their nominal values: largest prior "
-            f"deviation {before:.2g} sd before, {found.gap_after.pull:.2g} sd after"
+            f"deviation {before:.2g} sd before, {after:.2g} sd after"
         )
     whole = found.shrink >= 1.0
     size = "the whole" if whole else percent(found.shrink) + " of the"
@@ -100,7 +101,7 @@ def _explains(found: Diagnosis) -> str:
 
 def _seen(found: Diagnosis) -> str:
     """Name the slice of the most significant view that shows the gap, if it is one."""
-    name = found.exhibit.view if found.exhibit is not None else ""
+    name = found.evidence.view if found.evidence is not None else ""
     view = next((v for v in found.gap_before.views if v.name == name), None)
     if view is None or name not in _SEEN or len(view.share) < 2:
         return ""
@@ -154,10 +155,10 @@ def _not_distinguished(one: Ranked, found: Diagnosis) -> str:
 
 
 def _faults(one: Ranked, found: Diagnosis) -> str:
-    limits = found.exhibit.limits if found.exhibit is not None else None
+    limits = found.evidence.limits if found.evidence is not None else None
     faults = []
     if limits is not None and one.chi2_per_dof > limits.chi2_allowed:
         faults.append(f"chi2/dof above {limits.chi2_allowed:.4g}")
-    if limits is not None and one.pull > limits.pull_allowed:
-        faults.append(f"prior deviation above {limits.pull_allowed:g} sd")
+    if limits is not None and one.prior_deviation > limits.deviation_allowed:
+        faults.append(f"prior deviation above {limits.deviation_allowed:g} sd")
     return ", ".join(faults)

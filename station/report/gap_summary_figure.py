@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from jointbench.analysis.gap.model.diagnosis_record import Gap
-from jointbench.analysis.gap.model.evidence_records import Curves, Exhibit
+from jointbench.analysis.gap.model.evidence_records import Curves, GapEvidence
 from jointbench.station.report.gap_bars import bar_axes, bars
 from jointbench.station.report.gap_figures import pretty, spectrum, spectrum_axes
 from jointbench.station.report.gap_sentences import PRIORS
@@ -27,27 +27,27 @@ HALF_WIDTH = 0.62
 
 
 def summary_figure(
-    exhibit: Exhibit,
+    evidence: GapEvidence,
     before: Gap,
     after: Gap | None,
     *,
     title: str,
     tried: str,
-    pulls: Deviations,
+    prior_deviations: Deviations,
 ) -> Figure:
     """Return the summary figure of a gap.
 
     Args:
-        exhibit: evidence of the diagnosis.
+        evidence: evidence of the diagnosis.
         before: gap of the base.
         after: gap with the effects; None where nothing was named.
         title: the finding, in words.
         tried: legend of the model with the effects; empty where there is none.
-        pulls: prior deviation of each base parameter, before and after [sd].
+        prior_deviations: prior deviation of each base parameter, before and after [sd].
     """
-    curves = exhibit.curves
+    curves = evidence.curves
     x, y, left = _panels(curves, tried)
-    view = exhibit.view
+    view = evidence.view
     lines = textwrap.wrap(title, TITLE_WIDTH)
     traces = [
         *_response(curves, tried),
@@ -55,10 +55,10 @@ def summary_figure(
         *_left(curves, tried),
     ]
     if view == "frequency":
-        traces += spectrum(exhibit.spectra, tried, axes=("x4", "y4"))
-        x4, y4 = spectrum_axes(exhibit.spectra)
+        traces += spectrum(evidence.spectra, tried, axes=("x4", "y4"))
+        x4, y4 = spectrum_axes(evidence.spectra)
     elif view == PRIORS:
-        traces += _deviation_bars(pulls, shown=after is not None)
+        traces += _deviation_bars(prior_deviations, shown=after is not None)
         x4, y4 = axis("base parameter", type="category"), axis("prior deviation [sd]")
     else:
         traces += bars(view, before, after, axes=("x4", "y4"))
@@ -112,7 +112,7 @@ def _panels(
 
 def _first_window(curves: Curves) -> list[float]:
     """Return the initial time window [ms]."""
-    power = np.cumsum(curves.misfit_before**2)
+    power = np.cumsum(curves.residual_before**2)
     start = float(curves.time[0])
     reach = start + SHORTEST_WINDOW
     if power[-1] > 0:
@@ -138,11 +138,11 @@ def _residual(curves: Curves, tried: str) -> list[Trace]:
     time, axes = 1e3 * curves.time, ("x2", "y2")
     traces = [] if tried else _noise_band(curves, axes)
     traces.append(
-        line(time, curves.misfit_before, "", color=BEFORE, axes=axes, legend=False)
+        line(time, curves.residual_before, "", color=BEFORE, axes=axes, legend=False)
     )
     if tried:
         traces.append(
-            line(time, curves.misfit_after, "", color=AFTER, axes=axes, legend=False)
+            line(time, curves.residual_after, "", color=AFTER, axes=axes, legend=False)
         )
     return traces
 
@@ -153,7 +153,7 @@ def _left(curves: Curves, tried: str) -> list[Trace]:
     axes = ("x3", "y3")
     after = line(
         1e3 * curves.time,
-        curves.misfit_after,
+        curves.residual_after,
         "",
         color=AFTER,
         width=1.2,
@@ -191,17 +191,21 @@ def _headings(curves: Curves, view: str) -> list[dict[str, object]]:
     return [{**shared, "x": 0.0, "text": left}, {**shared, "x": 0.70, "text": right}]
 
 
-def _deviation_bars(pulls: Deviations, *, shown: bool) -> list[Trace]:
+def _deviation_bars(prior_deviations: Deviations, *, shown: bool) -> list[Trace]:
     """Return bars of each base parameter's prior deviation, before and after."""
     columns = ((0, BEFORE), (1, AFTER)) if shown else ((0, BEFORE),)
     return [
         {
             "type": "bar",
-            "x": list(pulls),
+            "x": list(prior_deviations),
             "y": [
-                float(f"{abs(deviation[column]):.4g}") for deviation in pulls.values()
+                float(f"{abs(deviation[column]):.4g}")
+                for deviation in prior_deviations.values()
             ],
-            "text": [f"{abs(deviation[column]):.2g}" for deviation in pulls.values()],
+            "text": [
+                f"{abs(deviation[column]):.2g}"
+                for deviation in prior_deviations.values()
+            ],
             "textposition": "outside",
             "cliponaxis": False,
             "showlegend": False,

@@ -2,11 +2,11 @@
 """From a bench model file to nominal parameters with priors of the gap engine."""
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.station.schemas.bench_model import BenchModel, lumped_model
 
 
-def nominal_parameters(bench: BenchModel) -> Sheet:
+def nominal_parameters(bench: BenchModel) -> NominalParameters:
     """Return the model of a bench whose every value has a prior, and its hit points.
 
     Raises:
@@ -34,7 +34,7 @@ def nominal_parameters(bench: BenchModel) -> Sheet:
         for index, body in enumerate(bench.bodies.values())
         for point in body.points
     }
-    return Sheet(
+    return NominalParameters(
         lumped_model(bench),
         points,
         bench.gap.preload_reference,

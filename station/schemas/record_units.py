@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Estimate, Gap
-from jointbench.analysis.gap.model.evidence_records import Exhibit
+from jointbench.analysis.gap.model.evidence_records import GapEvidence
 from jointbench.station.schemas.record_model import unit_text
 
 _SIGNS = re.compile(r"[()/]|[^\s()/*\u00b7]+")
@@ -66,7 +66,7 @@ def in_stand_ins(found: Diagnosis, units: StandIns) -> Diagnosis:
         gap_before=_gap(found.gap_before, units),
         gap_after=_gap(found.gap_after, units),
         reason=units.words(found.reason),
-        exhibit=None if found.exhibit is None else _exhibit(found.exhibit, units),
+        evidence=None if found.evidence is None else _evidence(found.evidence, units),
     )
 
 
@@ -87,14 +87,14 @@ def _gap(gap: Gap, units: StandIns) -> Gap:
     return replace(gap, views=views)
 
 
-def _exhibit(exhibit: Exhibit, units: StandIns) -> Exhibit:
-    curves, spectra = exhibit.curves, exhibit.spectra
+def _evidence(evidence: GapEvidence, units: StandIns) -> GapEvidence:
+    curves, spectra = evidence.curves, evidence.spectra
     return replace(
-        exhibit,
+        evidence,
         force_unit=units.source,
-        where=units.words(exhibit.where),
-        look=tuple(units.words(line) for line in exhibit.look),
-        relative={name: units.slices(x) for name, x in exhibit.relative.items()},
+        where=units.words(evidence.where),
+        look=tuple(units.words(line) for line in evidence.look),
+        relative={name: units.slices(x) for name, x in evidence.relative.items()},
         curves=replace(
             curves,
             condition=units.words(curves.condition),

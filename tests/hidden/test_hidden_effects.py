@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Effects hidden by the simulators' own physics, found by the engine: fixed seeds.
+"""Effects hidden by the simulators are found by the engine: fixed seeds.
 
 The statistics over many campaigns: benchmarks/gap and docs/gap-confusion.md.
 """
@@ -13,6 +13,7 @@ from gap_contradictions import contradictions
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis import base_fit
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
 from jointbench.analysis.gap.search.selection_round import Progress
@@ -28,15 +29,15 @@ from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 pytestmark = pytest.mark.timeout(400)
 
 
-def told(
+def diagnosed(
     campaign: SimulatedCampaign,
     folder: Path,
     *without: str,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Return the diagnosis of a campaign after a way through its file.
+    """Write a campaign to a file, and return its diagnosis.
 
-    Whatever it is, its sentences go together, and with what is hidden.
+    Its sentences must not contradict each other or the hidden effects.
     """
     path = folder / "campaign.h5"
     write_campaign(campaign, path)
@@ -50,27 +51,29 @@ def test_nothing_hidden_is_nothing_found(
     seed: int, scatter: float, tmp_path: Path
 ) -> None:
     """Verdict none, with and without scatter from hit to hit."""
-    found = told(quick_campaign(seed, hit_scatter=scatter), tmp_path)
+    found = diagnosed(quick_campaign(seed, hit_scatter=scatter), tmp_path)
     assert found.verdict is Finding.NONE
 
 
 @pytest.mark.parametrize("second_start", [True, False])
-def test_a_base_in_a_wrong_valley_is_led_out_of_it(
+def test_a_base_in_a_wrong_minimum_is_found_again(
     second_start: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It starts again about the hits as they settled, before any effect is tried.
+    """It starts again with the settling of each hit, before any effect is fitted.
 
-    Without that a loosening leads it out, and the base explains the records from there;
-    a few rivals are enough to see that one does.
+    Without it, a fit of loosening moves the base to where it explains the records;
+    a few candidates are enough for that.
     """
     left_out: set[str] = set()
     if not second_start:
-        monkeypatch.setattr(base_fit, "MOSTLY_SCATTER", 0.0)
+        monkeypatch.setattr(
+            base_fit, "DIAGNOSIS", replace(DIAGNOSIS, settled_share=0.0)
+        )
         few = {"loosening", "preload_stiffness", "cubic_stiffness", "maxwell", "delay"}
         left_out = {entry.effect.name for entry in CATALOGUE} - few
     tried: list[str] = []
     campaign = quick_campaign(80290, hit_scatter=0.0019730039844606992)
-    found = told(campaign, tmp_path, *left_out, progress=tried.append)
+    found = diagnosed(campaign, tmp_path, *left_out, progress=tried.append)
     assert found.verdict is Finding.NONE
     assert ("base again" in tried) != second_start
     assert (tried == ["base"]) == second_start
@@ -97,7 +100,7 @@ def test_one_hidden_effect_is_named_at_its_site(
     campaign = quick_campaign(
         911, effects=(name,), size=size, grid="small", noise=0.05, hit_scatter=scatter
     )
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert [(e.name, e.site) for e in found.effects] == [
         (e.name, e.site) for e in campaign.effects
     ]
@@ -109,23 +112,23 @@ def test_two_hidden_effects_are_both_named(tmp_path: Path) -> None:
     """A preload law of the joint and a mode of a body, one after the other."""
     names = ("preload_stiffness", "hidden_mode")
     campaign = quick_campaign(921, effects=names, size=0.2, grid="small", noise=0.05)
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert {e.name for e in found.effects} == set(names)
     assert found.verdict is Finding.NAMED
 
 
-def test_two_great_effects_are_both_named(tmp_path: Path) -> None:
+def test_two_large_effects_are_both_named(tmp_path: Path) -> None:
     """A cubic spring and a delay of hundreds of times the noise each."""
     names = ("cubic_stiffness", "delay")
     campaign = quick_campaign(923, effects=names, size=1.0, grid="small", noise=0.05)
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert {e.name for e in found.effects} == set(names)
     assert found.verdict is Finding.NAMED
     assert found.gap_before.chi2_per_dof > 30.0
 
 
-def test_an_added_mass_beside_a_relaxation_is_named_too(tmp_path: Path) -> None:
-    """The records show the relaxation, hardly anything but the sheet the mass."""
+def test_an_added_mass_and_a_relaxation_are_both_named(tmp_path: Path) -> None:
+    """The records show the relaxation, but almost only the priors show the mass."""
     mass = HiddenEffect("added_mass", {"m": 0.4, "dof": 0.0})
     relaxation = HiddenEffect("maxwell", {"k": 1.809e6, "tau": 1.327e-4})
     plain = quick_campaign(93061)
@@ -133,15 +136,15 @@ def test_an_added_mass_beside_a_relaxation_is_named_too(tmp_path: Path) -> None:
     hidden = (mass, relaxation)
     clean = simulate_records(plain.design, hidden)[1]
     campaign = replace(plain, effects=hidden, acceleration=clean + noise)
-    found = told(campaign, tmp_path)
+    found = diagnosed(campaign, tmp_path)
     assert {e.name for e in found.effects} == {"added_mass", "maxwell"}
     assert found.verdict is Finding.NAMED
 
 
 @pytest.mark.parametrize("name", ["extra_damping", "hidden_mode", "saturation"])
-def test_an_effect_out_of_the_catalogue_gets_no_other_name(
+def test_an_effect_outside_the_catalogue_gets_no_other_name(
     name: str, tmp_path: Path
 ) -> None:
-    """Something is missing, and it is said that it is not known."""
+    """An effect is missing, and the verdict is that it is unknown."""
     campaign = quick_campaign(931, effects=(name,), size=0.3, grid="small", noise=0.05)
-    assert told(campaign, tmp_path, name).verdict is Finding.UNKNOWN
+    assert diagnosed(campaign, tmp_path, name).verdict is Finding.UNKNOWN

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Catalogue v1 of lumped dynamics: 22 effects, each in one entry.
+"""Catalogue v1 of lumped dynamics: 22 effects, one entry each.
 
-Other packages add theirs, see `installed_effects`.
+Other packages can add effects, see `installed_effects`.
 """
 
 import difflib
@@ -19,7 +19,7 @@ ALL_CHANNELS = "all"
 
 
 def check_names(names: Iterable[str], entries: tuple[LumpedEffect, ...]) -> None:
-    """Raise `UsageError` for a name that no entry has, with near matches."""
+    """Raise `UsageError` for an unknown name, with near matches."""
     known = [e.effect.name for e in entries]
     for name in names:
         if name not in known:
@@ -30,7 +30,7 @@ def check_names(names: Iterable[str], entries: tuple[LumpedEffect, ...]) -> None
 
 
 def sites_of(entry: LumpedEffect, model: LumpedModel) -> tuple[Site, ...]:
-    """Return the sites of a model at which an entry can sit."""
+    """Return the sites of a model at which an entry applies."""
     found: list[Site] = []
     if "link" in entry.sites:
         found += [Site("link", x.name) for x in model.links if x.joint]

@@ -14,8 +14,8 @@ class CatalogueSettings:
         14,
         "sliders",
         "sliders of the Iwan element of the catalogue",
-        "development cases 26 and 50: leaves 4e-5 of the excess of an element "
-        "with more sliders",
+        "development cases 26 and 50: 4e-5 of the excess of an element with more "
+        "sliders remains",
     )
     slider_sharpness: tuple[float, float] = numerical(
         (14.0, 0.6),
@@ -26,7 +26,7 @@ class CatalogueSettings:
         (0.03, 0.16, 0.8),
         "periods",
         "relaxation times of the probes, in periods of the mode of the joint",
-        "one per factor of five over the range that a record shows",
+        "one per factor of five over the range of a record",
     )
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Whether the engine can use an effect of a user or of another package.
+"""Check whether the engine can use an effect of a user or of another package.
 
-Each is checked as far as can be without a campaign, before any record is read.
+The checks need no campaign and precede the reading of records.
 """
 
 import re
@@ -21,10 +21,10 @@ from jointbench.analysis.gap.response.effect_hooks import (
 from jointbench.analysis.gap.response.force_integration import CURVES
 
 PROBE_NAMES = frozenset(probe.effect.name for probe in PROBES)
-"""Names that no effect may have: the engine tests its own shapes under them."""
+"""Names that no effect may have, because the engine's probes use them."""
 _SITES = ("link", "body", "channel")
 _HOOKS = ("stiffness", "law", "transfer", "mixing", "shape")
-"""What an effect acts through; `rise` only goes with a stiffness."""
+"""Hooks of an effect; `rise` only complements a stiffness."""
 _HOOK_SITES = {
     "stiffness": ("link", "body"),
     "law": ("link",),
@@ -33,22 +33,22 @@ _HOOK_SITES = {
     "shape": ("channel",),
     "rise": ("link",),
 }
-"""Kinds of site at which the engine looks for a hook. It counts elements without asking
-for their kind, so a hook elsewhere would act on whatever has the same index."""
+"""Kinds of site at which the engine calls a hook. Elements are indexed regardless of
+their kind, so a hook at another site would act on an element with the same index."""
 _TRIED_PRELOADS = (0.5, 1.0, 2.0)
-"""Over the reference [-]: at 1 alone every power of the preload is silent."""
+"""Over the reference [-]; at 1 alone no power of the preload has any influence."""
 _TRIED_PROGRESS = (0.0, 0.5, 1.0)
 _TRIED_SAMPLES = 256
 _TRIED_RATE = 4096.0
-"""Of the signal at which a `shape` is tried [Hz]."""
+"""Sample rate of the signal for the trial of a `shape` [Hz]."""
 _TRIED_LINES = 16
 _TRIED_DAMPING = 100.0
-"""Of the Laplace variable at which a linear effect is tried [1/s]."""
+"""Real part of the Laplace variable for the trial of a linear effect [1/s]."""
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 
 
 def fault_of(entry: LumpedEffect) -> str:
-    """Return what is wrong with an effect, or an empty text.
+    """Return the fault of an effect, or an empty text.
 
     Raises:
         UsageError: a hook fails at amplitude 0.
@@ -59,47 +59,49 @@ def fault_of(entry: LumpedEffect) -> str:
     if not parameters:
         return "it has no parameter; the first is its amplitude"
     if entry.effect.family == PROBE_FAMILY:
-        return "its family is that of what is never named; give it another"
+        return f"its family {PROBE_FAMILY!r} is reserved for probes; give it another"
     if parameters[0].off != 0.0:
         return "its first parameter must be an amplitude with off=0.0"
     if not entry.sites or not set(entry.sites) <= set(_SITES):
         return f"its sites must be among {', '.join(_SITES)}"
     if all(getattr(entry, hook) is None for hook in _HOOKS):
         return f"it acts through no hook; give one of {', '.join(_HOOKS)}"
-    return _misplaced(entry) or _loud(entry)
+    return _misplaced(entry) or _acts_at_zero(entry)
 
 
 def _misplaced(entry: LumpedEffect) -> str:
-    """Return which hook is on a site that it does not act at, or an empty text."""
+    """Return the fault of a hook at the wrong kind of site, or an empty text."""
     for hook, right in _HOOK_SITES.items():
         wrong = [site for site in entry.sites if site not in right]
         if wrong and getattr(entry, hook) is not None:
-            return f"its hook {hook} sits on {' or '.join(right)}, not on {wrong[0]}"
+            return (
+                f"its hook {hook} acts on a {' or a '.join(right)}, not on a {wrong[0]}"
+            )
     if entry.mixing is not None and entry.every_channel:
-        # Its index is -1, at which a mixing would take the last channel alone.
+        # Its index is -1, so a mixing would act on the last channel only.
         return "its hook mixing acts on one channel; leave every_channel out"
     return ""
 
 
-def _loud(entry: LumpedEffect) -> str:
-    """Return what is wrong with an effect at amplitude 0, or an empty text."""
+def _acts_at_zero(entry: LumpedEffect) -> str:
+    """Return the fault of an effect at amplitude 0, or an empty text."""
     try:
-        silent = _silent(entry)
+        inactive = _inactive(entry)
     except UsageError:
         raise
     except Exception as error:
         raise UsageError(
             f"effect {entry.effect.name!r} fails at amplitude 0 "
-            f"({type(error).__name__}: {error}); try its hook by itself"
+            f"({type(error).__name__}: {error}); call its hook separately"
         ) from error
-    return "" if silent else "at amplitude 0 it must vanish to the last bit"
+    return "" if inactive else "at amplitude 0 it must vanish to the last bit"
 
 
-def _silent(entry: LumpedEffect) -> bool:
-    """Return whether an effect of amplitude 0 leaves the base as it is.
+def _inactive(entry: LumpedEffect) -> bool:
+    """Return whether an effect of amplitude 0 leaves the base unchanged.
 
-    A law other than one of curves is not tried: its amplitude stands in parameters of
-    its own.
+    Only laws given as curves are evaluated; the amplitude of other laws is in their own
+    parameters.
     """
     values = np.array([p.starts[0] if p.starts else 1.0 for p in _shapes(entry)])
     values = np.concatenate([[0.0], values])
@@ -113,7 +115,7 @@ def _silent(entry: LumpedEffect) -> bool:
 
 
 def _moves(entry: LumpedEffect, state: ElementState, values: FloatArray) -> bool:
-    """Return whether an effect adds anything to a link or a body."""
+    """Return whether an effect changes a link or a body."""
     left: list[object] = []
     if entry.stiffness is not None:
         left.append(np.any(entry.stiffness(state, values)))
@@ -125,7 +127,7 @@ def _moves(entry: LumpedEffect, state: ElementState, values: FloatArray) -> bool
 
 
 def _bends(entry: LumpedEffect, s: ComplexArray, values: FloatArray) -> bool:
-    """Return whether an effect changes anything about a channel."""
+    """Return whether an effect changes a channel."""
     left: list[object] = []
     if entry.transfer is not None:
         left.append(np.any(entry.transfer(s, values) != 1.0))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The catalogue as installed: the built-in effects, and those of other packages.
+"""The installed catalogue: the built-in effects, and those of other packages.
 
-A package adds an effect by one entry point of the group ``jointbench.effects`` that
-names a `LumpedEffect`; the name of the entry point is that of the effect.
+A package adds an effect by an entry point of the group ``jointbench.effects`` that
+refers to a `LumpedEffect`; the name of the entry point is that of the effect.
 """
 
 from collections.abc import Callable, Iterable
@@ -20,7 +20,7 @@ from jointbench.analysis.gap.model.effect import EFFECTS_GROUP
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 
 _CALLED = ("stiffness", "poles", "law", "transfer", "mixing", "shape", "rise")
-"""Functions of an effect that the engine calls."""
+"""Hooks of an effect that the engine calls."""
 _Hook = Callable[..., Any] | None
 
 
@@ -48,7 +48,7 @@ def installed_catalogue() -> tuple[LumpedEffect, ...]:
 
 
 def _guarded(entry: Entry[LumpedEffect]) -> LumpedEffect:
-    """Return an effect of another package whose hooks name it where they fail."""
+    """Return an effect of another package whose hooks name it in their errors."""
     found = entry.value
     hooks: dict[str, Any] = {
         name: _guard(entry, getattr(found, name)) for name in _CALLED
@@ -65,7 +65,7 @@ def _guard(entry: Entry[LumpedEffect], hook: _Hook) -> _Hook:
     def call(*given: Any) -> Any:
         try:
             return hook(*given)
-        except np.linalg.LinAlgError:  # the search tries a shorter step
+        except np.linalg.LinAlgError:  # the search then tries a shorter step
             raise
         except Exception:
             with entry.running(UsageError):
@@ -89,7 +89,7 @@ def effect_packages(entries: Iterable[LumpedEffect]) -> dict[str, str]:
 
 
 def effect_code(without: Iterable[str]) -> tuple[str, ...]:
-    """Return what the key of a diagnosis holds of the effects of other packages.
+    """Return the part of a diagnosis key for the effects of other packages.
 
     Args:
         without: names of effects that are left out.

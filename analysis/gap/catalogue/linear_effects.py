@@ -178,7 +178,7 @@ _HIDDEN_MODE = LumpedEffect(
         "Den Hartog 1956, Mechanical Vibrations, sec. 3.2: attached oscillator",
         {
             "extra_damping": "look for a split peak with a finer frequency resolution",
-            "added_mass": "excite well above the mode, where the mass lets go",
+            "added_mass": "excite well above the mode, where the mass decouples",
         },
         report=_hidden_mode_report,
         starts_at_peaks=True,

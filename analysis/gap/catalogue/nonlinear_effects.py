@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Catalogue v1, part 2: force laws of links, and channels that bend the signal."""
+"""Catalogue v1, part 2: force laws of links, and nonlinear channels."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
-from jointbench.analysis.gap.response import force_integration as march
+from jointbench.analysis.gap.response import force_integration as integration
 from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
 from jointbench.analysis.gap.response.slider_integration import slider_tables
 
@@ -20,15 +20,15 @@ _SHARPNESS = CATALOGUE_SETTINGS.slider_sharpness
 
 
 def _cubic(v: FloatArray) -> Law:
-    return Law(march.POLYNOMIAL, np.array([0.0, v[0]]))
+    return Law(integration.POLYNOMIAL, np.array([0.0, v[0]]))
 
 
 def _quadratic(v: FloatArray) -> Law:
-    return Law(march.POLYNOMIAL, np.array([v[0], 0.0]))
+    return Law(integration.POLYNOMIAL, np.array([v[0], 0.0]))
 
 
 def _gap(v: FloatArray) -> Law:
-    return Law(march.ONE_SIDED, np.array([v[0], v[1]]))
+    return Law(integration.ONE_SIDED, np.array([v[0], v[1]]))
 
 
 def _gap_report(v: FloatArray) -> tuple[Reported, ...]:
@@ -36,7 +36,7 @@ def _gap_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _coulomb(v: FloatArray) -> Law:
-    return Law(march.COULOMB, np.array([v[0], v[1]]))
+    return Law(integration.COULOMB, np.array([v[0], v[1]]))
 
 
 def _coulomb_report(v: FloatArray) -> tuple[Reported, ...]:
@@ -44,7 +44,7 @@ def _coulomb_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _quadratic_damping(v: FloatArray) -> Law:
-    return Law(march.QUADRATIC_DAMPING, np.array([v[0]]))
+    return Law(integration.QUADRATIC_DAMPING, np.array([v[0]]))
 
 
 def _sliders(
@@ -56,7 +56,7 @@ def _sliders(
 ) -> Law:
     tables, tops = slider_tables(loading, unloading, sharpness)
     total = np.array([float(stiffness.sum())])
-    return Law(march.SLIDERS, total, slips, stiffness, tables, tops)
+    return Law(integration.SLIDERS, total, slips, stiffness, tables, tops)
 
 
 def _jenkins(v: FloatArray) -> Law:
@@ -89,7 +89,7 @@ def _iwan_report(v: FloatArray) -> tuple[Reported, ...]:
 
 
 def _bouc_wen(v: FloatArray) -> Law:
-    """Bouc and Wen with b + g = 1: a factor of both is another yield displacement."""
+    """Bouc and Wen with b + g = 1: a common factor scales the yield displacement."""
     return _sliders(v[:1], v[1:2], 1.0, float(v[3]), float(v[2]))
 
 
@@ -119,7 +119,7 @@ def _saturation_report(v: FloatArray) -> tuple[Reported, ...]:
 def _hum(
     model: FloatArray, measured: FloatArray, v: FloatArray, rate: float
 ) -> FloatArray:
-    """Add a line whose phase, free in every record, is the best one."""
+    """Add a line whose phase is fitted in each record."""
     if v[0] == 0.0:
         return model
     phase = 2 * np.pi * v[1] / rate * np.arange(model.shape[-1])
@@ -236,7 +236,7 @@ IWAN = LumpedEffect(
         },
         report=_iwan_report,
         has_sliders=True,
-        # A real element has as many sliders as its maker gave it.
+        # The number of sliders of a real element is unknown.
         model_error=5e-5,
     ),
     ("link",),

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Shapes that any law is made of, for tests of what a named effect leaves over.
+"""Elementary shapes of laws, for directed tests of the residual of a named effect.
 
-A wrong law of the right site takes most of a misfit, and what it leaves may look like
-no other effect of the catalogue. It does look like something: an even or an odd power
-of the motion, a drag, a lag of a channel. These probes are such first terms of a power
-series; they are tested beside the catalogue, are never fitted and never named.
+A wrong law at the right site explains most of a residual, and its own residual may
+resemble no other effect of the catalogue. It does resemble an elementary shape: an even
+or odd power of the motion, a drag, a lag of a channel. These probes are such first
+terms of a power series; they are tested in addition to the catalogue, but never fitted
+and never named.
 
 Source:
     Powers of motion and of speed: the restoring-force surface of Masri and Caughey
@@ -37,7 +38,7 @@ def _effect(name: str, unit: str, scale: str, source: str) -> Effect:
 
 
 def _spring(name: str, power: int, curve: Curve) -> LumpedEffect:
-    """Return a force of the motion r across a link."""
+    """Return a force that depends on the motion r across a link."""
 
     def law(v: FloatArray) -> Law:
         return curve_law(spring=lambda r: v[0] * curve(r))
@@ -48,7 +49,7 @@ def _spring(name: str, power: int, curve: Curve) -> LumpedEffect:
 
 
 def _damping(name: str, power: int, curve: Curve) -> LumpedEffect:
-    """Return a damping that goes with the motion r across a link."""
+    """Return a damping that depends on the motion r across a link."""
 
     def law(v: FloatArray) -> Law:
         return curve_law(damping=lambda r: v[0] * curve(r))
@@ -58,7 +59,7 @@ def _damping(name: str, power: int, curve: Curve) -> LumpedEffect:
 
 
 def _drag(name: str, power: int, curve: Curve) -> LumpedEffect:
-    """Return a force of the speed v across a link."""
+    """Return a force that depends on the speed v across a link."""
 
     def law(v: FloatArray) -> Law:
         return curve_law(drag=lambda speed: v[0] * curve(speed))
@@ -80,7 +81,7 @@ def _series(name: str, power: int) -> LumpedEffect:
 
 
 def _bend(name: str, power: int) -> LumpedEffect:
-    """Return a channel whose reading bends with a power of the signal."""
+    """Return a channel with an error proportional to a power of the signal."""
 
     def shape(
         model: FloatArray, measured: FloatArray, v: FloatArray, rate: float
@@ -92,7 +93,7 @@ def _bend(name: str, power: int) -> LumpedEffect:
 
 
 def _relaxation() -> LumpedEffect:
-    """Return a spring of a link that gives way in time."""
+    """Return a spring of a link that relaxes in time."""
     parameters = (
         Parameter("size", "N/m", "stiffness"),
         Parameter("tau", "s", "period", 1e-3, 1e2, RELAXATION, Transform.LOG),
@@ -113,8 +114,8 @@ PROBES: tuple[LumpedEffect, ...] = (
     _spring("fourth power of the motion", 4, lambda r: r**4),
     _spring("fifth power of the motion", 5, lambda r: r**5),
     _spring("magnitude of the motion", 1, np.abs),
-    _damping("damping that goes with the motion", 1, lambda r: r),
-    _damping("damping that goes with the square of the motion", 2, lambda r: r**2),
+    _damping("damping proportional to the motion", 1, lambda r: r),
+    _damping("damping proportional to the square of the motion", 2, lambda r: r**2),
     _drag("square of the speed", 2, lambda v: v * np.abs(v)),
     _drag("cube of the speed", 3, lambda v: v**3),
     _relaxation(),
@@ -125,8 +126,8 @@ PROBES: tuple[LumpedEffect, ...] = (
     ),
     _series("lag", 1),
     _series("loss towards high frequency", 2),
-    _series("bend of the phase", 3),
+    _series("curvature of the phase", 3),
     _bend("square of the signal", 2),
     _bend("cube of the signal", 3),
 )
-"""What is tested of a fit beside the catalogue."""
+"""Shapes that are tested in addition to the catalogue."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The fit of the base alone, and the noise that goes with it."""
+"""Fit of the base alone, with the noise estimated at it."""
 
 import numpy as np
 
@@ -9,25 +9,29 @@ from jointbench.analysis.gap.judgement.winner_judging import far_off
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages, minimise
+from jointbench.analysis.gap.search.descent import (
+    BASE_RESOLUTIONS,
+    fit_coarse_to_fine,
+    minimise,
+)
 
 
 @one_thread()
 def fit_base(bench: Bench) -> tuple[Bench, Fit]:
-    """Fit the base coarse to fine, estimate the noise there, and settle.
+    """Fit the base coarse to fine, and iterate with the noise estimated at it.
 
-    The last stage still knows nothing of scatter. In a quiet campaign it may follow
-    the hits that settled and end so far off that no noise can be told there; then the
-    stage before, whose window forgives, is fitted with each hit as it seems to have
-    settled.
+    The last resolution does not account for scatter. In a quiet campaign the fit may
+    follow the settling of the hits, and end too far from the records for a noise
+    estimate. Then the fit of the previous resolution, with a more tolerant window, is
+    continued with the estimated settling of each hit.
     """
     problem = make_problem(bench, ())
-    early = fit_stages(problem, np.zeros(problem.n_base), BASE_STAGES[:-1])
+    early = fit_coarse_to_fine(problem, np.zeros(problem.n_base), BASE_RESOLUTIONS[:-1])
     late = minimise(problem, early.x)
     found = settled_base(bench, late)
     if not far_off(*found):
         return found
-    expanded = bench.refine(early.base, (), astray=True)
+    expanded = bench.refine(early.base, (), diverged=True)
     again = minimise(make_problem(expanded, ()), early.x)
     if again.chi2 > DIAGNOSIS.settled_share * found[1].chi2:
         return found
@@ -36,7 +40,7 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
 
 
 def settled_base(bench: Bench, fit: Fit) -> tuple[Bench, Fit]:
-    """Bring a base and the noise estimated at it to agree."""
+    """Alternate base fit and noise estimate until they converge."""
     for _ in range(DIAGNOSIS.base_rounds):
         before = fit.cost
         bench = bench.refine(fit.base, ())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Diagnose a campaign: the loop's outcome, put into a verdict with its evidence."""
+"""Diagnose a campaign: verdict and evidence from the outcome of the search."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,12 +10,12 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
-from jointbench.analysis.gap.diagnosis.evidence import make_exhibit
+from jointbench.analysis.gap.diagnosis.evidence import make_evidence
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
@@ -31,7 +31,7 @@ from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.effect_parameter import Reported
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import Bench, values_of
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -40,7 +40,7 @@ from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress, score
 
-UNFORETOLD_WORDS = (
+UNPREDICTED_WORDS = (
     "; held out, a condition is not predicted by the others: it shows the effect "
     "alone, so add conditions next to it"
 )
@@ -56,38 +56,38 @@ def diagnose(
     policy: Policy = STANDARD,
     progress: Progress | None = None,
 ) -> Diagnosis:
-    """Find, name and add what a model misses.
+    """Find and name the effects that a model lacks, and add them.
 
     Args:
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
         policy: thresholds of the verdict.
-        progress: told what is being tried, one line at a time.
+        progress: receives one line for each step of the search.
 
     Returns:
-        Verdict and evidence; `unknown` with a reason where the campaign cannot show
-        more (one level, no repeats, too few records).
+        Verdict and evidence; `unknown` with a reason if the campaign is insufficient
+        (one level, no repeats, too few records).
 
     Raises:
         UsageError: `without` holds a name that no entry has.
 
     Source:
         Kennedy and O'Hagan 2001, J. R. Stat. Soc. B 63, 425, for the question; the
-        rules of naming are those of `jointbench.analysis.gap.judgement.naming`.
+        acceptance criteria are those of `jointbench.analysis.gap.judgement.naming`.
     """
     bench = make_bench(campaign, without=without, entries=entries, policy=policy)
     outcome = investigate(bench, progress or (lambda line: None))
     final = outcome.bench
     if not isinstance(final, LumpedBench):
-        raise TypeError("the loop must hand back the bench it was given")
+        raise TypeError("the search must return a bench of the type it was given")
     return conclude(outcome, final, limits=campaign_limits(campaign, policy))
 
 
 def conclude(
     outcome: SearchOutcome, bench: LumpedBench, *, limits: str = ""
 ) -> Diagnosis:
-    """Put an outcome into words and numbers."""
+    """Derive the diagnosis from the outcome of a search."""
     base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
     outcome = replace(outcome, base=base)
     verdict = verdict_on(outcome, bench, limits)
@@ -97,20 +97,25 @@ def conclude(
         shown = (outcome.best,)
     elif finding is Finding.AMBIGUOUS:
         shown = outcome.level
-    best = outcome.best if outcome.gate.passed else base
+    best = outcome.best if outcome.acceptance.passed else base
     held = hold_out(base, bench)
-    exhibit = make_exhibit(bench, base, outcome, finding)
+    evidence = make_evidence(bench, base, outcome, finding)
     if verdict.step:
-        exhibit = replace(exhibit, advice="")
+        evidence = replace(evidence, advice="")
     found = Diagnosis(
         verdict=finding,
         effects=_effects(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
         gap_before=_gap(bench, base, held),
         gap_after=_gap(bench, best, hold_out(best, bench, held)),
-        pulls={
+        prior_deviations={
             name: (float(b), float(a))
-            for name, b, a in zip(bench.base_names, base.pulls, best.pulls, strict=True)
+            for name, b, a in zip(
+                bench.base_names,
+                base.prior_deviations,
+                best.prior_deviations,
+                strict=True,
+            )
         },
         base=_base_estimates(bench, best),
         noise={
@@ -124,14 +129,16 @@ def conclude(
             outcome.base_screening.largest,
             outcome.base_screening.threshold,
         ),
-        experiment=verdict.step or exhibit.advice or LOOK_CLOSER,
+        experiment=verdict.step or evidence.advice or LOOK_CLOSER,
         reason=verdict.reason,
-        exhibit=exhibit,
-        explanations=tuple(_labels(f) for f in outcome.level if outcome.gate.passed),
+        evidence=evidence,
+        explanations=tuple(
+            _labels(f) for f in outcome.level if outcome.acceptance.passed
+        ),
         policy=bench.policy,
     )
-    if finding is Finding.NAMED and not found.foretold:
-        return replace(found, reason=verdict.reason + UNFORETOLD_WORDS)
+    if finding is Finding.NAMED and not found.predicted:
+        return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)
     return found
 
 
@@ -141,7 +148,10 @@ def _labels(fit: Fit) -> tuple[str, ...]:
 
 def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
     return Gap(
-        held.gap, held.chi2_per_dof, float(np.abs(fit.pulls).max()), bench.views(fit)
+        held.gap,
+        held.chi2_per_dof,
+        float(np.abs(fit.prior_deviations).max()),
+        bench.views(fit),
     )
 
 
@@ -154,14 +164,14 @@ def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
             score(bench, f),
             score(bench, f) - first,
             f.chi2 / bench.blocks.dof,
-            float(np.abs(f.pulls).max()),
+            float(np.abs(f.prior_deviations).max()),
         )
         for f in rows
     )
 
 
 def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
-    """Return what the confidence of one explanation rests on."""
+    """Return the quantities from which the confidence of a fit is computed."""
     own = {c.label for c in fit.candidates}
     others = [
         score(bench, f)
@@ -170,33 +180,33 @@ def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
         and not own < {c.label for c in f.candidates}
     ]
     margin = (min(others) if others else DIAGNOSIS.no_rival_score) - score(bench, fit)
-    allowed = max(outcome.gate.allowed, 1e-12)
-    slack = 1.0 - max(outcome.gate.excess, 0.0) / allowed
-    sure = weakest(fit, (outcome.base, *outcome.ranked))
-    return Evidence(margin, slack, sure, len(fit.candidates))
+    allowed = max(outcome.acceptance.allowed, 1e-12)
+    slack = 1.0 - max(outcome.acceptance.excess, 0.0) / allowed
+    distance = weakest(fit, (outcome.base, *outcome.ranked))
+    return Evidence(margin, slack, distance, len(fit.candidates))
 
 
 def _effects(
     outcome: SearchOutcome, bench: LumpedBench, fits: Sequence[Fit]
 ) -> tuple[NamedEffect, ...]:
-    """Return the effects of some explanations, each as in the first that holds it.
+    """Return the effects of explanations, each as in the first that contains it.
 
-    What all rivals hold is as sure as all of them together.
+    The confidence of an effect is the sum over the rivals that contain it.
     """
     found: dict[str, NamedEffect] = {}
     for fit in fits:
         evidence = evidence_of(outcome, bench, fit)
-        sure = confidence_of(evidence) / len(fits)
+        confidence = confidence_of(evidence) / len(fits)
         for k, (label, term) in enumerate(zip(_labels(fit), fit.terms, strict=True)):
             if label in found:
                 one = found[label]
-                found[label] = replace(one, confidence=one.confidence + sure)
+                found[label] = replace(one, confidence=one.confidence + confidence)
                 continue
             found[label] = NamedEffect(
                 term.candidate.effect.name,
                 str(term.candidate.site),
                 estimates_of(bench, fit, k),
-                sure,
+                confidence,
                 evidence,
             )
     return tuple(found.values())

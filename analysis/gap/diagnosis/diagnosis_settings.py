@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Settings of the diagnosis: rounds of the loop, and what the evidence shows."""
+"""Settings of the diagnosis: rounds of the search, and contents of the evidence."""
 
 from dataclasses import dataclass
 
@@ -13,8 +13,8 @@ class DiagnosisSettings:
     most_effects: int = numerical(
         3,
         "effects",
-        "most effects that are put together",
-        "three at one link explain anything",
+        "most effects of one explanation",
+        "three at one link can imitate any law",
     )
     first_effects: int = numerical(
         3,
@@ -25,14 +25,14 @@ class DiagnosisSettings:
     second_cost_ratio: float = numerical(
         4.0,
         "-",
-        "excess of the cost over the smallest above which a single effect is "
-        "given no second",
+        "excess of the cost over the smallest above which no second effect is added "
+        "to a single one",
         "development campaigns",
     )
     noise_excess: float = numerical(
         0.01,
         "of dof",
-        "excess of the cost that noise alone may make",
+        "excess of the cost that noise alone may cause",
         "closed form",
     )
     wrong_minimum_chi2: float = numerical(
@@ -50,38 +50,39 @@ class DiagnosisSettings:
     needless_gain: float = numerical(
         1000.0,
         "chi2",
-        "gain of the best fit by its noise after which one of its effects may be "
-        "needless",
+        "gain of the best fit by its noise estimate above which one of its effects "
+        "may be unnecessary",
         "hidden 96060",
     )
     base_rounds: int = numerical(
         12,
         "rounds",
-        "most rounds in which the base and its noise are brought to agree",
+        "most rounds of alternating base fit and noise estimate",
         "nulls of docs/gap-null.md",
     )
     base_settled_cost: float = numerical(
         0.5,
         "chi2",
-        "change of the cost below which base and noise agree",
+        "change of the cost below which base and noise have converged",
         "nulls of docs/gap-null.md",
     )
     settled_share: float = numerical(
         0.5,
         "of chi2",
-        "chi2 that a base about the settled hits may leave to be taken",
+        "chi2 of a base expanded about the settled hits, relative to the usual base, "
+        "below which it is used",
         "26 of 36 quiet draws: all end between 0.97 and 1.03",
     )
     no_rival_score: float = numerical(
         1e12,
         "chi2",
-        "score of a rival where none was fitted",
+        "score of a rival if none was fitted",
         "larger than any cost",
     )
     one_record_share: float = numerical(
         0.8,
         "of the residual",
-        "share of one record from which that record is suspected",
+        "share of one record from which that record is reported as faulty",
     )
     scored_steps: int = numerical(
         8,
@@ -98,12 +99,12 @@ class DiagnosisSettings:
     taken_share: float = numerical(
         0.3,
         "of the residual",
-        "share that the estimates of the records must explain to be stated alone",
+        "share that the estimates of the records must explain to be reported",
     )
     uneven_ratio: float = numerical(
         2.0,
         "-",
-        "ratio of relative residuals between channels from which it is stated",
+        "ratio of relative residuals between channels from which it is reported",
     )
     growth_ratio: float = numerical(
         0.7,
@@ -119,7 +120,7 @@ class DiagnosisSettings:
     band_share: float = numerical(
         0.8,
         "of the residual",
-        "share of the residual that the band which is stated holds",
+        "share of the residual within the reported band",
     )
     level_force_floor: float = numerical(
         0.05,
@@ -129,7 +130,7 @@ class DiagnosisSettings:
     vague_sd: float = numerical(
         0.15,
         "-",
-        "sd above which a recurrence is not stated",
+        "sd above which a recurrence is not reported",
     )
     linear_within: float = numerical(
         0.35,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Choose what shows a misfit best: the telling record, its spectrum, its wishes."""
+"""Prepare the evidence of a gap: representative record, spectra, estimates."""
 
 from typing import Any
 
@@ -24,9 +24,9 @@ from jointbench.analysis.gap.model.evidence_records import (
     CampaignLimits,
     Curves,
     DirectedTest,
-    Exhibit,
+    GapEvidence,
+    RecordEstimates,
     Spectra,
-    Wishes,
 )
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -39,27 +39,27 @@ _UNITS = {
 }
 
 
-def make_exhibit(
+def make_evidence(
     bench: LumpedBench, base: Fit, outcome: SearchOutcome, finding: Finding
-) -> Exhibit:
-    """Put the evidence of an outcome into a form that can be drawn and told.
+) -> GapEvidence:
+    """Prepare the evidence of an outcome for figures and text.
 
     Args:
-        bench: with its noise as estimated at the end.
+        bench: with its final noise estimate.
         base: fit without effects on that bench.
-        outcome: of the loop on that bench.
+        outcome: of the search on that bench.
         finding: the verdict on it.
     """
     best = outcome.best if outcome.best.candidates else base
     residual = _cube(bench, base)
     relative = relative_residuals(bench, residual)
-    wishes = _wishes(bench, base, best)
+    record_estimates = _record_estimates(bench, base, best)
     tests = _tests(bench, base, outcome)
     models = (
         bench.response(base.base, base.terms),
         bench.response(best.base, best.terms),
     )
-    curves, spectra = _telling(bench, (residual, _cube(bench, best)), models)
+    curves, spectra = _representative(bench, (residual, _cube(bench, best)), models)
     facts = gather(bench, base, outcome, finding, relative["output"])
     limits = _limits(outcome, bench)
     view = most_significant_view(bench, residual, facts)
@@ -67,12 +67,12 @@ def make_exhibit(
     look: tuple[str, ...] = ()
     if base.chi2 / bench.blocks.dof > limits.chi2_allowed:
         where = locate(bench, residual, facts)
-        look = describe(bench, residual, relative, facts, wishes, tests)
-    elif not outcome.base_gate.passed and _pulled_off(bench, base):
-        where, view = prior_deviation_words(bench, base), "sheet"
-    elif not outcome.base_gate.passed:
+        look = describe(bench, residual, relative, facts, record_estimates, tests)
+    elif not outcome.base_acceptance.passed and _deviates(bench, base):
+        where, view = prior_deviation_words(bench, base), "priors"
+    elif not outcome.base_acceptance.passed:
         where = locate(bench, residual, facts)
-    return Exhibit(
+    return GapEvidence(
         tried=words_of(best.candidates),
         where=where,
         look=look,
@@ -81,7 +81,7 @@ def make_exhibit(
         relative=relative,
         curves=curves,
         spectra=spectra,
-        wishes=wishes,
+        record_estimates=record_estimates,
         limits=limits,
         tests=tests[: DIAGNOSIS.figure_tests],
     )
@@ -92,19 +92,19 @@ def _cube(bench: LumpedBench, fit: Fit) -> FloatArray:
     return fit.residual.reshape(bench.campaign.response.shape)
 
 
-def _pulled_off(bench: LumpedBench, base: Fit) -> bool:
-    """Return whether a base parameter lies beyond the limit of its prior."""
-    return bool(np.abs(base.pulls).max() > bench.policy.prior_limit)
+def _deviates(bench: LumpedBench, base: Fit) -> bool:
+    """Return whether a prior deviation exceeds its limit."""
+    return bool(np.abs(base.prior_deviations).max() > bench.policy.prior_limit)
 
 
 def _limits(outcome: SearchOutcome, bench: LumpedBench) -> CampaignLimits:
-    """Repeat the limits of the gate."""
+    """Return the acceptance limits of the outcome."""
     return CampaignLimits(
-        chi2_per_dof=1.0 + outcome.gate.excess,
-        chi2_allowed=1.0 + outcome.gate.allowed,
-        remaining=outcome.gate.remaining,
-        remaining_allowed=outcome.gate.remaining_allowed,
-        pull_allowed=bench.policy.prior_limit,
+        chi2_per_dof=1.0 + outcome.acceptance.excess,
+        chi2_allowed=1.0 + outcome.acceptance.allowed,
+        remaining=outcome.acceptance.remaining,
+        remaining_allowed=outcome.acceptance.remaining_allowed,
+        deviation_allowed=bench.policy.prior_limit,
     )
 
 
@@ -121,12 +121,12 @@ def _tests(
     )
 
 
-def _telling(
+def _representative(
     bench: LumpedBench,
     whitened: tuple[FloatArray, FloatArray],
     models: tuple[FloatArray, FloatArray],
 ) -> tuple[Curves, Spectra]:
-    """Draw the channel of the record that holds the largest share of the excess."""
+    """Return curves of the record and channel with the largest share of the excess."""
     counted = counted_samples(bench)
     excess = np.maximum(np.sum(whitened[0] ** 2, axis=2) - counted, 0.0)
     if not excess.any():
@@ -158,8 +158,8 @@ def _curves(
         measured=bench.campaign.response[record, channel, cut],
         before=models[0][record, channel, cut],
         after=models[1][record, channel, cut],
-        misfit_before=-sigma * whitened[0][record, channel, cut],
-        misfit_after=-sigma * whitened[1][record, channel, cut],
+        residual_before=-sigma * whitened[0][record, channel, cut],
+        residual_after=-sigma * whitened[1][record, channel, cut],
         sigma=sigma,
     )
 
@@ -175,7 +175,7 @@ def _condition(bench: LumpedBench, record: int) -> str:
 
 
 def _window(bench: LumpedBench, residual: FloatArray) -> tuple[int, int]:
-    """Return the samples that hold the hit and most of the misfit."""
+    """Return the range of samples with the hit and most of the residual."""
     rate, n = bench.campaign.sample_rate, residual.size
     if bench.campaign.continuous:
         peak = int(np.argmax(np.abs(residual)))
@@ -184,7 +184,7 @@ def _window(bench: LumpedBench, residual: FloatArray) -> tuple[int, int]:
             max(n - DIAGNOSIS.figure_most_samples // 2, 0),
         )
         return first, min(first + DIAGNOSIS.figure_most_samples // 2, n)
-    first = max(bench.gate[0] - int(DIAGNOSIS.figure_lead * rate), 0)
+    first = max(bench.time_gate[0] - int(DIAGNOSIS.figure_lead * rate), 0)
     power = np.cumsum(residual[first:] ** 2)
     reach = (
         int(np.searchsorted(power, DIAGNOSIS.figure_share * power[-1]))
@@ -219,7 +219,7 @@ def _spectra(
     kept = np.flatnonzero(power > DIAGNOSIS.figure_force_floor**2 * power.max())
     frequency = np.fft.rfftfreq(campaign.force.shape[1], 1 / campaign.sample_rate)
     kept = kept[frequency[kept] > 0.0][: 4 * DIAGNOSIS.figure_lines]
-    centres, misfits = _misfit_spectra(bench, whitened)
+    centres, residuals = _residual_spectra(bench, whitened)
 
     def ratio(response: FloatArray) -> FloatArray:
         y = np.fft.rfft(response[rows, channel], axis=1)
@@ -236,12 +236,12 @@ def _spectra(
         measured=ratio(campaign.response),
         before=ratio(models[0]),
         after=ratio(models[1]),
-        misfit_before=misfits[0],
-        misfit_after=misfits[1],
+        residual_before=residuals[0],
+        residual_after=residuals[1],
     )
 
 
-def _misfit_spectra(
+def _residual_spectra(
     bench: LumpedBench, whitened: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, list[FloatArray]]:
     """Return band centres [Hz] and the rms of whitened residuals in each band."""
@@ -252,7 +252,7 @@ def _misfit_spectra(
     counts = np.diff(np.append(starts, bands.size))
     found = []
     for residual in whitened:
-        # Lead and tail carry no weight: what is left of a record sets the floor to 1.
+        # Lead and tail have no weight: the counted samples normalise noise to 1.
         power = np.mean(np.abs(np.fft.rfft(residual, axis=2)) ** 2, axis=(0, 1))
         power /= max(counted_samples(bench), 1)
         found.append(np.sqrt(np.add.reduceat(power[1:], starts) / counts))
@@ -260,13 +260,15 @@ def _misfit_spectra(
 
 
 def _bands(frequency: NDArray[np.floating[Any]]) -> IntArray:
-    """Number lines from the second on into bands: single lines, then log-spaced."""
+    """Assign lines, from the second on, to bands: single lines, then log-spaced."""
     decades = np.log10(frequency[1:] / frequency[1])
     return np.asarray(np.floor(DIAGNOSIS.figure_bands * decades), dtype=np.int64)
 
 
-def _wishes(bench: LumpedBench, base: Fit, best: Fit) -> Wishes | None:
-    """Let each record by itself choose stiffness and damping of the joint."""
+def _record_estimates(
+    bench: LumpedBench, base: Fit, best: Fit
+) -> RecordEstimates | None:
+    """Estimate stiffness and damping of the joint from each record separately."""
     model, campaign = bench.campaign.model, bench.campaign
     joint = next((i for i, link in enumerate(model.links) if link.joint), None)
     if joint is None:
@@ -275,7 +277,7 @@ def _wishes(bench: LumpedBench, base: Fit, best: Fit) -> Wishes | None:
     before, sd_before, taken = _freed(bench, base, columns)
     after, sd_after, _ = _freed(bench, best, columns)
     excess = max(base.chi2 - bench.blocks.dof, 1e-300)
-    return Wishes(
+    return RecordEstimates(
         link=model.links[joint].name,
         level=campaign.level,
         preload=campaign.preload,
@@ -295,8 +297,8 @@ def _freed(
     """Regress each record's residual on columns of the slopes.
 
     Returns:
-        Changes of the logarithms and their sd, (n_records, n_columns), and the chi2
-        that they take in all.
+        Changes of the logarithms and their sd, (n_records, n_columns), and the total
+        drop of chi2.
     """
     records = bench.campaign.response.shape[0]
     slopes = fit.jacobian[:, columns].reshape(records, -1, len(columns))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is known of a misfit, decided once: all sentences of a page are made from it."""
+"""Facts about a residual, derived once and used by all sentences of a report."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,16 +21,16 @@ UNEVEN = DIAGNOSIS.uneven_ratio
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Facts:
-    """What every sentence about a misfit rests on.
+    """Facts about a residual on which all sentences are based.
 
     Attributes:
-        finding: the verdict. A cause is guessed at where it is `unknown` only; where
-            effects are named they are the cause, and sentences say what is seen.
+        finding: the verdict. A cause is suggested only for `unknown`; named effects
+            are the cause, and sentences then only describe observations.
         levels: recurrence at softer hits.
-        seen: how the misfit goes with the hit, by that recurrence.
-        scaling: the same as it is told; `UNTOLD` where `seen` is not what the named
-            effects do.
-        uneven: channel whose misfit over response is far above another's, or empty.
+        seen: scaling of the residual with the hit, from that recurrence.
+        scaling: the same as reported; `UNDETERMINED` if `seen` contradicts the named
+            effects.
+        uneven: channel with a far larger residual over response than another, or empty.
     """
 
     finding: Finding
@@ -41,7 +41,7 @@ class Facts:
 
     @property
     def guessed(self) -> bool:
-        """Whether the cause is open, so that what it may be is worth a word."""
+        """Whether the cause is unknown, so that sentences suggest one."""
         return self.finding is Finding.UNKNOWN
 
 
@@ -52,21 +52,21 @@ def gather(
     finding: Finding,
     channels: Mapping[str, float],
 ) -> Facts:
-    """Decide what is known of the misfit of the base.
+    """Derive the facts about the residual of the base.
 
     Args:
         bench: measurement and noise.
         base: fit without effects on that bench.
-        outcome: of the loop on that bench.
+        outcome: of the search on that bench.
         finding: the verdict on it.
-        channels: misfit over response of each channel [-].
+        channels: residual over response of each channel [-].
     """
     shown: Sequence[Fit] = ()
     if finding in (Finding.NAMED, Finding.AMBIGUOUS):
         shown = outcome.level
     levels = levels_of(bench, base)
     seen = scaling_of(levels)
-    expected = {scaling_by(bench, fit) for fit in shown} - {LevelScaling.UNTOLD}
+    expected = {scaling_by(bench, fit) for fit in shown} - {LevelScaling.UNDETERMINED}
     agree = not expected or seen in expected
     top = max(channels, key=lambda name: channels[name])
     uneven = channels[top] > UNEVEN * max(min(channels.values()), 1e-12)
@@ -74,20 +74,20 @@ def gather(
         finding=finding,
         levels=levels,
         seen=seen,
-        scaling=seen if agree else LevelScaling.UNTOLD,
+        scaling=seen if agree else LevelScaling.UNDETERMINED,
         uneven=top if uneven else "",
     )
 
 
 def scaling_by(bench: LumpedBench, fit: Fit) -> LevelScaling:
-    """Return how the misfit must go with the hit if the effects of a fit are its cause.
+    """Return the scaling of a residual that the effects of a fit would cause.
 
-    A force law, and a fault that clips or adds, is not in proportion to the hit; all
-    others are, but for those that go with the order of the hits.
+    A force law, and a fault that clips or adds a signal, is not proportional to the
+    hit; all other effects are, except those that depend on the order of the hits.
     """
     entries = [action.entry for action in bench.actions(fit.terms)]
     if any(e.law is not None or e.shape is not None for e in entries):
         return LevelScaling.CHANGES
     if any(e.effect.follows_order for e in entries):
-        return LevelScaling.UNTOLD
+        return LevelScaling.UNDETERMINED
     return LevelScaling.PROPORTIONAL

@@ -12,7 +12,7 @@ from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import Facts
 from jointbench.analysis.gap.diagnosis.level_evidence import LevelScaling
 from jointbench.analysis.gap.diagnosis.location import Relative
-from jointbench.analysis.gap.model.evidence_records import DirectedTest, Wishes
+from jointbench.analysis.gap.model.evidence_records import DirectedTest, RecordEstimates
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
 ODD, EVEN = CUBIC.effect.name, QUADRATIC.effect.name
@@ -23,7 +23,7 @@ def describe(
     residual: FloatArray,
     relative: Relative,
     facts: Facts,
-    wishes: Wishes | None,
+    estimates: RecordEstimates | None,
     tests: Sequence[DirectedTest],
 ) -> tuple[str, ...]:
     """Describe the signature of a residual for an engineer who seeks its cause.
@@ -33,7 +33,7 @@ def describe(
         residual: whitened, shape (n_records, n_channels, n_samples).
         relative: residual over response by view and slice [-].
         facts: what is known of the residual.
-        wishes: joint estimates of single records, or None.
+        estimates: joint estimates of single records, or None.
         tests: directed tests of the base.
     """
     lines = [
@@ -43,8 +43,8 @@ def describe(
     ]
     if facts.guessed and facts.scaling is not LevelScaling.PROPORTIONAL:
         lines.append(symmetry(tests))
-    if wishes is not None:
-        lines += _record_lines(wishes, facts)
+    if estimates is not None:
+        lines += _record_lines(estimates, facts)
     return tuple(line for line in lines if line)
 
 
@@ -61,7 +61,7 @@ def advise(bench: LumpedBench, facts: Facts) -> str:
         return (
             "hit at four levels over a factor of 30: one level cannot separate causes"
         )
-    if facts.scaling is LevelScaling.UNTOLD:
+    if facts.scaling is LevelScaling.UNDETERMINED:
         return "hit harder, or repeat more often: noise masks the softer hits"
     if facts.scaling is LevelScaling.CHANGES:
         return (
@@ -124,7 +124,7 @@ def _phase_line(bench: LumpedBench, residual: FloatArray) -> str:
         return ""
     power = np.maximum(np.sum(residual**2 - 1.0, axis=(0, 1)), 0.0)
     total = max(float(power.sum()), 1e-300)
-    during = float(power[: bench.gate[1]].sum()) / total
+    during = float(power[: bench.time_gate[1]].sum()) / total
     return (
         f"time: {100 * during:.0f} % during the force pulse, the rest in the ring-down"
     )
@@ -152,23 +152,23 @@ def symmetry(tests: Sequence[DirectedTest]) -> str:
     )
 
 
-def _record_lines(wishes: Wishes, facts: Facts) -> list[str]:
+def _record_lines(estimates: RecordEstimates, facts: Facts) -> list[str]:
     lines = [
         "joint: separate stiffness and damping for each record would explain "
-        f"{100 * wishes.share:.0f} % of the residual"
+        f"{100 * estimates.share:.0f} % of the residual"
     ]
-    if wishes.share < DIAGNOSIS.taken_share:
+    if estimates.share < DIAGNOSIS.taken_share:
         more = ", so another cause contributes" if facts.guessed else ""
         return [lines[0] + more]
     views = [
-        ("level", wishes.level, wishes.preload),
-        ("preload", wishes.preload, wishes.level),
+        ("level", estimates.level, estimates.preload),
+        ("preload", estimates.preload, estimates.level),
     ]
     if facts.scaling is LevelScaling.PROPORTIONAL:
         views = views[1:]
     for word, values, sd in (
-        ("stiffness", wishes.stiffness[:, 0], wishes.stiffness_sd[:, 0]),
-        ("damping", wishes.damping[:, 0], wishes.damping_sd[:, 0]),
+        ("stiffness", estimates.stiffness[:, 0], estimates.stiffness_sd[:, 0]),
+        ("damping", estimates.damping[:, 0], estimates.damping_sd[:, 0]),
     ):
         for view, x, other in views:
             alike = _alike(x, other)

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Does a misfit recur at other levels, in proportion to the hit?
+"""Recurrence of a residual at other levels, in proportion to the hit.
 
-A cause that is linear in the motion leaves the same misfit per force at every level,
-whatever it is. So the misfit over the force of the hardest hits is looked for in softer
-ones: 1 where it recurs whole, 0 where not at all, below 0 where it turns round.
+Any cause that is linear in the motion leaves the same residual per force at every
+level. The residual per force of the hardest hits is therefore compared with that of
+softer ones: the share is 1 if it recurs fully, 0 if not, and negative if its sign
+changes.
 
-The base must not have been bent by the hardest hits for that: a base that a softening
-joint has led to 1.3 times the true masses leaves a misfit in proportion to every hit,
-although nothing in the joint does. So it is fitted to the softer hits alone.
+The base must not be fitted to the hardest hits for this comparison: a base that a
+softening joint has moved to 1.3 times the true masses leaves a residual in proportion
+to every hit, although the cause is not. So the base is fitted to the softer hits only.
 """
 
 from collections.abc import Sequence
@@ -23,31 +24,31 @@ from jointbench.acquisition.basics.arrays import (
     IntArray,
 )
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.joint_settling import joint_at
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
-from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages
+from jointbench.analysis.gap.search.descent import BASE_RESOLUTIONS, fit_coarse_to_fine
 
 
 class LevelScaling(StrEnum):
-    """How the misfit goes with the strength of the hit."""
+    """Scaling of a residual with the strength of the hit."""
 
     PROPORTIONAL = "proportional"
     CHANGES = "changes"
-    UNTOLD = "untold"
+    UNDETERMINED = "undetermined"
 
 
 @dataclass(frozen=True, slots=True)
 class Recurrence:
-    """How much of the misfit of the hardest hits recurs at a lower level.
+    """Share of the residual of the hardest hits that recurs at a lower level.
 
     Attributes:
         level: nominal peak force [N].
-        share: of the misfit per force [-].
-        sd: of `share` by noise and by the scatter from hit to hit [-].
-        size: of the misfit per force, over that of the hardest hits [-].
+        share: of the residual per force [-].
+        sd: of `share`, due to noise and scatter from hit to hit [-].
+        size: of the residual per force, over that of the hardest hits [-].
     """
 
     level: float
@@ -61,8 +62,8 @@ class Scatter:
     """One way in which hits differ from one another by chance.
 
     Attributes:
-        sd: of it, relative [-].
-        slope: change of the response with it, (n_records, n_channels, n_samples).
+        sd: relative standard deviation [-].
+        slope: relative change of the response, (n_records, n_channels, n_samples).
     """
 
     sd: float
@@ -71,26 +72,26 @@ class Scatter:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Softer(FitProblem):
-    """A problem that does not see some of the records."""
+    """A problem that ignores some of the records."""
 
     hidden: BoolArray
 
-    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
-        """Return the whitened residual at x, 0 in the records that are hidden."""
-        seen = FitProblem.residual(self, x, stage)
+    def residual(self, x: FloatArray, resolution: Resolution) -> FloatArray:
+        """Return the whitened residual at x, 0 in the ignored records."""
+        seen = FitProblem.residual(self, x, resolution)
         seen.reshape(self.hidden.size, -1)[self.hidden] = 0.0
         return seen
 
 
 def levels_of(bench: LumpedBench, base: Fit) -> tuple[Recurrence, ...]:
-    """Look for the misfit of the hardest hits in softer ones, the base fitted to those.
+    """Compare the residuals of hard and soft hits, with the base fitted to the soft.
 
     Args:
         bench: measurement and noise.
         base: fit without effects, to start from.
 
     Returns:
-        As `recurrences` does.
+        See `recurrences`.
     """
     campaign = bench.campaign
     hardest = campaign.level == campaign.level.max()
@@ -98,7 +99,9 @@ def levels_of(bench: LumpedBench, base: Fit) -> tuple[Recurrence, ...]:
         return ()
     whole = make_problem(bench, ())
     known = {f.name: getattr(whole, f.name) for f in fields(whole)}
-    softer = fit_stages(_Softer(**known, hidden=hardest), base.base, BASE_STAGES).base
+    softer = fit_coarse_to_fine(
+        _Softer(**known, hidden=hardest), base.base, BASE_RESOLUTIONS
+    ).base
     model = bench.response(softer, ())
     return recurrences(
         bench, campaign.response - model, _scatters(bench, softer, model)
@@ -108,7 +111,7 @@ def levels_of(bench: LumpedBench, base: Fit) -> tuple[Recurrence, ...]:
 def _scatters(
     bench: LumpedBench, base: FloatArray, model: FloatArray
 ) -> tuple[Scatter, ...]:
-    """Return how hits scatter: in strength, and in the stiffness of the joint."""
+    """Return the scatter of the hits: in strength, and in the joint stiffness."""
     moved = base.copy()
     moved[joint_at(bench.campaign.model)] += DIAGNOSIS.level_step
     gain, joint = bench.noise.scatter[0], max(bench.noise.scatter[1:], default=0.0)
@@ -117,18 +120,18 @@ def _scatters(
 
 
 def recurrences(
-    bench: LumpedBench, misfit: FloatArray, scatters: Sequence[Scatter] = ()
+    bench: LumpedBench, difference: FloatArray, scatters: Sequence[Scatter] = ()
 ) -> tuple[Recurrence, ...]:
-    """Look for the misfit of the hardest hits at lower levels.
+    """Compare the residual of the hardest hits with that at lower levels.
 
     Args:
         bench: measurement and noise.
-        misfit: measured less model, (n_records, n_channels, n_samples), any unit.
-        scatters: by which a hit may differ from the others without a cause.
+        difference: measured minus model, (n_records, n_channels, n_samples), any unit.
+        scatters: by which hits differ from one another by chance.
 
     Returns:
-        One for each lower level that the noise lets speak, hardest first; empty where
-        no hit point and preload met two levels.
+        One for each lower level with sufficient signal, hardest first; empty if no hit
+        point and preload was measured at two levels.
     """
     if bench.campaign.continuous:
         return ()
@@ -144,9 +147,9 @@ def recurrences(
         return np.asarray(np.fft.rfft(whitened, axis=2)[:, :, spoken])
 
     # White noise of unit variance: each part of a line has half of n.
-    spectra = lines(misfit) / np.sqrt(misfit.shape[2] / 2)
+    spectra = lines(difference) / np.sqrt(difference.shape[2] / 2)
     slopes = [
-        s.sd * lines(s.slope) / np.sqrt(misfit.shape[2] / 2)
+        s.sd * lines(s.slope) / np.sqrt(difference.shape[2] / 2)
         for s in scatters
         if s.sd > 0.0
     ]
@@ -161,7 +164,7 @@ def recurrences(
 
 
 def _pairings(bench: LumpedBench) -> list[IntArray]:
-    """Return the records of each hit point and preload that met several levels."""
+    """Return the records of each hit point and preload with several levels."""
     keys = [f"{x['hit point']}|{x['preload']}" for x in bench.blocks.labels]
     groups = [
         np.array([i for i, k in enumerate(keys) if k == key])
@@ -173,7 +176,7 @@ def _pairings(bench: LumpedBench) -> list[IntArray]:
 def _per_force(
     spectra: ComplexArray, forces: ComplexArray, rows: IntArray
 ) -> ComplexArray:
-    """Return the misfit per force over some hits, shape (n_channels, n_lines)."""
+    """Return the residual per force over some hits, shape (n_channels, n_lines)."""
     push = forces[rows, None, :]
     total = np.sum(np.abs(push) ** 2, axis=0)
     return np.asarray(np.sum(spectra[rows] * push.conj(), axis=0) / total)
@@ -186,12 +189,12 @@ def _compare(
     hard: IntArray,
     soft: IntArray,
 ) -> Recurrence:
-    """Compare the misfit per force of softer hits with that of the hardest.
+    """Compare the residual per force of softer hits with that of the hardest.
 
     Args:
         level: of the softer hits [N].
-        spectra: of the misfit, then of one sd of each scatter; over the noise, shape
-            (n_records, n_channels, n_lines) each.
+        spectra: of the residual, then of one sd of each scatter, over the noise; each
+            of shape (n_records, n_channels, n_lines).
         forces: shape (n_records, n_lines).
         hard: the hardest hits.
         soft: the softer hits.
@@ -218,7 +221,7 @@ def _parts(lines: ComplexArray) -> FloatArray:
 
 
 def _without(values: FloatArray, ways: Sequence[FloatArray]) -> FloatArray:
-    """Weigh values by the inverse of unit noise and scatter of unit sd along `ways`."""
+    """Weight values by the inverse covariance of noise and scatter along `ways`."""
     if not ways:
         return values
     d = np.array(ways)
@@ -239,12 +242,12 @@ def _merge(found: Sequence[Recurrence], level: float) -> Recurrence:
 
 
 def scaling_of(found: Sequence[Recurrence]) -> LevelScaling:
-    """Return how a misfit goes with the hit, by its recurrence at softer ones."""
+    """Return the scaling of a residual from its recurrence at softer hits."""
     if not found:
-        return LevelScaling.UNTOLD
+        return LevelScaling.UNDETERMINED
     return LevelScaling.PROPORTIONAL if is_linear(found) else LevelScaling.CHANGES
 
 
 def is_linear(found: Sequence[Recurrence]) -> bool:
-    """Return whether the misfit recurs whole at every level."""
+    """Return whether the residual recurs fully at every level."""
     return all(abs(f.share - 1.0) < DIAGNOSIS.linear_within + 2 * f.sd for f in found)

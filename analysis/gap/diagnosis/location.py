@@ -94,10 +94,11 @@ def prior_deviation_words(bench: LumpedBench, base: Fit) -> str:
         bench: measurement and noise.
         base: fit without effects, which meets the records but not its priors.
     """
-    worst = int(np.argmax(np.abs(base.pulls)))
+    deviations = base.prior_deviations
+    worst = int(np.argmax(np.abs(deviations)))
     return (
         "the base model meets the records nearly within their noise, but only with "
-        f"{bench.base_names[worst]} {base.pulls[worst]:+.1f} sd from its nominal value"
+        f"{bench.base_names[worst]} {deviations[worst]:+.1f} sd from its nominal value"
     )
 
 
@@ -109,7 +110,7 @@ def _level_words(bench: LumpedBench, excess: FloatArray, facts: Facts) -> str:
     held = f"{100 * shares[top] / total:.0f} % of it at {top}"
     if len(shares) == 1:
         return "was measured at one level only"
-    if facts.scaling is LevelScaling.UNTOLD:
+    if facts.scaling is LevelScaling.UNDETERMINED:
         return f"is largest at {top} ({held})"
     if facts.scaling is LevelScaling.PROPORTIONAL:
         return "is proportional to the hit at every level"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The loop: base, null test, race, gate, name, add, repeat, take back."""
+"""The search: base, null test, selection, judgement, further effects, removal."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,9 +8,13 @@ import numpy as np
 
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base, settled_base
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
-from jointbench.analysis.gap.judgement.naming import Gate, gate
-from jointbench.analysis.gap.judgement.rivals import rivals, without_twins
-from jointbench.analysis.gap.judgement.winner_judging import Hopes, far_off, judge
+from jointbench.analysis.gap.judgement.naming import Acceptance, accept
+from jointbench.analysis.gap.judgement.rivals import rivals, without_duplicates
+from jointbench.analysis.gap.judgement.winner_judging import (
+    PredictedGains,
+    far_off,
+    judge,
+)
 from jointbench.analysis.gap.model.effect import Candidate, labels_of, may_join
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -28,42 +32,42 @@ from jointbench.analysis.gap.search.restarts import crossed, other_sliders
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import (
     Progress,
+    continue_selection,
     finish,
-    race,
-    race_on,
+    run_selection,
     score,
 )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SearchOutcome:
-    """What the loop found, before it is put into words.
+    """Result of the search, from which a diagnosis is derived.
 
     Attributes:
-        bench: with its noise as estimated at the end.
+        bench: with its final noise estimate.
         base: fit without effects.
-        base_gate: the null test.
+        base_acceptance: the null test.
         base_screening: its directed tests.
-        best: the winning fit; the base where nothing is missing.
-        gate: its judgement.
-        ranked: rivals of the last round, best first.
-        level: rivals that are not told apart, the winner first.
-        given_up: whether the search for a further effect was ended for its cost.
+        best: the best fit; the base if no effect is missing.
+        acceptance: its judgement.
+        ranked: fits of the last round, best first.
+        level: fits that cannot be distinguished, the best first.
+        given_up: whether the search for a further effect reached its effort limit.
     """
 
     bench: Bench
     base: Fit
-    base_gate: Gate
+    base_acceptance: Acceptance
     base_screening: Screening
     best: Fit
-    gate: Gate
+    acceptance: Acceptance
     ranked: tuple[Fit, ...]
     level: tuple[Fit, ...]
     given_up: bool = False
 
 
 def investigate(bench: Bench, progress: Progress) -> SearchOutcome:
-    """Run the whole loop on a bench."""
+    """Run the search on a bench."""
     with counted() as effort:
         return _investigate(bench, progress, effort)
 
@@ -72,11 +76,11 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
     progress("base")
     bench, base = fit_base(bench)
     screening = screen(bench, base, bench.candidates)
-    first = gate(bench, base, base, screening)
+    first = accept(bench, base, base, screening)
     if first.passed:
         return SearchOutcome(bench, base, first, screening, base, first, (), (base,))
-    fits = race(bench, base, screening, bench.candidates, progress)
-    found = _Round(*judge(bench, fits, base, progress, Hopes(base, screening)))
+    fits = run_selection(bench, base, screening, bench.candidates, progress)
+    found = _Round(*judge(bench, fits, base, progress, PredictedGains(base, screening)))
     found = _other_sliders(found, base, progress)
     grown: set[frozenset[str]] = set()
     given_up = False
@@ -97,16 +101,16 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
         found = after
     if again := _base_again(found, base, progress):
         return again
-    fits = without_twins(found.bench, found.fits)
+    fits = without_duplicates(found.bench, found.fits)
     best = fits[0] if fits else base
     level = tuple(rivals(found.bench, fits))
     return SearchOutcome(
         bench=found.bench,
         base=base,
-        base_gate=first,
+        base_acceptance=first,
         base_screening=screening,
         best=best,
-        gate=found.gate,
+        acceptance=found.acceptance,
         ranked=tuple(fits),
         level=level,
         given_up=given_up,
@@ -115,20 +119,20 @@ def _investigate(bench: Bench, progress: Progress, effort: Effort) -> SearchOutc
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Round:
-    """What a round ended with: the bench with its noise, fits best first, the gate."""
+    """Result of a round: bench with its noise, fits (best first), acceptance."""
 
     bench: Bench
     fits: list[Fit]
-    gate: Gate
+    acceptance: Acceptance
 
 
 def _one_more(
     found: _Round, firsts: Sequence[Fit], base: Fit, progress: Progress
 ) -> _Round | None:
-    """Add one more effect to each of some fits; None where none of them earns it."""
+    """Add one more effect to some fits; None if the gain of each is insufficient."""
     bench, alone = found.bench, len(firsts[0].candidates) == 1
     if alone and far_off(bench, firsts[0]):
-        more = race_on(bench, far_pairs(bench, progress), progress)
+        more = continue_selection(bench, far_pairs(bench, progress), progress)
     else:
         more = _add_another(bench, firsts, progress)
     if not more:
@@ -136,12 +140,14 @@ def _one_more(
     more = crossed(bench, more, progress)
     merged = sorted([*found.fits, *more], key=lambda f: score(bench, f))
     merged = _take_back(bench, merged, progress)
-    left = found.gate.left
-    hopes = Hopes(firsts[0], left) if alone and left is not None else None
-    after = judged(bench, merged, base, progress, hopes)
+    left = found.acceptance.left
+    predicted_gains = (
+        PredictedGains(firsts[0], left) if alone and left is not None else None
+    )
+    after = judged(bench, merged, base, progress, predicted_gains)
     if not _worthwhile(after.bench, after.fits[0], found.fits[0]):
         return None
-    if after.gate.unexplained and len(after.fits[0].candidates) > 1:
+    if after.acceptance.unexplained and len(after.fits[0].candidates) > 1:
         return _exchange(after, base, progress)
     return after
 
@@ -151,13 +157,14 @@ def judged(
     fits: Sequence[Fit],
     base: Fit,
     progress: Progress,
-    hopes: Hopes | None = None,
+    predicted_gains: PredictedGains | None = None,
 ) -> _Round:
-    """Judge, and take back what was needless only once the winner was settled.
+    """Judge, and remove effects that have become unnecessary.
 
-    A delay that led the base to where a relaxation is seen may end at nothing.
+    A delay may move the base to where a relaxation becomes visible, and then end at
+    amplitude zero.
     """
-    found = _Round(*judge(bench, fits, base, progress, hopes))
+    found = _Round(*judge(bench, fits, base, progress, predicted_gains))
     best = found.fits[0]
     if len(best.candidates) == 1 or fits[0].cost - best.cost < DIAGNOSIS.needless_gain:
         return found
@@ -168,8 +175,8 @@ def judged(
 
 
 def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
-    """Let other slider laws start where one ended that does not explain the records."""
-    if found.gate.passed or not found.fits or far_off(found.bench, found.fits[0]):
+    """Start other slider laws from one that does not explain the records."""
+    if found.acceptance.passed or not found.fits or far_off(found.bench, found.fits[0]):
         return found
     more = other_sliders(found.bench, found.fits[0], progress)
     merged = sorted([*more, *found.fits], key=lambda f: score(found.bench, f))
@@ -179,9 +186,9 @@ def _other_sliders(found: _Round, base: Fit, progress: Progress) -> _Round:
 
 
 def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
-    """Put other effects in the place of each, if that helps.
+    """Replace each effect of the best fit by others, if that lowers the score.
 
-    What is not told apart from the best was fitted again when that was judged.
+    Fits that cannot be distinguished from the best were refitted when it was judged.
     """
     near = score(found.bench, found.fits[0]) + found.bench.policy.rival_score_one_site
     close = [f for f in found.fits if score(found.bench, f) < near]
@@ -194,11 +201,12 @@ def _exchange(found: _Round, base: Fit, progress: Progress) -> _Round:
 
 
 def _worth_more(found: _Round, base: Fit) -> bool:
-    """Tell whether the best fit is worth one more effect.
+    """Return whether one more effect is added to the best fit.
 
-    Three at one link explain anything, and a pair that leaves much is no part of it.
+    Three effects at one link can imitate any law, and a pair that leaves a large
+    residual is not part of the correct explanation.
     """
-    if not found.gate.unexplained or not found.fits:
+    if not found.acceptance.unexplained or not found.fits:
         return False
     fit = found.fits[0]
     if len(fit.candidates) == 1:
@@ -211,11 +219,11 @@ def _worth_more(found: _Round, base: Fit) -> bool:
 
 
 def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome | None:
-    """Return that nothing is missing, if the base alone fits from where it was led.
+    """Return the null result if the base alone fits from the base of the best fit.
 
-    In a quiet campaign whose joint settles from hit to hit the base may stop in a
-    wrong valley (3 of 1,500 without an effect). An effect that leads it out looks as
-    if it explained all that the base had missed.
+    In a quiet campaign with a joint that settles from hit to hit, the fit of the base
+    may stop in a wrong minimum (3 of 1,500 campaigns without an effect). An effect that
+    moves the base out of it would appear to explain the whole residual.
     """
     if (
         not found.fits
@@ -228,14 +236,14 @@ def _base_again(found: _Round, base: Fit, progress: Progress) -> SearchOutcome |
         return None
     bench, fit = settled_base(found.bench, fit)
     screening = screen(bench, fit, bench.candidates)
-    null = gate(bench, fit, fit, screening)
+    null = accept(bench, fit, fit, screening)
     if not null.passed:
         return None
     return SearchOutcome(bench, fit, null, screening, fit, null, (), (fit,))
 
 
 def _take_back(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
-    """Take effects of the best fit away that a later one has made needless."""
+    """Remove effects of the best fit that a later one has made unnecessary."""
     best, found = fits[0], list(fits)
     for k in range(len(best.candidates)):
         kept = tuple(c for i, c in enumerate(best.candidates) if i != k)
@@ -256,7 +264,7 @@ def _best_of_each(fits: Sequence[Fit]) -> list[Fit]:
 
 
 def _add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
-    """Try the best further effects on the best fits."""
+    """Fit the best further effects on the best fits."""
     found: list[Fit] = []
     tried: set[frozenset[str]] = set()
     for first in _hopeful(bench, fits):
@@ -267,7 +275,7 @@ def _add_another(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[
             if labels_of((*first.candidates, c)) not in tried
         ]
         tried |= {labels_of((*first.candidates, c)) for c in chosen}
-        found += race(bench, first, screening, chosen, progress)
+        found += run_selection(bench, first, screening, chosen, progress)
     return sorted(found, key=lambda f: score(bench, f))
 
 
@@ -276,21 +284,21 @@ def _addable(bench: Bench, fit: Fit) -> list[Candidate]:
 
 
 def _hopeful(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
-    """Return the fits that a second effect may yet bring ahead of all others."""
+    """Return the fits that may become the best with a second effect."""
     dof = bench.blocks.dof
     least = max(fits[0].cost - dof, DIAGNOSIS.noise_excess * dof)
     return [f for f in fits if f.cost - dof < DIAGNOSIS.second_cost_ratio * least]
 
 
 def _seconds(bench: Bench, first: Fit, screening: Screening) -> list[Candidate]:
-    """Choose seconds by predicted drop, and those that only the priors see."""
-    pulled = np.abs(first.pulls).max() > DIAGNOSIS.prior_candidates_sd
+    """Choose second effects by predicted drop, and those that only priors show."""
+    deviating = np.abs(first.prior_deviations).max() > DIAGNOSIS.prior_candidates_sd
     chosen: list[Candidate] = []
     for d in screening.directions:
         if d.candidate not in chosen and len(chosen) < DIAGNOSIS.second_candidates:
             chosen.append(d.candidate)
     for c in _addable(bench, first):
-        if pulled and c.effect.by_prior and c not in chosen:
+        if deviating and c.effect.by_prior and c not in chosen:
             chosen.append(c)
     return chosen
 

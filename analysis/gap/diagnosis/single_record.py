@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One long record of a single-input, single-output bench, with a sheet."""
+"""Diagnosis of one long record of a single-input, single-output bench."""
 
 from dataclasses import dataclass, replace
 
@@ -14,7 +14,7 @@ from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.loop import investigate
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
@@ -27,7 +27,7 @@ class SingleRecord:
     """A long record of one input and one output.
 
     Attributes:
-        name: as the user knows it.
+        name: of the record, chosen by the user.
         excitation: input, shape (n_samples,).
         response: output, shape (n_samples,).
         sample_rate: [Hz].
@@ -61,8 +61,8 @@ class Stretch:
         name: for example ``"arrow"``.
         starts: first sample of each realisation.
         length: samples of each.
-        lead: samples before each start that are simulated but not scored: what the
-            bench did before dies out in them.
+        lead: samples before each start that are simulated but not scored, so that the
+            initial transient decays.
     """
 
     name: str
@@ -73,13 +73,13 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class StretchScore:
-    """How well a stretch is foretold that no fit has seen.
+    """Prediction error on a stretch that was not used for the fit.
 
     Attributes:
         name: of the stretch.
-        rms: of the measured output itself.
-        before: rms of the error of the base.
-        after: rms of the error of the base with what was found.
+        rms: of the measured output.
+        before: rms error of the base.
+        after: rms error of the base with the effects found.
     """
 
     name: str
@@ -93,16 +93,18 @@ class StretchScore:
         return 1.0 - self.after / self.before if self.before > 0 else 0.0
 
 
-def stretch_campaign(record: SingleRecord, stretch: Stretch, sheet: Sheet) -> Campaign:
+def stretch_campaign(
+    record: SingleRecord, stretch: Stretch, nominal: NominalParameters
+) -> Campaign:
     """Cut realisations out of a long record and give them a model.
 
     Args:
         record: input and output.
-        stretch: where the realisations lie.
-        sheet: one channel; its repeatability stands for what repeats would tell.
+        stretch: position of the realisations.
+        nominal: model with one channel; its repeatability replaces repeats.
 
     Raises:
-        SamplingError: a realisation with its lead does not lie inside the record.
+        SamplingError: a realisation with its lead is not inside the record.
     """
     starts = np.array(stretch.starts, dtype=np.int64)
     first = int(starts.min()) - stretch.lead
@@ -125,10 +127,10 @@ def stretch_campaign(record: SingleRecord, stretch: Stretch, sheet: Sheet) -> Ca
         preload=np.ones(starts.size),
         order=np.arange(starts.size, dtype=float),
         preload_reference=1.0,
-        model=sheet.model,
+        model=nominal.model,
         lead=stretch.lead,
         continuous=True,
-        repeatability=sheet.repeatability,
+        repeatability=nominal.repeatability,
     )
 
 
@@ -136,7 +138,7 @@ def diagnose_record(
     record: SingleRecord,
     training: Stretch,
     scored: tuple[Stretch, ...],
-    sheet: Sheet,
+    nominal: NominalParameters,
     *,
     without: frozenset[str] = frozenset(),
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
@@ -146,29 +148,29 @@ def diagnose_record(
 
     Args:
         record: input and output.
-        training: what the fits see.
-        scored: what they do not.
-        sheet: the model with its priors.
+        training: stretch used for the fits.
+        scored: stretches that are not used for the fits.
+        nominal: model with priors.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
-        progress: told what is being tried, one line at a time.
+        progress: receives one line for each step of the search.
 
     Returns:
-        The diagnosis, and the error on each scored stretch before and after. Where
-        nothing was found or told apart, after is that of the best explanation tried.
+        The diagnosis, and the error on each scored stretch before and after. If no
+        effect is named, after is the error of the best explanation tried.
 
     Raises:
-        SamplingError: a stretch does not lie inside the record.
+        SamplingError: a stretch is not inside the record.
         UsageError: `without` holds a name that no entry has.
     """
     trained = make_bench(
-        stretch_campaign(record, training, sheet), without=without, entries=entries
+        stretch_campaign(record, training, nominal), without=without, entries=entries
     )
-    unseen = [stretch_campaign(record, stretch, sheet) for stretch in scored]
+    unseen = [stretch_campaign(record, stretch, nominal) for stretch in scored]
     outcome = investigate(trained, progress or (lambda line: None))
     final = outcome.bench
     if not isinstance(final, LumpedBench):
-        raise TypeError("the loop must hand back the bench it was given")
+        raise TypeError("the search must return a bench of the type it was given")
     scores = []
     for stretch, campaign in zip(scored, unseen, strict=True):
         # Parameters of the fits are multiples of the scales of the trained bench.

@@ -9,7 +9,7 @@ from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.location import counted_samples
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
 from jointbench.analysis.gap.judgement.campaign_limits import flat_tops
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import labels_of, words_of
@@ -39,13 +39,13 @@ def verdict_on(
     """Derive the verdict from a search outcome.
 
     Args:
-        outcome: of the loop on that bench.
-        bench: with its noise as estimated at the end.
+        outcome: of the search on that bench.
+        bench: with its final noise estimate.
         limits: reason why the campaign allows no verdict but `unknown`, or empty.
     """
     if limits:
         return DiagnosisVerdict(Finding.UNKNOWN, limits, _way_out(limits))
-    if not outcome.gate.passed:
+    if not outcome.acceptance.passed:
         return _unknown(outcome, bench)
     if not outcome.best.candidates:
         return DiagnosisVerdict(
@@ -56,7 +56,7 @@ def verdict_on(
         )
     names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) == 1:
-        reason = f"explains the records to chi2/dof {1 + outcome.gate.excess:.3f}"
+        reason = f"explains the records to chi2/dof {1 + outcome.acceptance.excess:.3f}"
         return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
     step = _separates(outcome.level[0], outcome.level[1])
     if len(outcome.level) > bench.policy.most_rivals:
@@ -77,7 +77,9 @@ def _unknown(outcome: SearchOutcome, bench: LumpedBench) -> DiagnosisVerdict:
         return DiagnosisVerdict(Finding.UNKNOWN, reason, _way_out(reason))
     if odd := _odd_record(outcome, bench):
         return DiagnosisVerdict(Finding.UNKNOWN, odd, _way_out(odd))
-    reason = f"no effect of the catalogue explains the records: {outcome.gate.reason}"
+    reason = (
+        f"no effect of the catalogue explains the records: {outcome.acceptance.reason}"
+    )
     if outcome.given_up:
         reason += "; the search for a further effect reached its effort limit"
     return DiagnosisVerdict(Finding.UNKNOWN, reason, "")

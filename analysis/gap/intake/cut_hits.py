@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Cut the accepted hits of recordings into records of one length, from rest to rest.
 
-The model is marched from rest under the measured force. So every record begins with
-a quiet stretch, and a hit that falls into the response of the one before is left out:
-what still rings there would look like a missing effect.
+The model is integrated from rest under the measured force. Each record therefore begins
+with a quiet stretch, and a hit during the response to the previous one is left out: the
+remaining response would appear as a missing effect.
 """
 
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ class CutHits:
         recording: index of the recording of each hit, shape (n_hits,).
         hits: in the order of the recordings.
         sample_rate: [Hz].
-        left_out: why an accepted hit could not be cut, a line each.
+        left_out: one line with the reason for each accepted hit that was not cut.
     """
 
     force: FloatArray
@@ -81,16 +81,16 @@ def cut_hits(recordings: Sequence[Recording], channels: Sequence[str]) -> CutHit
 
     Args:
         recordings: with judged hits, all at one sample rate.
-        channels: names of the response channels, in the order wanted.
+        channels: names of the response channels, in the order of the result.
 
     Returns:
-        The records. Offsets that the quiet stretches show beyond doubt are taken off.
+        The records, without offsets that are significant in the quiet stretches.
 
     Raises:
         SamplingError: the sample rates differ.
         ChannelMissing: a recording lacks a channel.
         NoHitFound: no hit was accepted.
-        BadData: half of the accepted hits or more cannot be cut; the line says why.
+        BadData: half of the accepted hits or more cannot be cut.
     """
     rate = _common_rate(recordings)
     strikes = [
@@ -165,7 +165,7 @@ def _nothing_accepted(recordings: Sequence[Recording]) -> str:
 
 
 def _problem(strike: _Strike, rate: float) -> str:
-    """Return why a hit cannot be cut, with the way out, or an empty text."""
+    """Return the reason why a hit cannot be cut, with advice, or an empty text."""
     if strike.first < 0:
         return (
             f"the {strike.words} has {strike.hit.trigger} samples before it, "
@@ -179,14 +179,14 @@ def _problem(strike: _Strike, rate: float) -> str:
             "or wait longer between hits"
         )
     for row, channel in enumerate(strike.samples):
-        heard = _heard(strike, channel, rate, "force" if row == 0 else "response")
-        if heard:
-            return heard
+        unrest = _unrest(strike, channel, rate, "force" if row == 0 else "response")
+        if unrest:
+            return unrest
     return ""
 
 
-def _heard(strike: _Strike, channel: FloatArray, rate: float, what: str) -> str:
-    """Return what is heard on a channel before the hit, or an empty text."""
+def _unrest(strike: _Strike, channel: FloatArray, rate: float, what: str) -> str:
+    """Return the signal on a channel before the hit as text, empty if quiet."""
     end = strike.first + QUIET
     piece = channel[strike.quiet_from : end]
     if piece.size < QUIET:
@@ -201,7 +201,7 @@ def _heard(strike: _Strike, channel: FloatArray, rate: float, what: str) -> str:
     if (
         strike.previous >= 0
         and rms > INTAKE.ringing_ratio * noise
-        and _dies_away(strike, channel)
+        and _decays(strike, channel)
     ):
         wait = (strike.hit.trigger - strike.previous) / rate
         return (
@@ -216,8 +216,8 @@ def _heard(strike: _Strike, channel: FloatArray, rate: float, what: str) -> str:
     return ""
 
 
-def _dies_away(strike: _Strike, channel: FloatArray) -> bool:
-    """Tell whether the stretch since the last hit still loses strength."""
+def _decays(strike: _Strike, channel: FloatArray) -> bool:
+    """Return whether the signal since the last hit still decays."""
     end = strike.first + QUIET
     quarter = (end - strike.previous) // 4
     if quarter < 8:
@@ -230,7 +230,7 @@ def _dies_away(strike: _Strike, channel: FloatArray) -> bool:
 
 
 def _length(strikes: Sequence[_Strike]) -> int:
-    """Return how many samples every record gets."""
+    """Return the number of samples of each record."""
     most = int(
         np.clip(
             INTAKE.channel_samples // len(strikes), 2 * SHORTEST, INTAKE.longest_record
@@ -241,7 +241,7 @@ def _length(strikes: Sequence[_Strike]) -> int:
 
 
 def _needed(strike: _Strike, most: int) -> int:
-    """Return after how many samples the response to a hit has decayed."""
+    """Return the number of samples after which the response to a hit has decayed."""
     room = min(strike.room, most)
     if room < 2 * INTAKE.decay_block + PRETRIGGER:
         return room
@@ -251,18 +251,18 @@ def _needed(strike: _Strike, most: int) -> int:
         span.shape[0], blocks, INTAKE.decay_block
     )
     rms = cut.std(axis=2)
-    loud = np.flatnonzero(
+    strong = np.flatnonzero(
         (rms > INTAKE.decayed_share * rms.max(axis=1, keepdims=True)).any(axis=0)
     )
-    return min(int(loud[-1] + 2) * INTAKE.decay_block, room)
+    return min(int(strong[-1] + 2) * INTAKE.decay_block, room)
 
 
 def _offsets(strikes: Sequence[_Strike]) -> FloatArray:
-    """Return the offset to take off each channel, shape (n_hits, n_channels).
+    """Return the offset to subtract from each channel, shape (n_hits, n_channels).
 
-    The offset of a chain stays for a session, so it is the mean of all quiet
-    stretches where that is sure; a hit has its own only where its stretch is white
-    noise about another mean.
+    The offset of a measuring chain is constant during a session, so it is the mean of
+    all quiet stretches if that is significant; a hit has its own offset only if its
+    stretch is white noise about another mean.
     """
     quiet = [_quiet(strike) for strike in strikes]
     means = np.stack([piece.mean(axis=1) for piece in quiet])

@@ -25,13 +25,13 @@ class IntakeSettings:
     least_samples: int = numerical(
         512,
         "samples",
-        "fewest samples of a record that show a resonance",
+        "fewest samples of a record that can show a resonance",
     )
     default_preload: float = numerical(
         4000.0,
         "N",
-        "reference preload of a campaign file that states none",
-        "the campaigns of the contract",
+        "reference preload of a campaign file without one",
+        "default of the file format",
     )
     same_level_ratio: float = numerical(
         1.6,
@@ -48,13 +48,13 @@ class IntakeSettings:
         112,
         "samples",
         "samples kept before the trigger",
-        "the anti-alias filter rings in the last 48 of them",
+        "the ringing of the anti-alias filter extends over the last 48 of them",
     )
     quiet_samples: int = numerical(
         64,
         "samples",
-        "first samples of a record, which no hit and no filter touches",
-        "the rest of the pretrigger",
+        "first samples of a record, without hit or ringing of the filter",
+        "remainder of the pre-trigger",
     )
     look_back_samples: int = numerical(
         512,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read `two-body-campaign/1` files: hits on two bodies, with a nominal sheet."""
+"""Read `two-body-campaign/1` files: hits on two bodies, and nominal parameters."""
 
 import json
 from pathlib import Path
@@ -23,10 +23,10 @@ MAX_SAMPLES = INTAKE.most_samples
 MIN_SAMPLES = INTAKE.least_samples
 DEFAULT_PRELOAD = INTAKE.default_preload
 BODIES = 2
-SHEET_KEYS = ("m1", "m2", "k0", "kj", "c0", "cj")
+NOMINAL_KEYS = ("m1", "m2", "k0", "kj", "c0", "cj")
 
 _Record = tuple[str, h5py.Group]
-"""What messages call a record, and the record."""
+"""Name of a record in messages, and the record."""
 
 
 def read_campaign(path: Path) -> Campaign:
@@ -36,10 +36,10 @@ def read_campaign(path: Path) -> Campaign:
         path: HDF5 file of schema ``two-body-campaign/1``.
 
     Raises:
-        FormatError: it is not such a file, or a part is missing or malformed.
-        HostileFile: it claims more records or samples than a campaign can have.
-        BadData: it cannot be opened, a sample is not finite, the records are too
-            short, or the sheet has a value that is not positive.
+        FormatError: the file has another format, or a part is missing or malformed.
+        HostileFile: the file claims more records or samples than a campaign can have.
+        BadData: the file cannot be opened, a sample is not finite, the records are too
+            short, or a nominal value is not positive.
     """
     with open_guarded(path) as file:
         try:
@@ -52,13 +52,14 @@ def read_campaign(path: Path) -> Campaign:
 
 
 def _campaign(path: Path, file: h5py.File) -> Campaign:
-    """Read what is small first: samples come last, once all else is in order."""
+    """Read a campaign; samples are read last, after all other parts are checked."""
     where = named(path)
     _require_schema(where, file)
     records = _records(where, file)
     _require_length(where, _lengths(records))
     nominal, spread = (
-        _sheet(where, file, name) for name in ("nominal", "nominal_rel_sigma")
+        _nominal_attribute(where, file, name)
+        for name in ("nominal", "nominal_rel_sigma")
     )
     reference = DEFAULT_PRELOAD
     if "preload_ref_N" in file.attrs:
@@ -82,7 +83,7 @@ def _require_schema(where: str, file: h5py.File) -> None:
     if schema != SCHEMA:
         raise FormatError(
             f"{where} has schema {shown(schema or 'none')}, not {SCHEMA!r}; "
-            "`jointbench inspect` tells what is in it"
+            "`jointbench inspect` shows its contents"
         )
 
 
@@ -103,26 +104,26 @@ def _records(where: str, file: h5py.File) -> list[_Record]:
     for place, record in records:
         if not isinstance(record, h5py.Group):
             raise FormatError(
-                f"{place} is no group; store 'force' and 'accel' in a group each record"
+                f"{place} is not a group; store 'force' and 'accel' in a group"
             )
     return records
 
 
 def _lengths(records: list[_Record]) -> list[int]:
-    """Return the different lengths of the records, once all shapes are in order."""
+    """Return the different lengths of the records, after a check of all shapes."""
     lengths = set()
     for place, record in records:
         force = _dataset(place, record, "force")
         if force.ndim != 1:
             raise FormatError(
-                f"{place} has 'force' of shape {force.shape}, one axis is wanted; "
+                f"{place} has 'force' of shape {force.shape}, one axis is required; "
                 "store the samples of one hit"
             )
         wanted = (BODIES, force.size)
         accel = _dataset(place, record, "accel")
         if accel.shape != wanted:
             raise FormatError(
-                f"{place} has 'accel' of shape {accel.shape}, {wanted} is wanted; "
+                f"{place} has 'accel' of shape {accel.shape}, {wanted} is required; "
                 "store a row for each body, as long as 'force'"
             )
         lengths.add(int(force.size))
@@ -170,8 +171,8 @@ def _finite_samples(place: str, dataset: h5py.Dataset) -> FloatArray:
     return samples
 
 
-def _sheet(where: str, file: h5py.File, name: str) -> dict[str, float]:
-    """Return the numbers of a sheet; a missing one is for the model to name."""
+def _nominal_attribute(where: str, file: h5py.File, name: str) -> dict[str, float]:
+    """Return the numbers of a JSON attribute; the model checks for missing ones."""
     text = read_attribute(file, name)
     try:
         found = json.loads(str(text))
@@ -182,12 +183,12 @@ def _sheet(where: str, file: h5py.File, name: str) -> dict[str, float]:
         ) from error
     if not isinstance(found, dict):
         raise FormatError(
-            f"{where} has {name!r} of {shown(text)}, a JSON object is wanted; "
-            f"write it with the keys {', '.join(SHEET_KEYS)}"
+            f"{where} has {name!r} of {shown(text)}, a JSON object is required; "
+            f"write it with the keys {', '.join(NOMINAL_KEYS)}"
         )
     return {
         key: _number(f"{where} in {name!r}", key, found[key])
-        for key in SHEET_KEYS
+        for key in NOMINAL_KEYS
         if key in found
     }
 
@@ -196,7 +197,7 @@ def _hit(place: str, record: h5py.Group) -> int:
     number = _finite(place, record, "hit_dof")
     if number not in range(BODIES):
         raise FormatError(
-            f"{place} has 'hit_dof' of {number:g}, 0 or 1 is wanted; "
+            f"{place} has 'hit_dof' of {number:g}, 0 or 1 is required; "
             "write 0 for a hit on m1, 1 for one on m2"
         )
     return int(number)
@@ -225,13 +226,13 @@ def _finite(place: str, target: h5py.Group, name: str) -> float:
 def _number(place: str, name: str, value: Any) -> float:
     if value is None:
         raise FormatError(
-            f"{place} lacks {name!r}, one number is wanted; "
+            f"{place} lacks {name!r}, one number is required; "
             "give a complete campaign file"
         )
     try:
         return float(value)
     except (TypeError, ValueError, OverflowError) as error:
         raise FormatError(
-            f"{place} has {name!r} of {shown(value)}, a number is wanted; "
+            f"{place} has {name!r} of {shown(value)}, a number is required; "
             "write it without a unit"
         ) from error

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A campaign out of recordings from a bench: hits, levels, preloads, points."""
+"""Make a campaign from recordings of a bench: hits, levels, preloads, points."""
 
 import itertools
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from jointbench.acquisition.records.recordings import Hit, Quantity, Recording
 from jointbench.analysis.gap.intake.cut_hits import CutHits, cut_hits
 from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.model.campaign import Campaign
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.analysis.lumped.lumped_model import Output
 
 SAME_LEVEL = INTAKE.same_level_ratio
@@ -25,28 +25,28 @@ QUANTITIES = {
 
 
 def session_campaign(
-    name: str, recordings: Sequence[Recording], sheet: Sheet
+    name: str, recordings: Sequence[Recording], nominal: NominalParameters
 ) -> tuple[Campaign, tuple[str, ...]]:
     """Make a campaign of the accepted hits of recordings.
 
     Args:
-        name: as the user knows it.
+        name: of the campaign, chosen by the user.
         recordings: with judged hits, in the order recorded, each with its preload.
-        sheet: the model that should explain them.
+        nominal: model that should explain them.
 
     Returns:
-        The campaign, and why accepted hits were left out of it, a line each.
+        The campaign, and one line with the reason for each accepted hit left out.
 
     Raises:
         BadData: a preload is missing, a hit point belongs to no body, channels
-            measure something else than the sheet says, or hits cannot be cut.
+            measure another quantity than the model, or hits cannot be cut.
     """
-    _require_quantity(recordings, sheet)
-    cut = cut_hits(recordings, [channel.name for channel in sheet.model.channels])
+    _require_quantity(recordings, nominal)
+    cut = cut_hits(recordings, [channel.name for channel in nominal.model.channels])
     owners = [recordings[index] for index in cut.recording]
     preload = np.array([_preload(recording) for recording in owners])
     bodies = [
-        _body(recording, hit, sheet)
+        _body(recording, hit, nominal)
         for recording, hit in zip(owners, cut.hits, strict=True)
     ]
     campaign = Campaign(
@@ -58,18 +58,18 @@ def session_campaign(
         level=nominal_levels(_peaks(cut)),
         preload=preload,
         order=np.arange(len(cut.hits), dtype=float),
-        preload_reference=_reference(preload, sheet),
-        model=sheet.model,
-        repeatability=sheet.repeatability,
+        preload_reference=_reference(preload, nominal),
+        model=nominal.model,
+        repeatability=nominal.repeatability,
     )
     return campaign, cut.left_out
 
 
 def nominal_levels(peaks: FloatArray) -> FloatArray:
-    """Group peak forces into the levels that the operator aimed at.
+    """Group peak forces into the levels intended by the operator.
 
-    A level ends where the next larger peak stands apart, or where it would span more
-    than a factor of 2.5; it is called by its geometric mean, to two digits.
+    A level ends at a large step to the next peak, or before it would span more than a
+    factor of 2.5; its value is its geometric mean, to two digits.
 
     Args:
         peaks: largest force of each hit [N], shape (n_hits,), above zero.
@@ -107,10 +107,12 @@ def _peaks(cut: CutHits) -> FloatArray:
     return np.asarray(cut.force.max(axis=1))
 
 
-def _require_quantity(recordings: Sequence[Recording], sheet: Sheet) -> None:
-    """Raise `BadData` where a channel measures something else than the sheet says."""
-    wanted = QUANTITIES[sheet.model.output]
-    names = {channel.name for channel in sheet.model.channels}
+def _require_quantity(
+    recordings: Sequence[Recording], nominal: NominalParameters
+) -> None:
+    """Raise `BadData` if a channel measures another quantity than the model."""
+    wanted = QUANTITIES[nominal.model.output]
+    names = {channel.name for channel in nominal.model.channels}
     for recording in recordings:
         for channel in recording.channels:
             if channel.name in names and channel.quantity is not wanted:
@@ -136,28 +138,28 @@ def _preload(recording: Recording) -> float:
     return preload
 
 
-def _reference(preload: FloatArray, sheet: Sheet) -> float:
-    if sheet.preload_reference is not None:
-        return sheet.preload_reference
+def _reference(preload: FloatArray, nominal: NominalParameters) -> float:
+    if nominal.preload_reference is not None:
+        return nominal.preload_reference
     values = sorted(set(preload.tolist()))
     if len(values) > 1:
         shown = ", ".join(f"{value:g}" for value in values)
         raise BadData(
-            f"the hits have the preloads {shown} N, and the model does not say to "
-            "which its values belong; add preload_reference to its [gap] table"
+            f"the hits have the preloads {shown} N, and the model does not state "
+            "to which its values belong; add preload_reference to its [gap] table"
         )
     return float(values[0])
 
 
-def _body(recording: Recording, hit: Hit, sheet: Sheet) -> int:
+def _body(recording: Recording, hit: Hit, nominal: NominalParameters) -> int:
     """Return the index of the body that a hit struck."""
-    if hit.point in sheet.points:
-        return sheet.points[hit.point]
+    if hit.point in nominal.points:
+        return nominal.points[hit.point]
     at = {channel.name: channel.point for channel in recording.channels}
-    for channel in sheet.model.channels:
+    for channel in nominal.model.channels:
         if hit.point and at.get(channel.name) == hit.point:
-            return sheet.model.index(channel.body)
-    names = [body.name for body in sheet.model.bodies]
+            return nominal.model.index(channel.body)
+    names = [body.name for body in nominal.model.bodies]
     if hit.point in names:
         return names.index(hit.point)
     raise BadData(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How sure the effects of a fit are: their distance from nothing, and from the end."""
+"""Significance of the effects of a fit, and shape parameters at a limit."""
 
 from collections.abc import Sequence
 
@@ -11,10 +11,10 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 
 
 def at_the_end(fit: Fit, policy: Policy = STANDARD) -> str:
-    """Say which shape of a law is driven to the end of its range, if any is.
+    """Name the shape parameter of a law that is at the end of its range, if any.
 
-    Such a law is stretched over another one: a Bouc-Wen element of a very sharp corner
-    is a Jenkins slider.
+    Such a law imitates another one: a Bouc-Wen element with a very sharp corner is a
+    Jenkins slider.
     """
     sd, at = np.sqrt(np.maximum(np.diag(fit.covariance), 0.0)), fit.n_base
     for term in fit.terms:
@@ -30,19 +30,20 @@ def at_the_end(fit: Fit, policy: Policy = STANDARD) -> str:
 
 
 def weakest(fit: Fit, others: Sequence[Fit]) -> float:
-    """Return how many sd the weakest effect of a fit is from being off.
+    """Return the distance of the weakest effect of a fit from zero [sd].
 
-    By the rise of the cost where a fit without it is at hand, else by its amplitude:
-    the amplitude of a weak law of friction is loose although the law is needed.
+    It is computed from the rise of the cost if a fit without the effect is available,
+    otherwise from its amplitude: the amplitude of a weak friction law is uncertain
+    although the law is needed.
     """
-    own, sure = labels_of(fit.candidates), []
+    own, distances = labels_of(fit.candidates), []
     for candidate in fit.candidates:
         rest = own - {candidate.label}
         without = [f.cost for f in others if labels_of(f.candidates) == rest]
         if not without:
             return weakest_amplitude(fit)
-        sure.append(np.sqrt(max(min(without) - fit.cost, 0.0)))
-    return float(min(sure, default=np.inf))
+        distances.append(np.sqrt(max(min(without) - fit.cost, 0.0)))
+    return float(min(distances, default=np.inf))
 
 
 def weakest_amplitude(fit: Fit) -> float:

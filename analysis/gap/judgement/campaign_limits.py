@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Limits of a campaign: what it cannot show regardless of the fit."""
+"""Limits of a campaign: what its records cannot show, regardless of the fit."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from jointbench.analysis.gap.residuals.hit_scatter import repeat_groups
 
 
 def campaign_limits(campaign: Campaign, policy: Policy = STANDARD) -> str:
-    """Return why no verdict but `unknown` can be given, or an empty text."""
+    """Return the reason why the verdict must be `unknown`, or an empty text."""
     if campaign.continuous:
         return ""
     least = policy.least_records
@@ -51,8 +51,8 @@ def flat_tops(response: FloatArray, sigma: FloatArray) -> list[int]:
     flat = (at_top >= JUDGEMENT.flat_samples) & (
         near_top < JUDGEMENT.edge_ratio * at_top
     )
-    loud = top > JUDGEMENT.loud_sd * sigma
-    return [int(i) for i in np.flatnonzero((flat & loud).any(axis=1))]
+    strong = top > JUDGEMENT.strong_sd * sigma
+    return [int(i) for i in np.flatnonzero((flat & strong).any(axis=1))]
 
 
 def _pairs_above(size: FloatArray, limit: FloatArray) -> IntArray:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Scores on records that the fit did not see, one group out at a time.
+"""Scores on held-out records, leaving out one group at a time.
 
-With the fit at its minimum, leaving a group out moves the parameters by one Newton
-step whose matrices are at hand; the residual of the group after that step is what a
-refit without it would leave, to first order. Where that step is long its foretelling
-is worth nothing, so there the fit is made again. Of an effect that the other groups do
-not show at all (the only hits that slip, the only other preload) they foretell nothing,
-so there it is off: what the fit knows of it, it knows from the group held out.
+At the minimum of a fit, leaving out a group moves the parameters by one Newton step,
+whose matrices are known; the residual of the group after that step is, to first order,
+that of a refit without the group. If the step is long, this approximation fails, and
+the refit is computed. An effect that only the held-out group shows (the only hits that
+slip, the only other preload) cannot be predicted from the other groups, so it is left
+out of the prediction.
 """
 
 from dataclasses import dataclass, fields
@@ -17,7 +17,11 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect_parameter import Transform
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import FINE, MIDDLE, Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import (
+    FINE,
+    MIDDLE,
+    Resolution,
+)
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -51,15 +55,14 @@ class HeldOut:
 
 
 def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
-    """Hold out every condition in turn, its repeats with it.
+    """Hold out each condition in turn, including its repeats.
 
-    Where there is but one condition, the sheet alone foretells it.
+    A single condition is predicted from the priors alone.
 
     Args:
         fit: a minimum.
         bench: on which it was found.
-        bare: of the fit without effects, which foretells what is left where all
-            effects are off.
+        bare: result for the fit without effects, used where all effects are left out.
     """
     blocks = bench.blocks
     condition = conditions_of(blocks)
@@ -75,35 +78,35 @@ def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
         chi2.append(float(left @ left))
         if rows.all():
             continue
-        lone = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
-        if bare is not None and lone.size and lone.all():
+        exclusive = _shown_by_it_alone(fit, np.diag(hessian), np.diag(others))
+        if bare is not None and exclusive.size and exclusive.all():
             chi2[c] = float(bare.chi2[c])
-        elif lone.any() or chi2[c] > JUDGEMENT.refit_growth * (r @ r):
-            left = _fitted_without(fit, bench, rows, lone)
+        elif exclusive.any() or chi2[c] > JUDGEMENT.refit_growth * (r @ r):
+            left = _fitted_without(fit, bench, rows, exclusive)
             chi2[c] = float(left @ left)
     return HeldOut(np.array(chi2), np.array(dof))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Without(FitProblem):
-    """A problem that does not see some of its rows."""
+    """A problem that ignores some of its rows."""
 
     hidden: BoolArray
 
-    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
-        """Return the whitened residual at x, 0 in the rows that are hidden."""
-        seen = FitProblem.residual(self, x, stage)
+    def residual(self, x: FloatArray, resolution: Resolution) -> FloatArray:
+        """Return the whitened residual at x, 0 in the ignored rows."""
+        seen = FitProblem.residual(self, x, resolution)
         seen[self.hidden] = 0.0
         return seen
 
 
 def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolArray:
-    """Tell which effects hold a parameter that no other group shows.
+    """Return the effects with a parameter that no other group determines.
 
     Args:
         fit: a minimum.
-        whole: curvature along each coordinate by all groups, shape (n,).
-        others: the same by all groups but one, shape (n,).
+        whole: curvature along each coordinate from all groups, shape (n,).
+        others: the same from all groups but one, shape (n,).
     """
     alone, at = [], fit.n_base
     for term in fit.terms:
@@ -112,11 +115,12 @@ def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolA
             p.transform is Transform.LOG for p in term.candidate.effect.parameters
         ]
         size = np.where(logarithmic, 1.0, np.abs(term.coordinates))
-        told = size * np.sqrt(np.maximum([whole[own], others[own]], 0.0))
+        significance = size * np.sqrt(np.maximum([whole[own], others[own]], 0.0))
         alone.append(
             bool(
                 np.any(
-                    (told[0] > JUDGEMENT.shown_sd) & (told[1] < JUDGEMENT.unshown_sd)
+                    (significance[0] > JUDGEMENT.shown_sd)
+                    & (significance[1] < JUDGEMENT.unshown_sd)
                 )
             )
         )
@@ -127,12 +131,12 @@ def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolA
 def _fitted_without(
     fit: Fit, bench: Bench, rows: BoolArray, off: BoolArray
 ) -> FloatArray:
-    """Return the residual of some rows at a fit to all others.
+    """Return the residual of held-out rows at a fit to all others.
 
     Args:
         fit: a minimum, to start from.
         bench: on which it was found.
-        rows: those held out, shape (n_rows,).
+        rows: held-out rows, shape (n_rows,).
         off: effects to leave out, shape (n_candidates,).
     """
     kept = [t for t, o in zip(fit.terms, off, strict=True) if not o]
@@ -143,14 +147,14 @@ def _fitted_without(
         np.concatenate([fit.base, *(t.coordinates for t in kept)]),
         FINE,
         iterations=JUDGEMENT.refit_iterations,
-        jacobian_stage=MIDDLE,
+        jacobian_resolution=MIDDLE,
         exact_slopes=False,
     )
     return whole.residual(moved.x, FINE)[rows]
 
 
 def conditions_of(blocks: Blocks) -> IntArray:
-    """Return the condition of each group: same level, point and preload are one."""
+    """Return the condition of each group: a combination of level, point and preload."""
     keys = [
         tuple(v for k, v in sorted(labels.items()) if k != "order")
         for labels in blocks.labels

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Settings of the judgement: caps, tolerances and limits of what a record shows."""
+"""Settings of the judgement: caps, tolerances and limits of a record."""
 
 from dataclasses import dataclass
 
@@ -19,12 +19,12 @@ class JudgementSettings:
     at_top_sd: float = numerical(
         5.0,
         "sd of the noise",
-        "distance from the maximum within which a sample lies at it",
+        "distance from the maximum within which a sample counts as at the maximum",
     )
     near_top_sd: float = numerical(
         20.0,
         "sd of the noise",
-        "distance from the maximum within which a sample lies near it",
+        "distance from the maximum within which a sample counts as near it",
     )
     edge_ratio: float = numerical(
         1.5,
@@ -33,7 +33,7 @@ class JudgementSettings:
         "maximum is an edge",
         "the crest of an oscillation doubles it",
     )
-    loud_sd: float = numerical(
+    strong_sd: float = numerical(
         50.0,
         "sd of the noise",
         "maximum from which a record is checked for clipping",
@@ -41,14 +41,14 @@ class JudgementSettings:
     noise_share: float = numerical(
         0.2,
         "of the samples",
-        "samples that the noise estimate is worth",
+        "effective number of samples of the noise estimate",
         "0.39 of the spectrum, halved by the taper",
     )
     refit_growth: float = numerical(
         1.5,
         "-",
         "growth of the chi2 of a held-out group in the linear step above which "
-        "the others are fitted again",
+        "the other groups are fitted again",
         "single 96253",
     )
     refit_iterations: int = numerical(
@@ -71,7 +71,7 @@ class JudgementSettings:
     part_bands: int = numerical(
         6,
         "bands",
-        "bands of frequency that may have parameters of their own",
+        "frequency bands that are tested for separate parameters",
         "a low-pass named for a delay: six bands disagree by 48 units",
     )
     least_eigenvalue: float = numerical(
@@ -84,18 +84,18 @@ class JudgementSettings:
         0.5,
         "chi2",
         "score difference within which a fault at one channel and at all channels "
-        "is one statement",
+        "count as the same fault",
     )
     settling_rounds: int = numerical(
         30,
         "rounds",
-        "most rounds in which a fit and the noise estimated at it are brought to agree",
-        "hidden 96060 crept for more than 12",
+        "most rounds of alternating fit and noise estimate",
+        "hidden 96060 converged slowly, in more than 12",
     )
     settled_cost: float = numerical(
         2.0,
         "chi2",
-        "change of the cost of the best fit below which it agrees with its noise",
+        "change of the cost of the best fit below which fit and noise have converged",
         "development campaigns",
     )
     repeated_cost: float = numerical(
@@ -107,7 +107,7 @@ class JudgementSettings:
     overtaking_rounds: int = numerical(
         2,
         "rounds",
-        "times that a rival which overtakes the best fit is judged in its turn",
+        "number of times that a rival which overtakes the best fit is judged",
         "development campaigns",
     )
     refit_score: float = numerical(
@@ -125,8 +125,8 @@ class JudgementSettings:
     gain_share: float = numerical(
         0.2,
         "of the gain",
-        "score difference, over what the best fit gained with its noise, that may "
-        "hide a rival",
+        "score difference, relative to the gain of the best fit by its noise "
+        "estimate, up to which a rival may overtake it",
         "development campaigns",
     )
     hidden_rivals: int = numerical(
@@ -138,7 +138,7 @@ class JudgementSettings:
     own_noise_fits: int = numerical(
         2,
         "fits",
-        "most fits that are judged with noise of their own where the best fit fails",
+        "most fits that are judged with their own noise estimate if the best fit fails",
         "a maxwell that a delay had beaten",
     )
 

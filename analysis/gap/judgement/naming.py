@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""When a fit is a name: rules that a smaller gap alone does not meet."""
+"""Acceptance criteria of a fit: a smaller gap alone does not meet them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.analysis.gap.judgement.amplitudes import at_the_end, weakest
-from jointbench.analysis.gap.judgement.expected_misfit import forgiven, noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import forgiven, noise_sd
 from jointbench.analysis.gap.judgement.own_parameters import most_unlike
 from jointbench.analysis.gap.model.effect import PROBE_FAMILY
 from jointbench.analysis.gap.model.policy import Policy
@@ -17,20 +17,20 @@ from jointbench.analysis.gap.search.screening import Direction, Screening
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Gate:
-    """Whether a fit explains the measurement.
+class Acceptance:
+    """Whether a fit is accepted as an explanation of the measurement.
 
     Attributes:
-        passed: all rules met.
-        reason: the first rule that was not, or empty.
+        passed: all criteria are met.
+        reason: the first criterion that is not met, or empty.
         excess: chi2/dof - 1 [-].
-        allowed: what noise and model error allow of it [-].
-        remaining: drop of the directed test that comes closest to its limit, or
-            exceeds it most; None where there is none.
-        remaining_allowed: limit of that test; 0 where there is none.
-        unexplained: records or sheet hold more than the fit explains, so that a
-            further effect may help.
-        left: directed tests of what the fit leaves, None where there are none.
+        allowed: largest excess that noise and model error allow [-].
+        remaining: drop of the directed test closest to its limit, or furthest above
+            it; None if there is no test.
+        remaining_allowed: limit of that test; 0 if there is no test.
+        unexplained: True if the fit does not explain the records or the priors, so
+            that a further effect may help.
+        left: directed tests of the residual of the fit; None if not computed.
     """
 
     passed: bool
@@ -43,21 +43,21 @@ class Gate:
     left: Screening | None
 
 
-def gate(
+def accept(
     bench: Bench,
     fit: Fit,
     base: Fit,
     left: Screening | None,
     others: Sequence[Fit] = (),
-) -> Gate:
+) -> Acceptance:
     """Judge a fit.
 
     Args:
         bench: with the noise re-estimated at the fit.
         fit: of that bench.
         base: fit without effects, of the bench as it was.
-        left: directed tests of the fit; None to pass them over.
-        others: what else was fitted, for what the fit would be without an effect.
+        left: directed tests of the fit; None to skip them.
+        others: other fits, among them those without one of the effects.
     """
     policy, dof = bench.policy, bench.blocks.dof
     excess = fit.chi2 / dof - 1.0
@@ -75,12 +75,12 @@ def gate(
         reason = _looks_like(worst)
     elif unlike := _unlike(bench, fit, model):
         reason = unlike
-    elif np.abs(fit.pulls).max() > policy.prior_limit:
-        worst_prior = np.abs(fit.pulls).max()
+    elif np.abs(fit.prior_deviations).max() > policy.prior_limit:
+        worst_prior = np.abs(fit.prior_deviations).max()
         reason = f"a base parameter is {worst_prior:.1f} sd from its nominal value"
     unexplained = bool(reason)
     reason = reason or _doubt(fit, (base, *others), policy)
-    return Gate(
+    return Acceptance(
         passed=not reason,
         reason=reason,
         excess=excess,
@@ -93,7 +93,7 @@ def gate(
 
 
 def _doubt(fit: Fit, others: Sequence[Fit], policy: Policy) -> str:
-    """Give the reason against naming a fit that explains the records, or nothing."""
+    """Return the reason against naming a fit that explains the records, or empty."""
     distance = weakest(fit, others) if fit.candidates else np.inf
     if distance < policy.amplitude_limit:
         return f"an effect is only {distance:.1f} sd from zero"
@@ -114,10 +114,10 @@ def _looks_like(left: Direction) -> str:
 def _worst(
     fit: Fit, left: Screening, here: float, elsewhere: float
 ) -> tuple[Direction | None, float]:
-    """Return the directed test that exceeds its limit most, and by how much.
+    """Return the directed test furthest above its limit, and its distance from it.
 
-    What a law leaves looks like other laws of the same site: its sliders are not
-    those of the joint. Anywhere else less of it should be seen.
+    The model error of a law resembles other laws of the same site, for example with
+    other sliders, so the limit at other sites is lower.
     """
     own = {c.site for c in fit.candidates}
     worst, beyond = None, -np.inf
@@ -131,7 +131,7 @@ def _worst(
 
 
 def _unlike(bench: Bench, fit: Fit, allowed: float) -> str:
-    """Name the parts of the records that need parameters of their own, if any."""
+    """Name the parts of the records that need separate parameters, if any."""
     if not bench.blocks.white:
         return ""
     policy, worst = bench.policy, most_unlike(bench, fit, allowed)

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Would parts of the records rather have parameters of their own?
+"""Test whether parts of the records need separate parameters.
 
-A law that imitates the true one leaves misfits that no effect of the catalogue takes,
-but that differ from level to level, channel to channel, early to late, low to high
-frequency: parameters that fit all records together are then not the best of any part.
-These tests ask no catalogue, so they also see what is missing from it.
+A law that imitates the true one leaves residuals that no effect of the catalogue
+explains, but that differ between levels, channels, early and late samples, or low and
+high frequency: the parameters of all records together are then not optimal for any
+part. These tests need no catalogue, so they also detect effects that it lacks.
 
 Source:
     Chow 1960, Econometrica 28, 591, for parameters that are the same in all parts;
-    here as a score test, so that no part is fitted again.
+    implemented as a score test, so that no part is fitted again.
 """
 
 import itertools
@@ -26,12 +26,12 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 
 @dataclass(frozen=True, slots=True)
 class Unlike:
-    """The cut of the records whose parts differ most.
+    """The division of the records whose parts differ most.
 
     Attributes:
-        view: how the records were cut.
-        chance: that noise alone makes the parts differ so much [-].
-        excess: chi2 that own parameters would take beyond their number.
+        view: name of the division.
+        chance: probability of such a difference under noise alone [-].
+        excess: drop of chi2 by separate parameters, minus their number.
     """
 
     view: str
@@ -44,16 +44,16 @@ class _Cells:
     """Normal equations of the smallest parts: (..., n, n) and (..., n)."""
 
     gram: FloatArray
-    pull: FloatArray
+    gradient: FloatArray
 
 
 def most_unlike(bench: Bench, fit: Fit, allowed: float) -> Unlike:
-    """Cut the records every way and return the cut whose parts differ most.
+    """Divide the records in every way and return the division that differs most.
 
     Args:
-        bench: that was fitted.
+        bench: on which the fit was found.
         fit: a minimum.
-        allowed: chi2 that the error of the model itself may make of it.
+        allowed: chi2 that the model error may contribute.
     """
     shape = bench.blocks.shape
     slopes = fit.jacobian / np.maximum(np.linalg.norm(fit.jacobian, axis=0), 1e-300)
@@ -83,20 +83,20 @@ def most_unlike(bench: Bench, fit: Fit, allowed: float) -> Unlike:
 def _time_cells(
     slopes: FloatArray, residual: FloatArray, shape: tuple[int, int, int]
 ) -> _Cells:
-    """Return records by channels by early and late, halved by what the slopes weigh."""
+    """Return cells of record, channel and half, halved by the power of the slopes."""
     j, r = slopes.reshape(*shape, -1), residual.reshape(shape)
     weight = np.cumsum(np.einsum("rctn,rctn->t", j, j))
     half = int(np.searchsorted(weight, 0.5 * weight[-1])) + 1
     parts = [slice(0, half), slice(half, None)]
     gram = [np.matmul(j[:, :, p].transpose(0, 1, 3, 2), j[:, :, p]) for p in parts]
-    pull = [np.einsum("rctn,rct->rcn", j[:, :, p], r[:, :, p]) for p in parts]
-    return _Cells(np.stack(gram, axis=2), np.stack(pull, axis=2))
+    gradient = [np.einsum("rctn,rct->rcn", j[:, :, p], r[:, :, p]) for p in parts]
+    return _Cells(np.stack(gram, axis=2), np.stack(gradient, axis=2))
 
 
 def _band_cells(
     slopes: FloatArray, residual: FloatArray, shape: tuple[int, int, int]
 ) -> _Cells:
-    """Return bands of frequency, each as much to the slopes, by channels."""
+    """Return cells of frequency band and channel; bands have equal slope power."""
     n = shape[2]
     unit = np.sqrt(2.0 / n)
     r = scipy.fft.rfft(residual.reshape(shape), axis=2) * unit
@@ -104,21 +104,21 @@ def _band_cells(
     weight = np.cumsum(np.einsum("rctn,rctn->t", j.conj(), j).real)
     shares = np.arange(1, JUDGEMENT.part_bands) / JUDGEMENT.part_bands
     edges = [0, *np.searchsorted(weight, shares * weight[-1]), weight.size]
-    gram, pull = [], []
+    gram, gradient = [], []
     for low, high in itertools.pairwise(edges):
         part = j[:, :, low:high].transpose(1, 3, 0, 2).reshape(shape[1], j.shape[3], -1)
         data = r[:, :, low:high].transpose(1, 0, 2).reshape(shape[1], -1, 1)
         gram.append((part @ part.conj().transpose(0, 2, 1)).real)
-        pull.append((part.conj() @ data).real[:, :, 0])
-    return _Cells(np.array(gram), np.array(pull))
+        gradient.append((part.conj() @ data).real[:, :, 0])
+    return _Cells(np.array(gram), np.array(gradient))
 
 
 def _pooled(cells: _Cells, words: list[str]) -> _Cells:
-    """Return cells with the records of one word taken together."""
+    """Return cells with the records of each word summed."""
     kinds = {w: [i for i, x in enumerate(words) if x == w] for w in words}
     return _Cells(
         np.array([cells.gram[rows].sum(axis=0) for rows in kinds.values()]),
-        np.array([cells.pull[rows].sum(axis=0) for rows in kinds.values()]),
+        np.array([cells.gradient[rows].sum(axis=0) for rows in kinds.values()]),
     )
 
 
@@ -129,13 +129,13 @@ def _test(
     slopes: FloatArray,
     allowed: float,
 ) -> Unlike:
-    """Let every part along `axes` have its own parameters."""
+    """Test separate parameters for every part along `axes`."""
     n = slopes.shape[1]
-    others = tuple(k for k in range(cells.pull.ndim - 1) if k not in axes)
+    others = tuple(k for k in range(cells.gradient.ndim - 1) if k not in axes)
     gram = cells.gram.sum(axis=others).reshape(-1, n, n)
-    pull = cells.pull.sum(axis=others).reshape(-1, n)
+    gradient = cells.gradient.sum(axis=others).reshape(-1, n)
     values, vectors = np.linalg.eigh(gram)
-    along = np.einsum("gnk,gn->gk", vectors, pull)
+    along = np.einsum("gnk,gn->gk", vectors, gradient)
     seen = values > JUDGEMENT.least_eigenvalue * np.maximum(values[:, -1:], 1e-300)
     taken = float(np.sum(along[seen] ** 2 / values[seen]))
     free = max(int(seen.sum()) - n, 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which fits the best one is not told apart from."""
+"""Select the fits that cannot be distinguished from the best one."""
 
 from collections.abc import Sequence
 
@@ -14,9 +14,9 @@ _EVERYWHERE = "all"
 
 
 def rival_within(best: Fit, policy: Policy) -> float:
-    """Return the score behind the best within which a rival is not told apart.
+    """Return the delta score up to which a rival cannot be excluded.
 
-    Two laws at one site together bend as many do, so more is asked of them.
+    Two laws at one site together can imitate many others, so their limit is higher.
     """
     sites = [c.site for c in best.candidates]
     apart = len(set(sites)) == len(sites)
@@ -24,10 +24,10 @@ def rival_within(best: Fit, policy: Policy) -> float:
 
 
 def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
-    """Return the fits that the best one is not told apart from, it included.
+    """Return the best fit and those that cannot be distinguished from it.
 
-    An explanation that holds the best one and more is no rival of it: what it adds
-    did not earn its charge.
+    An explanation that contains the best one is not a rival: the gain of its further
+    effects is smaller than their charge.
     """
     if not fits:
         return []
@@ -41,24 +41,24 @@ def rivals(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
     ]
 
 
-def without_twins(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
-    """Drop fits that say the same as a fault of all channels alike.
+def without_duplicates(bench: Bench, fits: Sequence[Fit]) -> list[Fit]:
+    """Drop fits of one channel that are equivalent to a fault of all channels.
 
-    A range of the converter that only one channel reaches is the range of all.
+    A converter range that only one channel reaches is the range of all channels.
     """
     return [
         f
         for f in fits
         if not any(
-            _twin_of(f, c)
+            _same_fault(f, c)
             and abs(score(bench, f) - score(bench, c)) < JUDGEMENT.same_fault_score
             for c in fits
         )
     ]
 
 
-def _twin_of(fit: Fit, common: Fit) -> bool:
-    """Tell whether a fit is another one with a fault of all at one channel only."""
+def _same_fault(fit: Fit, common: Fit) -> bool:
+    """Return whether two fits differ only in a fault at one or at all channels."""
     own = [c for c in fit.candidates if c not in common.candidates]
     other = [c for c in common.candidates if c not in fit.candidates]
     if len(own) != 1 or len(other) != 1 or other[0].site.name != _EVERYWHERE:

@@ -15,7 +15,7 @@ class Campaign:
     """Hits under known conditions, and the model that should explain them.
 
     Attributes:
-        name: as the user knows it.
+        name: of the campaign, chosen by the user.
         sample_rate: [Hz].
         force: hammer force [N], shape (n_records, n_samples).
         response: shape (n_records, n_channels, n_samples), in the model's output.
@@ -23,12 +23,12 @@ class Campaign:
         level: nominal peak force [N], shape (n_records,).
         preload: [N], shape (n_records,).
         order: rank in time, shape (n_records,).
-        preload_reference: preload the nominal sheet belongs to [N].
+        preload_reference: preload that the nominal parameters belong to [N].
         model: bodies, links and their priors.
         lead: first samples without weight: the bench was not at rest before them.
         continuous: True where the excitation never ends (a shaker), so that no
             hit can be cut out of it and no level spans the campaign.
-        repeatability: relative, from the sheet [-]; None to take it from repeats.
+        repeatability: relative, as stated [-]; None to estimate it from repeats.
     """
 
     name: str

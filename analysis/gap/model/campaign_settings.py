@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Settings of the records: what of a record counts, and when a name is doubted."""
+"""Settings of the records: which samples count, and when a gap is significant."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ class CampaignSettings:
     seen_gap: float = numerical(
         1.0,
         "-",
-        "held-out gap below which its reduction is not looked at",
+        "held-out gap below which its reduction is not evaluated",
     )
     unpredicted_share: float = numerical(
         0.5,

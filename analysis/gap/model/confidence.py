@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From margins to a probability of being right."""
+"""Convert the evidence for a name into a probability that it is right."""
 
 from dataclasses import dataclass
 
@@ -8,14 +8,14 @@ import numpy as np
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What the confidence of a name rests on.
+    """Quantities from which the confidence of a name is computed.
 
     Attributes:
         margin: score of the nearest rival of another name or site, less the best's.
-        slack: how far the chi2 of the winner stays inside its gate, from 0 (on the
-            limit) to 1 (at or below what noise alone leaves) [-].
+        slack: distance of the best fit's chi2 from its limit, from 0 (at the limit) to
+            1 (at or below the chi2 of noise alone) [-].
         amplitude: smallest distance of an amplitude from OFF [sd].
-        effects: how many effects are named.
+        effects: number of effects named.
     """
 
     margin: float
@@ -34,7 +34,7 @@ class Calibration:
         slack: per unit of slack.
         amplitude: per decade of the amplitude over 4 sd.
         second: for a second effect.
-        record: how and on what the numbers were found.
+        record: how, and on which campaigns, the coefficients were estimated.
     """
 
     intercept: float
@@ -51,9 +51,9 @@ CALIBRATION = Calibration(
     slack=0.885,
     amplitude=0.0,
     second=0.0,
-    record="benchmarks/gap/calibrate.py on 85 names told of 168 simulated campaigns, "
-    "seeds 70000 and on (two effects and effects taken out: of an earlier state); one "
-    "campaign in ten taken to hide what no catalogue has",
+    record="benchmarks/gap/calibrate.py on 85 names reported in 168 simulated "
+    "campaigns, seeds 70000 and on (pairs and reduced catalogues: of an earlier "
+    "version); one campaign in ten is assumed to hide an effect of no catalogue",
 )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the engine hands back: verdict and evidence, and its JSON."""
+"""Result of the engine: verdict and evidence, and its JSON."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -8,7 +8,7 @@ from typing import Any
 
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.confidence import Evidence
-from jointbench.analysis.gap.model.evidence_records import Exhibit, exhibit_json
+from jointbench.analysis.gap.model.evidence_records import GapEvidence, evidence_json
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_json
 
 
@@ -40,7 +40,7 @@ class NamedEffect:
         site: word of the site.
         parameters: with intervals.
         confidence: probability that name and site are right [-].
-        evidence: what the confidence rests on.
+        evidence: quantities from which the confidence is computed.
     """
 
     name: str
@@ -52,31 +52,31 @@ class NamedEffect:
 
 @dataclass(frozen=True, slots=True)
 class Ranked:
-    """One explanation that was tried, with how well it does.
+    """One explanation that was tried, with its score.
 
     Attributes:
         effects: name and site of each effect.
-        score: cost with a charge for parameters.
-        behind: score behind the best.
+        score: cost plus a charge for each parameter.
+        delta_score: score above that of the best.
         chi2_per_dof: of the data [-].
-        pull: largest distance of a base parameter from its sheet [sigma].
+        prior_deviation: largest of the base parameters [sd].
     """
 
     effects: tuple[str, ...]
     score: float
-    behind: float
+    delta_score: float
     chi2_per_dof: float
-    pull: float
+    prior_deviation: float
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """One way of cutting the misfit.
+    """The residual, divided in one way.
 
     Attributes:
         name: frequency, level, hit point, output, preload, order or time.
         chi2_per_dof: of each slice [-]; 1 where noise explains it.
-        share: of the whole excess in each slice [-].
+        share: share of the total excess in each slice [-].
     """
 
     name: str
@@ -86,18 +86,18 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """How far model and measurement are apart, on records that were held out.
+    """Distance between model and measurement on held-out records.
 
     Attributes:
         value: sqrt(max(0, chi2/dof - 1)) [-].
         chi2_per_dof: held out [-].
-        pull: largest distance of a base parameter from its sheet [sigma].
-        views: where it sits.
+        prior_deviation: largest of the base parameters [sd].
+        views: distribution of the gap over levels, channels, frequency ...
     """
 
     value: float
     chi2_per_dof: float
-    pull: float
+    prior_deviation: float
     views: tuple[View, ...] = ()
 
 
@@ -107,20 +107,21 @@ class Diagnosis:
 
     Attributes:
         verdict: none, named, ambiguous or unknown.
-        effects: what was found; for ambiguous, the rivals.
-        candidates: what was tried, best first.
+        effects: effects found; the rivals if the verdict is ambiguous.
+        candidates: explanations tried, best first.
         gap_before: of the base, refitted with its priors.
         gap_after: with the effects added.
-        pulls: of each base parameter, before and after [sigma].
-        base: parameters of the base at the end, with intervals.
-        noise: the noise floor, in words and numbers.
-        null_statistic: largest directed drop of the base, and its 99.5 % limit.
-        experiment: what to do next.
-        reason: why the verdict is not a name, or what the name rests on.
-        exhibit: the evidence as curves and sentences; None where none was made.
-        explanations: labels of the effects of each explanation that passed and is not
-            told apart from the best, that first; ("none",) is the base alone.
-        policy: thresholds that the verdict rests on.
+        prior_deviations: of each base parameter, before and after [sd].
+        base: final base parameters, with standard deviations.
+        noise: estimated noise of channels and force, and scatter between hits.
+        null_statistic: largest drop of chi2 in the directed tests of the base, and
+            its 99.5 % limit.
+        experiment: recommended next step.
+        reason: basis of the verdict.
+        evidence: curves and sentences; None if not prepared.
+        explanations: labels of the effects of each accepted explanation that cannot
+            be distinguished from the best, best first; ("none",) is the base alone.
+        policy: thresholds of the verdict.
     """
 
     verdict: Finding
@@ -128,19 +129,19 @@ class Diagnosis:
     candidates: tuple[Ranked, ...]
     gap_before: Gap
     gap_after: Gap
-    pulls: Mapping[str, tuple[float, float]]
+    prior_deviations: Mapping[str, tuple[float, float]]
     base: tuple[Estimate, ...]
     noise: Mapping[str, float]
     null_statistic: tuple[float, float]
     experiment: str
     reason: str
-    exhibit: Exhibit | None = None
+    evidence: GapEvidence | None = None
     explanations: tuple[tuple[str, ...], ...] = ()
     policy: Policy = STANDARD
 
     @property
-    def foretold(self) -> bool:
-        """Whether the conditions foretell each that was held out, or need not."""
+    def predicted(self) -> bool:
+        """Whether held-out conditions are predicted, or the gap is insignificant."""
         left = CAMPAIGN.unpredicted_share * self.gap_before.value
         return self.gap_before.value < CAMPAIGN.seen_gap or self.gap_after.value < left
 
@@ -153,7 +154,7 @@ class Diagnosis:
 
 
 def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
-    """Return the contract's JSON: plain numbers, texts, lists and objects."""
+    """Return a diagnosis as JSON: numbers, texts, lists and objects."""
     d = diagnosis
     return {
         "verdict": d.verdict.value,
@@ -172,9 +173,9 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
             {
                 "effects": list(c.effects),
                 "score": c.score,
-                "behind": c.behind,
+                "behind": c.delta_score,
                 "chi2_per_dof": c.chi2_per_dof,
-                "pull": c.pull,
+                "pull": c.prior_deviation,
             }
             for c in d.candidates
         ],
@@ -186,14 +187,14 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "chi2_per_dof": [d.gap_before.chi2_per_dof, d.gap_after.chi2_per_dof],
         "pulls": {
             name: {"before": before, "after": after}
-            for name, (before, after) in d.pulls.items()
+            for name, (before, after) in d.prior_deviations.items()
         },
         "base": _estimates(d.base),
         "noise": dict(d.noise),
         "null_test": {"largest": d.null_statistic[0], "limit": d.null_statistic[1]},
         "experiment": d.experiment,
         "reason": d.reason,
-        "exhibit": None if d.exhibit is None else exhibit_json(d.exhibit),
+        "exhibit": None if d.evidence is None else evidence_json(d.evidence),
         "policy": policy_json(d.policy),
     }
 

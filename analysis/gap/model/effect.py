@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What an effect is to the engine: a name, a site, parameters and its rivals.
+"""Effects: name, site, parameters and rivals.
 
-An effect is data plus pure functions; the functions that carry its physics belong to
-a bench (see `effect_hooks`), so the engine never sees any.
+An effect is data plus pure functions; the functions that implement its physics belong
+to a bench (see `effect_hooks`), so the engine does not depend on them.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -15,12 +15,12 @@ from jointbench.analysis.gap.model.effect_parameter import Parameter, Reported
 EFFECTS_GROUP = "jointbench.effects"
 """Entry points by which other packages add effects."""
 PROBE_FAMILY = "probe"
-"""Family of what is tested of a fit but never named."""
+"""Family of shapes that are tested but never named."""
 
 
 @dataclass(frozen=True, slots=True)
 class Site:
-    """Where an effect sits: ``link:joint``, ``body:m2``, ``channel:a1``."""
+    """Where an effect acts: ``link:joint``, ``body:m2``, ``channel:a1``."""
 
     kind: str
     name: str
@@ -43,20 +43,20 @@ class Effect:
             converter or preload.
         parameters: amplitude first, then shape.
         source: paper and equation.
-        separates: rival name to the experiment that tells the two apart.
-        report: from fitted values to what the user reads; None where they agree.
-        by_prior: True where the base can take the effect in whole, so that only the
-            priors of the base see it (an added mass, a gain).
-        refit_nominal: True where the fit must start from the nominal base as well.
+        separates: name of a rival to the experiment that distinguishes the two.
+        report: converts fitted values to reported parameters; None if they agree.
+        by_prior: True if the base can absorb the effect entirely, so that only the
+            priors of the base reveal it (an added mass, a gain).
+        refit_nominal: True if a fit must also start from the nominal base.
         has_sliders: True for friction laws made of sliders that stick and slip.
-        starts_at_peaks: True where the second parameter is a frequency at which a
-            residual without the effect peaks: fits start at those peaks as well.
-        own_phases: True where the effect finds a phase for itself in each record and
-            channel; each is a free number that its comparison with others pays for.
-        follows_order: True where the effect goes with the order of the hits, which a
-            campaign may confuse with their level.
-        model_error: share of the base's excess chi2 that a right law may leave [-];
-            None for that of the family.
+        starts_at_peaks: True if the second parameter is a frequency at which the
+            residual without the effect has a peak: fits also start at those peaks.
+        own_phases: True if the effect fits a phase in each record and channel; each
+            phase is charged in the comparison with other effects.
+        follows_order: True if the effect depends on the order of the hits, which a
+            campaign may confound with their level.
+        model_error: share of the base's excess chi2 that a correct law may leave [-];
+            None for the share of its family.
     """
 
     name: str
@@ -74,7 +74,7 @@ class Effect:
     model_error: float | None = None
 
     def __post_init__(self) -> None:
-        """Check that what starts at peaks has a frequency, and that shares are some."""
+        """Check the model error and the frequency of an effect that starts at peaks."""
         if self.model_error is not None and not 0.0 <= self.model_error < 1.0:
             raise UsageError(
                 f"effect {self.name!r} has a model_error of {self.model_error:g}; it "
@@ -88,7 +88,7 @@ class Effect:
             )
 
     def reported(self, values: FloatArray) -> tuple[Reported, ...]:
-        """Return what the user reads of fitted `values`, shape (n_parameters,)."""
+        """Return the reported parameters of fitted `values`, shape (n_parameters,)."""
         if self.report is not None:
             return self.report(values)
         return tuple(
@@ -99,7 +99,7 @@ class Effect:
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """An effect at a site: what the engine tries, ranks and names."""
+    """An effect at a site, which the engine fits and ranks."""
 
     effect: Effect
     site: Site
@@ -111,14 +111,14 @@ class Candidate:
 
 
 def may_join(candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
-    """Tell whether a candidate is worth a race beside what is fitted.
+    """Return whether a candidate may be fitted together with others.
 
-    Not twice the same; and two laws of sliders across one link are mostly one law of
-    more sliders, which few measurements split.
+    The same candidate is not fitted twice. Two slider laws across one link are mostly
+    one law with more sliders, which few measurements can separate.
 
     Args:
-        candidate: what would be added.
-        fitted: what is there.
+        candidate: to be added.
+        fitted: candidates already in the fit.
     """
     if candidate in fitted:
         return False
@@ -129,18 +129,18 @@ def may_join(candidate: Candidate, fitted: Sequence[Candidate]) -> bool:
 
 
 def labels_of(candidates: Iterable[Candidate]) -> frozenset[str]:
-    """Return the labels of a set of candidates, which tell it from all others."""
+    """Return the labels of a set of candidates, which identify the set."""
     return frozenset(c.label for c in candidates)
 
 
 def words_of(candidates: Iterable[Candidate]) -> str:
-    """Return a set of candidates in words, in an order of their own."""
+    """Return a set of candidates as text, sorted by label."""
     return " + ".join(sorted(labels_of(candidates)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Term:
-    """A candidate switched on: its fitted coordinates, shape (n_parameters,)."""
+    """A candidate in a fit: its coordinates, shape (n_parameters,)."""
 
     candidate: Candidate
     coordinates: FloatArray

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One fitted parameter of an effect, and how its user reads it."""
+"""One fitted parameter of an effect, and its reported form."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,7 +8,7 @@ import numpy as np
 
 
 class Transform(StrEnum):
-    """How a fitted coordinate u becomes a value, given the scale of the bench.
+    """Conversion of a fitted coordinate u to a value, given the scale of the bench.
 
     ``LINEAR`` is value = scale u; ``LOG`` is value = scale exp(u).
     """
@@ -23,7 +23,7 @@ class Parameter:
 
     The first parameter of an effect is its amplitude: the effect vanishes at 0.
     Bounds, starts and prior are multiples of a scale that the bench supplies, so
-    that one catalogue serves a watch and a machine bed.
+    that one catalogue fits structures of any size.
 
     Attributes:
         name: as reported, for example ``"k3"``.
@@ -31,13 +31,13 @@ class Parameter:
         scale: word of the bench's scale, for example ``"stiffness/travel^2"``.
         lower: smallest value [scale].
         upper: largest value [scale].
-        starts: start grid [scale]; an amplitude may leave it empty, its start
-            then comes from the score test.
-        transform: how the optimiser sees it.
+        starts: start grid [scale]; may be empty for an amplitude, whose start then
+            comes from the score test.
+        transform: from coordinate to value.
         prior: (median [scale], relative sd) of a lognormal prior, or None.
-        off: value at which the effect vanishes; None for shape parameters.
-        far: amplitudes [scale] from which a strong effect is tried as well, where
-            its directed test points too far or the wrong way.
+        off: value at which the effect vanishes; None for a shape parameter.
+        far: further start amplitudes [scale] of a strong effect, whose directed test
+            may have the wrong size or sign.
     """
 
     name: str
@@ -71,7 +71,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Reported:
-    """One parameter as the user reads it.
+    """One parameter as reported.
 
     Attributes:
         name: for example ``"Fs"``.

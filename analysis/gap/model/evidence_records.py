@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a picture of a gap is drawn from, and what it tells in words."""
+"""Evidence of a gap: curves for the figures, and sentences."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -9,20 +9,21 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Curves:
-    """The telling record: the one channel of one hit that holds most of the misfit.
+    """Representative record: the channel of the hit with most of the residual.
 
     Attributes:
         record: its number, from 0.
-        condition: where and how hard it was hit, in words.
+        condition: hit point, level and preload, as text.
         channel: name.
         unit: of the response.
-        share: of the whole excess that sits in it [-].
+        share: its share of the total excess [-].
         time: from the start of the record [s], shape (n,).
         measured: [unit], shape (n,).
         before: base model, same shape.
         after: model with the effects, same shape.
-        misfit_before: measured less base, with what hits scatter by taken out [unit].
-        misfit_after: the same with the effects [unit].
+        residual_before: measured minus base model, without the scatter between hits
+            [unit].
+        residual_after: the same with the effects [unit].
         sigma: noise of a sample [unit].
     """
 
@@ -35,19 +36,19 @@ class Curves:
     measured: FloatArray
     before: FloatArray
     after: FloatArray
-    misfit_before: FloatArray
-    misfit_after: FloatArray
+    residual_before: FloatArray
+    residual_after: FloatArray
     sigma: float
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "time", "measured", "before", "after")
-        freeze(self, "misfit_before", "misfit_after")
+        freeze(self, "residual_before", "residual_after")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Spectra:
-    """The telling condition in the frequency domain.
+    """Representative condition in the frequency domain.
 
     Attributes:
         condition: in words.
@@ -57,8 +58,8 @@ class Spectra:
         measured: magnitude of the H1 estimate over the repeats [unit], shape (n,).
         before: of the base model for the same forces, same shape.
         after: of the model with the effects, same shape.
-        misfit_before: rms over all records and channels, over the noise [-].
-        misfit_after: the same with the effects [-].
+        residual_before: rms over all records and channels, relative to the noise [-].
+        residual_after: the same with the effects [-].
     """
 
     condition: str
@@ -68,18 +69,18 @@ class Spectra:
     measured: FloatArray
     before: FloatArray
     after: FloatArray
-    misfit_before: FloatArray
-    misfit_after: FloatArray
+    residual_before: FloatArray
+    residual_after: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "frequency", "measured", "before", "after")
-        freeze(self, "misfit_before", "misfit_after")
+        freeze(self, "residual_before", "residual_after")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Wishes:
-    """What stiffness and damping of the joint each record would like by itself.
+class RecordEstimates:
+    """Stiffness and damping of the joint, estimated from each record separately.
 
     Attributes:
         link: name of the joint.
@@ -88,10 +89,10 @@ class Wishes:
         order: rank in time, same shape.
         hit: name of the body hit, one for each record.
         stiffness: relative change from the base [-], (n_records, 2): before, after.
-        stiffness_sd: of it [-], same shape.
+        stiffness_sd: its standard deviation [-], same shape.
         damping: relative change from the base [-], same shape.
-        damping_sd: of it [-], same shape.
-        share: of the excess that such freedom would take, before [-].
+        damping_sd: its standard deviation [-], same shape.
+        share: share of the excess that separate estimates explain, before [-].
     """
 
     link: str
@@ -113,27 +114,27 @@ class Wishes:
 
 @dataclass(frozen=True, slots=True)
 class CampaignLimits:
-    """How much a right model may leave.
+    """Acceptance limits of a campaign.
 
     Attributes:
         chi2_per_dof: of the fit shown as after [-].
-        chi2_allowed: largest that still counts as explained [-].
-        remaining: directed test that comes closest to its limit, or exceeds it most,
-            in units of chi2; None where none was made.
+        chi2_allowed: largest accepted chi2/dof [-].
+        remaining: drop of chi2 in the directed test closest to its limit, or furthest
+            above it; None if there is no test.
         remaining_allowed: its limit, in units of chi2.
-        pull_allowed: largest distance of a base parameter from its sheet [sigma].
+        deviation_allowed: largest accepted prior deviation of a base parameter [sd].
     """
 
     chi2_per_dof: float
     chi2_allowed: float
     remaining: float | None
     remaining_allowed: float
-    pull_allowed: float
+    deviation_allowed: float
 
 
 @dataclass(frozen=True, slots=True)
 class DirectedTest:
-    """What one effect by itself would take, to first order.
+    """Drop of chi2 by one effect alone, to first order.
 
     Attributes:
         label: effect and site.
@@ -147,21 +148,21 @@ class DirectedTest:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Exhibit:
-    """The evidence in a form that can be drawn and told.
+class GapEvidence:
+    """Evidence of a gap for figures and text.
 
     Attributes:
-        tried: the explanation shown as after, in words; empty for the base itself.
-        where: one sentence on where the base's misfit sits.
-        look: what the misfit looks like, one sentence each.
-        advice: what to do where no effect explains it; empty where none is missing.
-        view: the view that tells most: level, hit point, preload, frequency, or sheet
-            where only the base's own parameters show it.
-        relative: by view and slice, misfit over response, before [-].
-        curves: the telling record.
-        spectra: the telling condition.
-        wishes: of the records for the joint; None where the model has no joint.
-        limits: what a right model may leave.
+        tried: the explanation shown as after, as text; empty for the base itself.
+        where: one sentence that locates the residual of the base.
+        look: signature of the residual, one sentence each.
+        advice: what to do if no effect explains it; empty if none is missing.
+        view: the most significant view: level, hit point, preload, frequency, or
+            priors if only the base parameters show the gap.
+        relative: residual over response by view and slice, before [-].
+        curves: representative record.
+        spectra: representative condition.
+        record_estimates: of each record for the joint; None if the model has no joint.
+        limits: acceptance limits.
         tests: directed tests of the base, largest first.
         force_unit: of force and level.
     """
@@ -174,19 +175,19 @@ class Exhibit:
     relative: dict[str, dict[str, float]]
     curves: Curves
     spectra: Spectra
-    wishes: Wishes | None
+    record_estimates: RecordEstimates | None
     limits: CampaignLimits
     tests: tuple[DirectedTest, ...]
     force_unit: str = "N"
 
 
-def exhibit_json(exhibit: Exhibit) -> dict[str, Any]:
-    """Return the words and numbers of an exhibit, without its curves."""
-    curves, limits = exhibit.curves, exhibit.limits
+def evidence_json(evidence: GapEvidence) -> dict[str, Any]:
+    """Return the text and numbers of the evidence, without its curves."""
+    curves, limits = evidence.curves, evidence.limits
     return {
-        "localisation": exhibit.where,
-        "looks_like": list(exhibit.look),
-        "relative_misfit": exhibit.relative,
+        "localisation": evidence.where,
+        "looks_like": list(evidence.look),
+        "relative_misfit": evidence.relative,
         "telling_record": {
             "record": curves.record,
             "condition": curves.condition,
@@ -200,6 +201,7 @@ def exhibit_json(exhibit: Exhibit) -> dict[str, Any]:
             "remaining_allowed": limits.remaining_allowed,
         },
         "directed_tests": [
-            {"effect": t.label, "drop": t.drop, "share": t.share} for t in exhibit.tests
+            {"effect": t.label, "drop": t.drop, "share": t.share}
+            for t in evidence.tests
         ],
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The sheet of a bench: model with priors, hit points, what repeats are worth."""
+"""Nominal parameters of a bench: model with priors, hit points, repeatability."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -8,16 +8,17 @@ from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
-    """What is known of a bench before anything is measured.
+class NominalParameters:
+    """Prior knowledge of a bench.
 
     Attributes:
         model: bodies, links and channels with priors.
-        points: body by hit point; a point that is not there belongs to the body whose
-            channel sits at it, or that bears its name.
-        preload_reference: preload the nominal values belong to [N]; None where all
-            hits have one and the same.
-        repeatability: relative to the peak response [-]; None to take it from repeats.
+        points: body by hit point; any other point belongs to the body of the channel
+            at that point, or to the body of that name.
+        preload_reference: preload that the nominal values belong to [N]; None if all
+            hits have the same preload.
+        repeatability: relative to the peak response [-]; None to estimate it from
+            repeats.
     """
 
     model: LumpedModel

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The decision settings of the gap engine: what a verdict is compared with.
+"""The decision settings of the gap engine: thresholds of a verdict.
 
-A bench carries the policy that it is judged by, so that a benchmark can vary one
+A bench holds the policy of its verdict, so that a benchmark can vary one
 setting (`dataclasses.replace(STANDARD, rival_score=20.0)`) without touching the code.
 The effect of a change by 30 % is measured by `benchmarks/gap/policy_sweep.py` on 20
 campaigns; docs/gap-policy.md holds the table.
@@ -17,14 +17,14 @@ from jointbench.analysis.gap.model.setting import decision, settings_of
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """Thresholds that decide a verdict; unit, purpose and basis are with each."""
+    """Thresholds of a verdict, each with unit, purpose and basis."""
 
     chi2_limit: float = decision(
         4.5,
         "sd",
         "excess of chi2/dof over 1 above which a fit does not explain the records, in "
         "sd of chi2/dof with the noise estimate counted",
-        "closed form of the sd (expected_misfit.noise_sd); checked on the full null "
+        "closed form of the sd (expected_residual.noise_sd); checked on the full null "
         "draws of docs/gap-null.md",
         "-30 %: 0 of 16; +30 %: 0 of 16",
     )
@@ -76,8 +76,8 @@ class Policy:
     model_error_factor: float = decision(
         1.0,
         "-",
-        "factor on the share of the base's excess chi2 that a right law may leave",
-        "1 by definition; the shares themselves were set on right laws fitted alone "
+        "factor on the share of the base's excess chi2 that a correct law may leave",
+        "1 by definition; the shares themselves were set on correct laws fitted alone "
         "in the development campaigns",
         "-30 %: 0 of 16; +30 %: 0 of 16",
     )
@@ -86,21 +86,21 @@ class Policy:
         "-",
         "largest share of the base's excess chi2 that the model error of a law may "
         "leave at sites other than its own",
-        "development campaigns, right laws fitted alone",
+        "development campaigns, correct laws fitted alone",
         "-30 %: not run; +30 %: not run",
     )
     shape_sd_share: float = decision(
         0.3,
         "of the range",
         "sd of a shape parameter below which it counts as known when it is checked "
-        "for standing at the end of its range",
+        "for a value at the end of its range",
         "hidden 92007: a Jenkins slider fitted by a Bouc-Wen element at its limit",
         "-30 %: not run; +30 %: not run",
     )
     shape_end_share: float = decision(
         1e-3,
         "of the range",
-        "distance from the end of its range below which a shape parameter stands at "
+        "distance from the end of its range below which a shape parameter is at "
         "its limit",
         "hidden 92007, as above",
         "-30 %: not run; +30 %: not run",
@@ -138,7 +138,7 @@ class Policy:
     phase_charge: float = decision(
         2.0,
         "chi2",
-        "charge on the score for each phase that an effect fits by itself",
+        "charge on the score for each phase that an effect fits",
         "a phase is bounded and costs less than a free parameter; no campaign set it",
         "-30 %: not run; +30 %: not run",
     )
@@ -212,7 +212,7 @@ class Policy:
 
 
 STANDARD = Policy()
-"""The policy of the product; every other one is an experiment."""
+"""The policy of the product; any other policy is experimental."""
 
 
 def policy_json(policy: Policy) -> dict[str, Any]:

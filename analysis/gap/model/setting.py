@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Settings of the engine as data: value, unit, what each does and how it was set.
+"""Settings of the engine as data: value, unit, purpose and basis.
 
-A part of the engine keeps its settings in one frozen record. Its fields are plain
-numbers, so that code reads `SEARCH.most_steps`; what else is known of each stands in
-the field's metadata, from which `settings_of` makes a table.
+Each part of the engine keeps its settings in one frozen record. Its fields are plain
+numbers, so that code reads `SEARCH.most_steps`; unit, purpose and basis are in the
+field's metadata, from which `settings_of` makes a table.
 """
 
 from dataclasses import dataclass, field, fields
@@ -13,11 +13,11 @@ from typing import Any, TypeVar
 Value = TypeVar("Value")
 _SETTING = "setting"
 NO_CAMPAIGN = "chosen by judgement; no campaign set it"
-"""Basis of a setting of which no measurement is on record."""
+"""Basis of a setting without a recorded measurement."""
 
 
 class SettingKind(StrEnum):
-    """What a setting is for."""
+    """Purpose of a setting."""
 
     DECISION = "decision"
     """A threshold that a verdict is compared with."""
@@ -27,16 +27,16 @@ class SettingKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One setting of the engine, with what is known of it.
+    """One setting of the engine, with its documentation.
 
     Attributes:
         name: of the field that holds it.
-        value: as it is in force.
-        unit: of the value; "-" where there is none.
-        purpose: what it does.
+        value: in force.
+        unit: of the value; "-" if it has none.
+        purpose: of the setting.
         basis: how it was set, and on which campaigns.
         kind: decision or numerical.
-        effect: what a change by 30 % down and up does to the verdicts of the sweep
+        effect: effect of a change by 30 % down and up on the verdicts of the sweep
             (`benchmarks/gap/policy_sweep.py`); empty for numerical settings.
     """
 
@@ -57,7 +57,7 @@ def decision(
 
 
 def numerical(value: Value, unit: str, purpose: str, basis: str = NO_CAMPAIGN) -> Value:
-    """Return the field of a number that an algorithm needs."""
+    """Return the field of a number used by an algorithm."""
     return _field(value, (unit, purpose, basis, SettingKind.NUMERICAL))
 
 

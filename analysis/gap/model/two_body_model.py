@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The base model of a two-body campaign, of its nominal values and their priors."""
+"""Base model of a two-body campaign from its nominal values and priors."""
 
 from collections.abc import Mapping
 
@@ -22,7 +22,7 @@ def two_body_model(
 
     Args:
         nominal: m1, m2 [kg], k0, kj [N/m], c0, cj [N s/m].
-        spread: 1-sigma of the logarithm of each [-], same keys.
+        spread: standard deviation of the logarithm of each [-], same keys.
 
     Raises:
         BadData: a value is missing or not positive.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the noise of a lumped bench is, at a solution: channels, force, scatter."""
+"""Estimate the noise of a lumped bench at a solution: channels, force, scatter."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,7 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Settled
 from jointbench.analysis.gap.residuals.hit_scatter import (
     gain_scatter,
@@ -41,15 +41,16 @@ def refine_noise(
     base: FloatArray,
     terms: Sequence[Term],
     *,
-    astray: bool = False,
+    diverged: bool = False,
 ) -> SomeBench:
     """Return the bench with its noise estimated at a solution.
 
     Args:
-        bench: to be changed.
+        bench: measurement and model.
         base: of the solution, shape (n_base,).
         terms: of the solution.
-        astray: expand about the hits even where that leaves the solution far off.
+        diverged: expand about the settling of the hits even if the solution is far
+            from the records.
     """
     at = with_converter_edge(_centred(bench, base, terms), base, terms)
     model = at.response(base, terms)
@@ -81,7 +82,7 @@ def refine_noise(
         return settle(refined, None)
     share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
     off = -coefficients[:, 1] * share / scatter[1]
-    if astray and np.abs(off).max() > RESIDUALS.diverged_reach:
+    if diverged and np.abs(off).max() > RESIDUALS.diverged_reach:
         return settle(refined, None)
     off = np.clip(off, -RESIDUALS.settling_reach, RESIDUALS.settling_reach) * scatter[1]
     settling = np.log(
@@ -89,15 +90,15 @@ def refine_noise(
     )
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)
-    if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not astray:
+    if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not diverged:
         return settle(refined, None)
     return expanded
 
 
 def _centred(bench: SomeBench, base: FloatArray, terms: Sequence[Term]) -> SomeBench:
-    """Return the bench with each hit's stiffness kept, about the base's mean.
+    """Return the bench with the stiffness of each hit relative to the base's mean.
 
-    A settling is what base and laws leave of that stiffness.
+    A settling is the part of that stiffness that base and laws do not explain.
     """
     if bench.settled is None:
         return bench
@@ -150,8 +151,8 @@ def _expanded(
 ) -> SomeBench:
     """Return the bench expanded about a settling, with its scatter whitened there.
 
-    What is taken by the slope is then the very direction that whitening blurs,
-    and nothing of the settling leaks past it.
+    The slope of the expansion is then the same direction that is whitened, so that no
+    part of the settling remains.
     """
     there = settle(bench, settling)
     sigma = bench.noise.sigma
@@ -164,15 +165,15 @@ def _expanded(
 
 
 def _patterns(conditions: HitConditions) -> FloatArray:
-    """Return what a joint could depend on from record to record, (2, n_records)."""
+    """Return possible trends of a joint over the records, shape (2, n_records)."""
     return np.stack([np.log(conditions.preload), conditions.progress])
 
 
 def _force_columns(
     bench: SomeBench, base: FloatArray, sigma: FloatArray
 ) -> list[FloatArray]:
-    """Responses to the force's own noise, over sigma, one array for each record."""
-    first, last = bench.gate
+    """Return responses to force noise over sigma, one array for each record."""
+    first, last = bench.time_gate
     n, records = bench.excitation.growth.size, sigma.shape[0]
     if last - first >= n or bench.noise.force_sigma <= 0:
         return [np.zeros((0, sigma.shape[1] * n))] * records
@@ -201,7 +202,7 @@ def _shifted(response: FloatArray, count: int) -> FloatArray:
 
 
 def _leading(rows: FloatArray) -> FloatArray:
-    """Return the few directions that hold most of unit noise in every row."""
+    """Return the few directions with most of the variance of unit noise in the rows."""
     _, vectors = np.linalg.eigh(rows @ rows.T)
     return np.asarray(vectors[:, -FORCE_SHAPES:].T @ rows)
 
@@ -213,10 +214,10 @@ def _scatter_ways(
     model: FloatArray,
     sigma: FloatArray,
 ) -> FloatArray:
-    """Return how hits may scatter, over sigma, (n_records, n_ways, n_rows).
+    """Return the ways in which hits scatter, over sigma, (n_records, n_ways, n_rows).
 
-    The hand: the force that acts is not quite the one measured. The joint: it settles
-    anew from hit to hit, a change of its stiffness.
+    First the operator: the acting force differs slightly from the measured one. Then
+    each joint: its stiffness settles differently in each hit.
     """
     ways = [_harder(bench, base, terms, model)]
     n = len(bench.campaign.model.bodies)
@@ -236,7 +237,7 @@ def _harder(
 ) -> FloatArray:
     """Return the change of the response per relative change of the force.
 
-    A clipped sample does not change at all.
+    A clipped sample does not change.
     """
     entries = [a.entry for a in bench.actions(terms)]
     if all(e.law is None and e.shape is None for e in entries):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the engine asks of a bench: residuals of a base model plus effects."""
+"""Interface of a bench: residuals of a base model plus effects."""
 
 from collections.abc import Sequence
 from typing import Protocol
@@ -9,12 +9,12 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import Policy
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 
 
 class Scaled(Protocol):
-    """What turns the words of a catalogue's scales into sizes of one measurement."""
+    """Converter of the scale words of a catalogue to sizes of one measurement."""
 
     def scale(self, word: str) -> float:
         """Return the bench's scale of that word [SI]."""
@@ -22,7 +22,7 @@ class Scaled(Protocol):
 
 
 class Bench(Scaled, Protocol):
-    """A measurement with its model: everything the engine knows of either."""
+    """A measurement with its model, as the engine uses them."""
 
     @property
     def base_names(self) -> tuple[str, ...]:
@@ -41,54 +41,54 @@ class Bench(Scaled, Protocol):
 
     @property
     def probes(self) -> tuple[Candidate, ...]:
-        """Shapes that are tested of a fit beside the catalogue, but never named."""
+        """Shapes that are tested in addition to the catalogue, but never named."""
         ...
 
     @property
     def blocks(self) -> Blocks:
-        """The groups that are held out one at a time."""
+        """Groups of rows: one for each record."""
         ...
 
     @property
     def policy(self) -> Policy:
-        """Thresholds that its fits are judged by."""
+        """Thresholds for its fits."""
         ...
 
     @property
     def expanded(self) -> bool:
-        """Whether the model is expanded about a fit, so that others fit less well."""
+        """Whether the model is expanded about one fit, a disadvantage for others."""
         ...
 
     def phases(self, candidate: Candidate) -> int:
-        """Return how many free phases an effect fits by itself; 0 for most."""
+        """Return the number of free phases that an effect fits; 0 for most effects."""
         ...
 
     def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
-        """Return starts that a fit's own residual suggests, besides the grid's."""
+        """Return starts derived from a fit's residual, in addition to the grid."""
         ...
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "Bench":
         """Return the bench with its noise estimated at a solution.
 
         Args:
             base: of the solution, shape (n_base,).
             terms: of the solution.
-            astray: take the scatter of the hits for what it seems even where the
-                solution is far off, because it may be far off on its account.
+            diverged: use the estimated scatter of the hits even if the solution is far
+                from the records, since the scatter may be the cause.
         """
         ...
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return model minus measurement over sigma, shape (n_rows,).
 
         Args:
             base: log(parameter / nominal), shape (n_base,).
-            terms: the effects switched on.
-            stage: window and step.
+            terms: effects.
+            resolution: window and step.
         """
         ...
 

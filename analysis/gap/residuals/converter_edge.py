@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Where the converter's pass band ends, estimated from what a stiff law makes there.
+"""End of the converter's pass band, estimated from the response of a stiff law.
 
-Recorded force and recorded response carry the same anti-alias filter, so that it drops
-out of the linear part. The force of a nonlinear law is born inside the machine and
-meets the filter once. A stop that closes sounds up to the Nyquist frequency and
-beyond; a model that ends a hundredth of the sample rate too late is off there by
-thousands of times the noise of a quiet record. Data sheets give the pass band, not the
-shape of its end, so the shape is a nuisance: splines over frequency, by least squares.
+Force and response are recorded through the same anti-alias filter, which cancels in the
+linear part. The force of a nonlinear law arises inside the machine and is filtered only
+once. A closing stop excites frequencies beyond the Nyquist frequency; an assumed pass
+band that ends a hundredth of the sample rate too high causes an error of thousands of
+times the noise of a quiet record. Data sheets give the pass band, not the shape of its
+end, so the shape is a nuisance parameter: splines over frequency, by least squares.
 """
 
 from collections.abc import Sequence
@@ -16,13 +16,13 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Term
-from jointbench.analysis.gap.residuals.evaluation_stages import FINE, FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FINE, FULL
 from jointbench.analysis.gap.residuals.lumped_residual import SomeBench
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.excitation import pass_band_end
 
 KNOTS = np.arange(0.37, 0.505, 0.01)
-"""Middles of the splines over the sample rate."""
+"""Centres of the splines over the sample rate [-]."""
 
 
 def with_converter_edge(
@@ -31,10 +31,10 @@ def with_converter_edge(
     """Return the bench with the end of the pass band estimated at a solution.
 
     Args:
-        bench: with any filter; it is estimated anew, or put back to the usual one.
+        bench: with any filter; it is estimated again, or reset to the default.
         base: log(parameter / nominal), shape (n_base,).
-        terms: the effects switched on; without a nonlinear law among them the end of
-            the pass band is of no consequence.
+        terms: effects; without a nonlinear law the end of the pass band has no
+            influence.
     """
     usual = pass_band_end(_frequency(bench))
     plain = _with_taper(bench, usual)
@@ -68,7 +68,7 @@ def _frequency(bench: SomeBench) -> FloatArray:
 def _splines(frequency: FloatArray) -> FloatArray:
     """Return a cubic B-spline about each knot, shape (n_knots, n_lines).
 
-    A corner would ring all through the record.
+    A corner in the filter would cause ringing over the whole record.
     """
     width = KNOTS[1] - KNOTS[0]
     away = np.abs(frequency[None, :] - KNOTS[:, None]) / width

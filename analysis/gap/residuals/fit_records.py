@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Records of a fit: how its rows belong together, its minimum."""
+"""Records of a fit: groups of its rows, its minimum, settled hits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,15 +12,15 @@ from jointbench.analysis.gap.model.effect import Candidate, Term
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Blocks:
-    """Which rows of a residual belong together.
+    """Groups of the rows of a residual.
 
     Attributes:
         group: group of each row (a record), shape (n_rows,), 0-based.
         labels: words of each group by view, for example ``{"level": "300 N"}``.
-        dof: number of residual rows with any weight.
+        dof: number of rows with weight.
         shape: records, channels and samples, whose product is the number of rows.
-        white: False where sigma holds a repeatability from a sheet: then a residual
-            below it may have any shape, and directed tests say nothing.
+        white: False if sigma includes a stated repeatability: a residual below it may
+            have any shape, so directed tests are not meaningful.
     """
 
     group: IntArray
@@ -36,8 +36,8 @@ class Fit:
 
     Attributes:
         x: base coordinates, then those of each candidate, shape (n,).
-        n_base: how many of them belong to the base.
-        candidates: the effects switched on.
+        n_base: number of base coordinates.
+        candidates: effects of the fit.
         residual: whitened, shape (n_rows,).
         jacobian: d residual / d x, shape (n_rows, n).
         cost: chi2 of the data plus that of the priors.
@@ -76,8 +76,8 @@ class Fit:
         return np.asarray(np.linalg.pinv(hessian, hermitian=True))
 
     @property
-    def pulls(self) -> FloatArray:
-        """Distance of the base from its sheet, in prior sd, shape (n_base,)."""
+    def prior_deviations(self) -> FloatArray:
+        """Deviation of the base from its nominal parameters [sd], shape (n_base,)."""
         scaled = np.sqrt(self.prior[: self.n_base])
         return np.asarray(self.base * scaled)
 
@@ -85,7 +85,7 @@ class Fit:
 def split(
     x: FloatArray, n_base: int, candidates: Sequence[Candidate]
 ) -> tuple[Term, ...]:
-    """Cut a coordinate vector into terms."""
+    """Split a coordinate vector into terms."""
     terms, at = [], n_base
     for candidate in candidates:
         n = len(candidate.effect.parameters)
@@ -96,17 +96,17 @@ def split(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Settled:
-    """An expansion of the model about the joint's stiffness as it was in each hit.
+    """Expansion of the model about the joint's stiffness in each hit.
 
-    The data know that stiffness far better than its mean, so the mean must move
-    without it: the response is taken at the stiffness of each hit, and mean and
-    scatter about it enter by the slope. A record of a hundred radians bends within
-    the scatter; what does not bend cannot leave the base stuck.
+    The data determine that stiffness far better than its mean, so the mean must be free
+    to change without it: the response is computed at the stiffness of each hit, and
+    mean and scatter enter by the slope. Over a hundred radians the response is
+    nonlinear within the scatter, which would otherwise block a fit of the base.
 
     Attributes:
         anchor: base at which the model was expanded, shape (n_base,).
-        slope: change of the response with it, shape of the response.
-        rise: what laws added to the joint's stiffness there [-], (n_records,).
+        slope: derivative of the response by log stiffness, shape of the response.
+        rise: relative change of the joint's stiffness by laws [-], (n_records,).
     """
 
     anchor: FloatArray

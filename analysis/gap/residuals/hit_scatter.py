@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scatter from hit to hit: of the hand, of the joint, and what goes with a pattern."""
+"""Scatter from hit to hit: of the operator, of the joint, and trends."""
 
 import itertools
 
@@ -32,16 +32,17 @@ def gain_scatter(
 ) -> float:
     """Estimate the relative gain scatter from hit to hit.
 
-    Repeats of a condition differ by scatter and noise alone, but there are few of
-    them; all records together say more, but a missing effect speaks through them
-    too. So the estimate from all records is taken, held between the likeliest value
-    and the upper limit that the repeats allow: steps^2/(v + s^2) is a chi2 pivot.
+    Repeats of a condition differ by scatter and noise alone, but they are few; all
+    records together contain more information, but also the influence of a missing
+    effect. The estimate from all records is therefore limited to the range between the
+    likeliest value and the upper limit from the repeats: steps^2/(v + s^2) is a chi2
+    pivot.
 
     Args:
         gains: regression of each residual on its response [-], shape (n_records,).
         variances: of the gains by noise alone, same shape.
         groups: records that repeat a condition.
-        policy: with the least scatter, and the chance that bounds it.
+        policy: with the least scatter, and the chance of its upper limit.
 
     Returns:
         Standard deviation of the gain [-].
@@ -51,7 +52,7 @@ def gain_scatter(
     wide = float(grid[int(np.argmin(everywhere))])
     pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
     if not pairs:
-        return _believed(np.sqrt(wide), policy)
+        return _significant(np.sqrt(wide), policy)
     first, second = (np.array(x) for x in zip(*pairs, strict=True))
     steps = (gains[first] - gains[second]) / np.sqrt(2.0)
     spread = (variances[first] + variances[second]) / 2
@@ -59,11 +60,11 @@ def gain_scatter(
     pivot = np.sum(steps**2 / (spread + grid[:, None]), axis=1)
     allowed = grid[pivot > scipy.stats.chi2.ppf(policy.scatter_chance, steps.size)]
     high = max(float(allowed.max(initial=0.0)), low)
-    return _believed(np.sqrt(np.clip(wide, low, high)), policy)
+    return _significant(np.sqrt(np.clip(wide, low, high)), policy)
 
 
-def _believed(scatter: float, policy: Policy) -> float:
-    """Return a scatter, 0 where neither hand nor joint repeats so well."""
+def _significant(scatter: float, policy: Policy) -> float:
+    """Return a scatter, or 0 if it is below that of any operator and joint."""
     return float(scatter) if scatter >= policy.least_scatter else 0.0
 
 
@@ -73,22 +74,22 @@ def without_trend(
     patterns: FloatArray,
     policy: Policy = STANDARD,
 ) -> FloatArray:
-    """Take out of one value a record the pattern that explains them best, if one does.
+    """Subtract the pattern that best explains the values of all records, if any.
 
-    A trend over the records is no scatter, but counts as scatter if nothing is done:
-    then it hides itself. Only a pattern that chance would hardly make is taken out.
-    Records say very different amounts (a soft hit hardly anything), so that each
-    counts by its own variance and the scatter that the pattern leaves. Their weighted
-    mean stays: the base has already brought it to nothing.
+    A trend over the records is not scatter, but would be counted as scatter and so be
+    hidden. Only a pattern that is unlikely to occur by chance is subtracted. The
+    information in a record varies (a soft hit has hardly any), so each is weighted by
+    its own variance and the remaining scatter. Their weighted mean is kept: the fit of
+    the base has already brought it to zero.
 
     Args:
         values: shape (n_records,).
         variances: of the values by noise alone, same shape.
-        patterns: what records could depend on, shape (n_patterns, n_records).
+        patterns: possible trends over the records, shape (n_patterns, n_records).
         policy: with the chance below which a pattern is a trend.
 
     Returns:
-        Values less their dependence on one pattern, shape (n_records,).
+        Values minus their dependence on one pattern, shape (n_records,).
     """
     best, least = values, policy.trend_chance
     for pattern in patterns:
@@ -105,9 +106,9 @@ def without_trend(
 def _trend(
     values: FloatArray, variances: FloatArray, q: FloatArray
 ) -> tuple[float, float, float]:
-    """Return the slope along a pattern, the square of slope over sd, and its middle.
+    """Return the slope along a pattern, its squared ratio to its sd, and the mean.
 
-    The middle is the weighted mean of the pattern.
+    The mean is the weighted mean of the pattern.
 
     Source:
         Weighted least squares of a mean and a slope, the scatter by restricted
@@ -130,7 +131,7 @@ def _trend(
 
 
 def _scatter_grid() -> FloatArray:
-    """Return the scatters that are tried [-], the first none at all."""
+    """Return the grid of scatters [-]; the first is zero."""
     return np.concatenate(
         [
             [0.0],
@@ -148,11 +149,11 @@ def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:
 def regress(
     residual: FloatArray, ways: FloatArray, basis: FloatArray, shrink: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Regress residuals on the ways to scatter, both over sigma, force noise whitened.
+    """Regress residuals on the ways to scatter, after whitening the force noise.
 
     Args:
-        residual: shape (n_records, n_rows).
-        ways: shape (n_records, n_ways, n_rows).
+        residual: over sigma, shape (n_records, n_rows).
+        ways: over sigma, shape (n_records, n_ways, n_rows).
         basis: of the force noise, shape (n_records, n_kept, n_rows).
         shrink: of it, shape (n_records, n_kept, 1).
 

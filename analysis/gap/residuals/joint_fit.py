@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Joint least squares of base and effects: the problem."""
+"""Joint least-squares problem of base and effects."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import split
 
 
@@ -25,10 +25,10 @@ class FitProblem:
     centre: FloatArray
     n_base: int
 
-    def residual(self, x: FloatArray, stage: Stage) -> FloatArray:
+    def residual(self, x: FloatArray, resolution: Resolution) -> FloatArray:
         """Return the whitened residual at x."""
         terms = split(x, self.n_base, self.candidates)
-        return self.bench.residual(x[: self.n_base], terms, stage)
+        return self.bench.residual(x[: self.n_base], terms, resolution)
 
     def penalty(self, x: FloatArray) -> float:
         """Return the priors' share of the cost."""

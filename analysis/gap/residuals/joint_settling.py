@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Stiffness of the joint from hit to hit: what laws add to it, how it has settled."""
+"""Stiffness of the joint in each hit: changes by laws, and settling."""
 
 from collections.abc import Sequence
 
@@ -14,27 +14,27 @@ from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 
 def joint_at(model: LumpedModel) -> int:
-    """Return the place of the first joint's stiffness among the base coordinates."""
+    """Return the index of the first joint's stiffness in the base coordinates."""
     return len(model.bodies) + model.first_joint
 
 
 def changes_joint(model: LumpedModel, action: Action) -> bool:
-    """Tell whether an action is a mere change of the first joint's stiffness."""
+    """Return whether an action only changes the first joint's stiffness."""
     return action.entry.rise is not None and action.index == model.first_joint
 
 
 def stiffness_rise(
     model: LumpedModel, conditions: HitConditions, actions: Sequence[Action]
 ) -> FloatArray:
-    """Return what effects add to the joint's stiffness in each record [-].
+    """Return the relative change of the joint's stiffness by effects [-].
 
     Args:
         model: bodies and links.
         conditions: of each record.
-        actions: all effects; those that do more than change the joint are passed over.
+        actions: all effects; those with any other action are ignored.
 
     Returns:
-        Shape (n_records,); as a share of the stiffness without them, above -1.
+        Shape (n_records,), relative to the stiffness without them, above -1.
     """
     total = np.zeros(conditions.preload.size)
     for action in actions:
@@ -51,11 +51,11 @@ def hit_stiffness(conditions: HitConditions, settled: Settled) -> FloatArray:
 
 
 def mean_stiffness(model: LumpedModel, base: FloatArray, settled: Settled) -> float:
-    """Return the log of the joint's stiffness that the settling was added to.
+    """Return the log of the joint's mean stiffness, about which the hits settle.
 
-    It goes with the scale of all other masses and stiffnesses: one scale for all
-    changes no frequency, and so must not bend either. Their median is that scale;
-    a mean would move when a single mass hands its share to an added one.
+    It follows the common scale of all other masses and stiffnesses, since a common
+    scale changes no frequency. The scale is their median; a mean would change if a
+    single mass passed a share to an added mass.
     """
     at = joint_at(model)
     count = len(model.bodies) + len(model.links)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The bench of lumped dynamics: a campaign and its model, as the engine sees them."""
+"""The bench of lumped dynamics: a campaign and its model, as used by the engine."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,11 +19,11 @@ from jointbench.analysis.gap.residuals.residual_views import residual_peaks, sli
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LumpedBench(LumpedResidual):
-    """Residuals of a lumped model with the catalogue that is tried on them.
+    """Residuals of a lumped model, with the candidates of the catalogue.
 
     Attributes:
         candidates: the catalogue, at every site.
-        probes: shapes that are tested of a fit beside it, at every site.
+        probes: further shapes for directed tests, at every site.
     """
 
     candidates: tuple[Candidate, ...]
@@ -40,13 +40,13 @@ class LumpedBench(LumpedResidual):
         return self.campaign.model.spread
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
-        return refine_noise(self, base, terms, astray=astray)
+        return refine_noise(self, base, terms, diverged=diverged)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
-        """Return where the misfit of a fit sits."""
+        """Return the residual of a fit by view."""
         records, channels, samples = self.campaign.response.shape
         residual = fit.residual.reshape(records, channels, samples)
         return slice_views(
@@ -57,7 +57,7 @@ class LumpedBench(LumpedResidual):
         )
 
     def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
-        """Return starts at the peaks of a fit's residual: lines of a hum, modes."""
+        """Return starts at the spectral peaks of a fit's residual: hum lines, modes."""
         if not candidate.effect.starts_at_peaks:
             return []
         records, channels, samples = self.campaign.response.shape
@@ -78,7 +78,7 @@ class LumpedBench(LumpedResidual):
         ]
 
     def phases(self, candidate: Candidate) -> int:
-        """Return how many phases an effect finds for itself, 0 for most."""
+        """Return the number of phases that an effect fits; 0 for most effects."""
         if not candidate.effect.own_phases:
             return 0
         records, channels = self.noise.sigma.shape

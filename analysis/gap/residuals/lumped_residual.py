@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whitened residuals of a lumped model: what a campaign and a noise make of a fit."""
+"""Whitened residuals of a lumped model on a campaign."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,7 @@ from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Settled
 from jointbench.analysis.gap.residuals.joint_settling import (
     changes_joint,
@@ -35,27 +35,27 @@ from jointbench.analysis.gap.response.search_effort import spend
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LumpedResidual:
-    """Residuals of a lumped model, whitened by what the noise is known to be.
+    """Residuals of a lumped model, whitened by the estimated noise.
 
     Attributes:
         campaign: the measurement.
         entries: the catalogue of this run.
-        excitation: forces made ready.
-        gate: first and last sample of the force that count.
-        noise: what is to be expected of a residual.
+        excitation: prepared forces.
+        time_gate: first sample of the force that counts, and the end.
+        noise: expected noise and scatter of the residual.
         basis: directions of force noise and scatter, (n_records, n_kept, n_rows).
-        shrink: how much of each is taken out, (n_records, n_kept, 1).
+        shrink: share of each that is removed, (n_records, n_kept, 1).
         scales: words to values.
         blocks: records as groups.
-        short: the same with fewer samples, by length.
-        settled: where the model is expanded about the settling of each hit, or None.
-        policy: thresholds that fits of the bench are judged by.
+        short: the same bench with fewer samples, by length.
+        settled: expansion of the model about the settling of each hit, or None.
+        policy: thresholds for fits of the bench.
     """
 
     campaign: Campaign
     entries: tuple[LumpedEffect, ...]
     excitation: Excitation
-    gate: tuple[int, int]
+    time_gate: tuple[int, int]
     noise: Noise
     basis: FloatArray
     shrink: FloatArray
@@ -71,7 +71,7 @@ class LumpedResidual:
         return self.settled is not None
 
     def scale(self, word: str) -> float:
-        """Return the scale of a word [SI]; ``a/b^2`` is understood."""
+        """Return the scale of a word [SI], also of the form ``a/b^2``."""
         if word not in self.scales:
             top, _, bottom = word.partition("/")
             base, _, power = bottom.partition("^")
@@ -101,8 +101,8 @@ class LumpedResidual:
     ) -> FloatArray:
         """Predict the channels, shape (n_records, n_channels, n_samples)."""
         actions = self.actions(terms)
-        marched = any(a.entry.law is not None for a in actions)
-        spend(self.campaign.response.size, oversampling if marched else 0)
+        integrated = any(a.entry.law is not None for a in actions)
+        spend(self.campaign.response.size, oversampling if integrated else 0)
         return respond(
             self.campaign.model,
             self.theta(base),
@@ -113,22 +113,22 @@ class LumpedResidual:
         )
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return model minus measurement, whitened, shape (n_rows,)."""
-        if stage.window is not None and not self.campaign.continuous:
-            return _windowed(self, base, terms, stage)
-        r = self.misfit(base, terms, stage.oversampling)
+        if resolution.window is not None and not self.campaign.continuous:
+            return _windowed(self, base, terms, resolution)
+        r = self.difference(base, terms, resolution.oversampling)
         return self.residual_of(r)
 
-    def misfit(
+    def difference(
         self, base: FloatArray, terms: Sequence[Term], oversampling: int
     ) -> FloatArray:
         """Return model minus measurement, shape of the response.
 
-        The settling of each hit counts as scatter: its share is left in the misfit.
-        The response is taken at the stiffness of each hit, so that a law which does
-        nothing but change it from hit to hit enters by the slope alone.
+        The settling of each hit counts as scatter: its share remains in the difference.
+        The response is computed at the stiffness of each hit, so a law that only
+        changes this stiffness enters by the slope.
         """
         if self.settled is None:
             r = self.response(base, terms, oversampling)
@@ -151,24 +151,24 @@ class LumpedResidual:
         return r
 
     def rise(self, terms: Sequence[Term]) -> FloatArray:
-        """Return what terms add to the joint's stiffness in each record [-].
+        """Return the relative change of the joint's stiffness by the terms [-].
 
-        Shape (n_records,); as a share of the stiffness without them, above -1.
+        Shape (n_records,), relative to the stiffness without them, above -1.
         """
         return stiffness_rise(
             self.campaign.model, self.excitation.conditions, self.actions(terms)
         )
 
-    def residual_of(self, misfit: FloatArray) -> FloatArray:
+    def residual_of(self, difference: FloatArray) -> FloatArray:
         """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
-        r = misfit / self.noise.sigma[:, :, None]
+        r = difference / self.noise.sigma[:, :, None]
         self.mask(r)
         rows = r.reshape(r.shape[0], -1, 1)
         rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
         return rows.ravel()
 
     def mask(self, rows: FloatArray) -> None:
-        """Set to 0, in place, the samples that carry no weight."""
+        """Set the samples without weight to 0, in place."""
         rows[..., -TAIL:] = 0.0
         rows[..., : self.campaign.lead] = 0.0
 
@@ -177,11 +177,12 @@ SomeBench = TypeVar("SomeBench", bound=LumpedResidual)
 
 
 def settle(bench: SomeBench, settling: FloatArray | None) -> SomeBench:
-    """Return the bench with its model taken at a settling of the joint.
+    """Return the bench with its model at a given settling of the joint.
 
     Args:
         bench: to be changed.
-        settling: log of the joint's stiffness in each hit over its mean, (n_records,).
+        settling: log of the joint's stiffness in each hit over its mean, shape
+            (n_records,); None for no settling.
     """
     conditions = replace(bench.excitation.conditions, settling=settling)
     excitation = replace(bench.excitation, conditions=conditions)
@@ -189,15 +190,18 @@ def settle(bench: SomeBench, settling: FloatArray | None) -> SomeBench:
 
 
 def _windowed(
-    bench: LumpedResidual, base: FloatArray, terms: Sequence[Term], stage: Stage
+    bench: LumpedResidual,
+    base: FloatArray,
+    terms: Sequence[Term],
+    resolution: Resolution,
 ) -> FloatArray:
     """Return the residual under an exponential window, cut where it has decayed."""
-    decay = stage.window or 1.0
-    reach = bench.gate[1] + int(
+    decay = resolution.window or 1.0
+    reach = bench.time_gate[1] + int(
         RESIDUALS.window_reach * decay * bench.campaign.sample_rate
     )
     short = _shortened(bench, scipy.fft.next_fast_len(reach, real=True))
-    r = short.response(base, terms, stage.oversampling)
+    r = short.response(base, terms, resolution.oversampling)
     r -= short.campaign.response
     r /= bench.noise.sigma[:, :, None]
     r *= _window(short, decay)
@@ -205,7 +209,7 @@ def _windowed(
 
 
 def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
-    """Return the bench of the first `length` samples, made once and kept."""
+    """Return the bench of the first `length` samples, cached."""
     if length >= bench.campaign.force.shape[1]:
         return bench
     if length not in bench.short:
@@ -218,7 +222,7 @@ def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
             bench,
             campaign=campaign,
             excitation=gated_excitation(
-                campaign, bench.gate, bench.excitation.conditions.settling
+                campaign, bench.time_gate, bench.excitation.conditions.settling
             ),
             short={},
         )
@@ -227,16 +231,18 @@ def _shortened(bench: LumpedResidual, length: int) -> LumpedResidual:
 
 def _window(bench: LumpedResidual, decay: float) -> FloatArray:
     n = bench.excitation.growth.size
-    time = (np.arange(n) - bench.gate[0]) / bench.campaign.sample_rate
+    time = (np.arange(n) - bench.time_gate[0]) / bench.campaign.sample_rate
     return np.asarray(np.exp(-np.maximum(time, 0.0) / decay))
 
 
 def gated_excitation(
-    campaign: Campaign, gate: tuple[int, int], settling: FloatArray | None = None
+    campaign: Campaign, time_gate: tuple[int, int], settling: FloatArray | None = None
 ) -> Excitation:
-    """Cut the hits out of the forces and transform them."""
+    """Transform the forces within the time gate."""
     force = np.zeros_like(campaign.force)
-    force[:, gate[0] : gate[1]] = campaign.force[:, gate[0] : gate[1]]
+    force[:, time_gate[0] : time_gate[1]] = campaign.force[
+        :, time_gate[0] : time_gate[1]
+    ]
     span = max(float(np.ptp(campaign.order)), 1.0)
     conditions = HitConditions(
         campaign.preload / campaign.preload_reference,

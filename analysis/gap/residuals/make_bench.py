@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Make the bench of a campaign: catalogue at its sites, gate, scales and groups."""
+"""Make the bench of a campaign: candidates, time gate, scales and groups."""
 
 from dataclasses import replace
 
@@ -37,19 +37,19 @@ def make_bench(
         campaign: measurement and model.
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
-        policy: thresholds that its fits are judged by.
+        policy: thresholds for its fits.
 
     Raises:
         UsageError: `without` holds a name that no entry has.
     """
     check_names(without, entries)
     entries = tuple(e for e in entries if e.effect.name not in without)
-    gate, force_sigma = (0, campaign.force.shape[1]), 0.0
+    time_gate, force_sigma = (0, campaign.force.shape[1]), 0.0
     if not campaign.continuous:
-        gate, force_sigma = force_gate(campaign.force)
-    excitation = gated_excitation(campaign, gate)
+        time_gate, force_sigma = force_time_gate(campaign.force)
+    excitation = gated_excitation(campaign, time_gate)
     records, channels, samples = campaign.response.shape
-    quiet = max(gate[0], 16)
+    quiet = max(time_gate[0], 16)
     sigma = np.sqrt(np.mean(campaign.response[:, :, :quiet] ** 2, axis=(0, 2)))
     floor = 1e-6 * np.abs(campaign.response).max()
     sigma = np.tile(np.maximum(sigma, floor), (records, 1))
@@ -59,7 +59,7 @@ def make_bench(
         candidates=candidates_of(entries, campaign.model),
         probes=candidates_of(PROBES, campaign.model),
         excitation=excitation,
-        gate=gate,
+        time_gate=time_gate,
         noise=Noise(sigma, force_sigma, ()),
         basis=np.zeros((records, 1, channels * samples)),
         shrink=np.zeros((records, 1, 1)),
@@ -72,15 +72,15 @@ def make_bench(
     return replace(bench, scales=_scales(bench))
 
 
-def force_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
+def force_time_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
     """Return the samples that hold the hits, and the noise outside them [N]."""
     n = force.shape[1]
     sigma = float(np.std(force[:, n // 2 :]))
-    loud = np.abs(force) > np.maximum(
+    strong = np.abs(force) > np.maximum(
         RESIDUALS.hit_noise_sd * sigma,
         RESIDUALS.hit_share * np.abs(force).max(axis=1, keepdims=True),
     )
-    where = np.flatnonzero(loud.any(axis=0))
+    where = np.flatnonzero(strong.any(axis=0))
     if where.size == 0 or np.ptp(where) > n // 2:
         return (0, n), 0.0
     first = max(int(where[0]) - RESIDUALS.force_padding, 0)
@@ -111,7 +111,7 @@ def _blocks(campaign: Campaign) -> Blocks:
 
 
 def _scales(bench: LumpedBench) -> dict[str, float]:
-    """Characteristic sizes at the nominal sheet, from which starts are scaled."""
+    """Return characteristic sizes at the nominal parameters, which scale starts."""
     model, excitation = bench.campaign.model, bench.excitation
     theta = model.nominal
     joint = model.first_joint

@@ -14,7 +14,7 @@ FORCE_SHAPES = RESIDUALS.force_directions
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Noise:
-    """How much of a residual is to be expected.
+    """Expected noise of a residual.
 
     Attributes:
         sigma: white noise of each record and channel, shape (n_records, n_channels).
@@ -45,7 +45,7 @@ def high_band_sigma(residual: FloatArray) -> FloatArray:
 
 
 def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
-    """Pool the noise over records, letting it grow with the response where it does.
+    """Pool the noise over records, with growth with the response if significant.
 
     Args:
         residual: shape (n_records, n_channels, n_samples).
@@ -74,7 +74,7 @@ def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
 
 
 def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return an orthonormal basis and the shrinkage that whitens unit noise plus it.
+    """Return an orthonormal basis and the shrinkage that whitens along it.
 
     With covariance I + B B^T, multiplying the component along each left singular
     vector of B by 1/sqrt(1 + s^2) makes the residual white.

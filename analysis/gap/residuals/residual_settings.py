@@ -25,8 +25,8 @@ class ResidualSettings:
     fine_steps: int = numerical(
         8,
         "steps/sample",
-        "steps of a final fit that differs from the usual by more than the "
-        "integration error allowed",
+        "steps of the time integration in a final fit, if the usual number exceeds "
+        "the allowed integration error",
         "a stop of 75,000 times the noise (test_converter_edge.py): chi2/dof 1.19 "
         "at four steps, 1.003 at eight",
     )
@@ -34,19 +34,19 @@ class ResidualSettings:
         3.5,
         "decay times",
         "length at which a windowed record is cut",
-        "exp(-3.5) of the window is left",
+        "the window has decayed to exp(-3.5)",
     )
     force_padding: int = numerical(
         48,
         "samples",
         "samples kept on each side of a hit",
-        "the anti-alias filter rings that far",
+        "ringing of the anti-alias filter",
     )
     noise_band: tuple[float, float] = numerical(
         (0.30, 0.497),
         "of the sample rate",
         "band in which the noise is estimated, above any response to a hammer",
-        "the tip of a hammer cuts off far below",
+        "the force of a hammer ends far below",
     )
     least_direction: float = numerical(
         0.03,
@@ -70,7 +70,7 @@ class ResidualSettings:
         2e-7,
         "-",
         "smallest relative scatter between hits that is tried",
-        "loosening 95054: a coarser grid took a rest of 1e-6 for 2e-5",
+        "loosening 95054: a coarser grid estimated a scatter of 1e-6 as 2e-5",
     )
     uninformative_share: float = numerical(
         0.3,
@@ -80,28 +80,28 @@ class ResidualSettings:
     least_stiffness_factor: float = numerical(
         1e-3,
         "-",
-        "smallest share of a stiffness that a settling may leave",
+        "smallest share of a stiffness after settling",
         "keeps the logarithm finite",
     )
     settling_reach: float = numerical(
         40.0,
         "sd of the scatter",
         "largest settling about which the model is expanded: a joint that loosens "
-        "by 17 sd is met at the stiffness of each hit",
+        "by 17 sd is modelled at the stiffness of each hit",
         "105020, 106030, 106052, 106076, 106096, 106164; eight draws of 3 to 9 % "
         "loosening, all named",
     )
     diverged_reach: float = numerical(
         4.0,
         "sd of the scatter",
-        "the same where the fit is far from the records",
-        "scale of all parameters off by 40 % when a trend passed for scatter",
+        "the same if the fit is far from the records",
+        "a trend counted as scatter changed the scale of all parameters by 40 %",
     )
     scatter_step: float = numerical(
         1e-6,
         "-",
         "difference step of the ways to scatter",
-        "at 1e-4 the late record departs from its slope by 1 %",
+        "at 1e-4 the end of a record deviates from its slope by 1 %",
     )
     least_rise: float = numerical(
         -0.999,
@@ -112,14 +112,13 @@ class ResidualSettings:
     edge_prior_sd: float = numerical(
         0.5,
         "-",
-        "prior sd of the filter about its usual end: anything from open to shut",
+        "prior sd of the filter gain about its default: anything from 1 to 0",
         "case 48, and a test with another filter",
     )
     edge_chi2: float = numerical(
         10.0,
         "chi2",
-        "chi2 that a law must make up at the end of the pass band for the end to "
-        "be estimated",
+        "chi2 of a law at the end of the pass band above which the end is estimated",
         "case 48, and a test with another filter",
     )
     view_bands: int = numerical(

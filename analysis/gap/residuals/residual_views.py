@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where a misfit sits: its excess, cut one way at a time."""
+"""Views of a residual: its excess by level, channel, time, frequency ..."""
 
 import itertools
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ def slice_views(
     channels: Sequence[str],
     sample_rate: float,
 ) -> tuple[View, ...]:
-    """Cut a whitened residual by every view.
+    """Divide a whitened residual by every view.
 
     Args:
         residual: shape (n_records, n_channels, n_samples).

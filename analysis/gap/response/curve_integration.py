@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Force laws given as curves: tabulated once, looked up in the compiled march.
+"""Force laws given as curves: tabulated once, interpolated in the time integration.
 
-A joint moves by nanometres in one campaign and by tenths of a millimetre in the next.
-So the points of a table are spaced by asinh: evenly about zero, by a constant ratio
-further out. A cubic through four of them is within 1e-6 of any power of the motion
-up to the seventh; a corner is rounded over 0.4 % of its distance from zero.
+The motion of a joint ranges from nanometres to tenths of a millimetre. The points of a
+table are therefore spaced by asinh: evenly about zero, by a constant ratio further out.
+A cubic through four points is within 1e-6 of any power of the motion up to the seventh;
+a corner is rounded over 0.4 % of its distance from zero.
 """
 
 import math
@@ -29,14 +29,14 @@ Curve = Callable[[FloatArray], FloatArray]
 def look_up(tables: FloatArray, row: int, finest: float, x: float) -> float:
     """Interpolate a row of a table at x by cubics of continuous slope.
 
-    Each goes through two points, with the slopes that their neighbours give
+    Each cubic passes through two points, with the slopes given by their neighbours
     (Catmull and Rom 1974, A class of local interpolating splines).
 
     Args:
         tables: shape (n_rows, POINTS).
-        row: which of them.
-        finest: distance that the spacing grows from.
-        x: where.
+        row: index of the row.
+        finest: spacing scale at zero, in units of x.
+        x: argument.
     """
     middle = (tables.shape[1] - 1) // 2
     position = math.asinh(x / finest) * (middle / GRADE) + middle
@@ -56,9 +56,9 @@ def curve_force(
 
     Args:
         tables: of curves, shape (n_rows, POINTS).
-        row: where the three of this law begin.
-        travel: finest distance [m].
-        speed: finest speed [m/s].
+        row: first of the three rows of this law.
+        travel: spacing scale of the motion [m].
+        speed: spacing scale of the speed [m/s].
         r: motion across the link [m].
         v: its rate [m/s].
     """
@@ -70,11 +70,11 @@ def tabulate(curve: Curve | None, reach: float) -> FloatArray:
     """Return a curve at the points of a table, shape (POINTS,).
 
     Args:
-        curve: from values to values, array in, array out; None for zero.
-        reach: largest value.
+        curve: function of an array that returns an array; None for zero.
+        reach: largest argument.
 
     Raises:
-        UsageError: the curve returns another shape, or what is not finite.
+        UsageError: the curve returns another shape or non-finite values.
     """
     if curve is None:
         return np.zeros(_POINTS)
@@ -91,5 +91,5 @@ def tabulate(curve: Curve | None, reach: float) -> FloatArray:
 
 
 def finest_of(reach: float) -> float:
-    """Return the distance that the spacing of a table grows from."""
+    """Return the spacing scale of a table at zero."""
     return float(reach / np.sinh(GRADE))

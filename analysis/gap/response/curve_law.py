@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A force law of a joint from plain functions: what an effect of one's own needs."""
+"""Make a force law of a joint from plain functions, for user-defined effects."""
 
 import numpy as np
 
@@ -23,7 +23,7 @@ def curve_law(
     """Return the law of force = spring(r) + damping(r) v + drag(v).
 
     Each curve takes an array and returns one of its shape; r is the motion of the
-    second end of the link against the first, positive where they draw apart. Curves
+    second end of the link relative to the first, positive if they separate. Curves
     are tabulated up to 10 mm and 100 m/s.
 
     Args:
@@ -35,7 +35,7 @@ def curve_law(
         The law, for the `law` hook of an effect.
 
     Raises:
-        UsageError: a curve returns another shape, or what is not finite.
+        UsageError: a curve returns another shape or non-finite values.
     """
     tables = [tabulate(spring, REACH), tabulate(damping, REACH)]
     return Law(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Dynamic stiffness of lumped bodies and links, with the effects that change it."""
+"""Dynamic stiffness of lumped bodies and links, including effects."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -46,7 +46,7 @@ def dynamic_stiffness(
         theta: masses, stiffnesses, dampings [SI], shape (n_base,).
         s: Laplace variable [rad/s], shape (n_lines,).
         conditions: of each record.
-        actions: effects; those without a stiffness hook are passed over.
+        actions: effects; those without a stiffness hook are ignored.
 
     Returns:
         [N/m], shape (n_bodies, n_bodies, 1 or n_records, n_lines).
@@ -89,7 +89,7 @@ def state_of(
     conditions: HitConditions,
     action: Action,
 ) -> ElementState:
-    """Return what an effect's hook may look at, at Laplace variables `s`."""
+    """Return the inputs of an effect's hook at Laplace variables `s`."""
     n, links = len(model.bodies), len(model.links)
     body = action.kind == "body"
     return ElementState(

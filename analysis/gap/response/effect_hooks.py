@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""How an effect acts on lumped dynamics: the hooks that a catalogue entry fills in.
+"""Hooks through which a catalogue entry acts on lumped dynamics.
 
-A hook returns what it ADDS; a hook of amplitude 0 returns exact zeros (or ones for a
-transfer), so that the base is reproduced to the last bit.
+A hook returns its additional contribution; at amplitude 0 it returns exact zeros (ones
+for a transfer), so that the base is reproduced to the last bit.
 """
 
 from collections.abc import Callable, Mapping
@@ -17,13 +17,13 @@ from jointbench.analysis.gap.response.slider_integration import NO_SLIDERS
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HitConditions:
-    """What is known of each record.
+    """Conditions of each record.
 
     Attributes:
         preload: over the reference preload [-], shape (n_records,).
         progress: rank in time from 0 to 1 [-], shape (n_records,).
-        settling: log of the joint's stiffness over its mean, as it has settled from
-            hit to hit [-], shape (n_records,); None where that is not looked at.
+        settling: log of the joint's stiffness in each hit over its mean [-], shape
+            (n_records,); None if settling is not modelled.
     """
 
     preload: FloatArray
@@ -33,7 +33,7 @@ class HitConditions:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ElementState:
-    """What a link or body hook may look at.
+    """Inputs of a link or body hook.
 
     Attributes:
         s: Laplace variable [rad/s], shape (n_lines,).
@@ -52,7 +52,7 @@ class ElementState:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Law:
-    """A nonlinear force law for the compiled march.
+    """A nonlinear force law for the time integration.
 
     Attributes:
         kind: one of the constants of `force_integration`.
@@ -84,7 +84,7 @@ def _nothing() -> Mapping[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class LumpedEffect:
-    """A catalogue entry: an effect and the one or two hooks it acts through.
+    """A catalogue entry: an effect and its hooks.
 
     Attributes:
         effect: name, parameters, source, rivals.
@@ -98,11 +98,11 @@ class LumpedEffect:
         mixing: factor of the other channels added to this one.
         shape: from (model, measured, values, sample_rate) to the channel's output
             [SI], all of shape (n_records, n_channels, n_samples).
-        rise: relative change of a link's stiffness in each record, for effects that do
-            nothing else, from conditions and values, shape (n_records,); None for
-            others. Where the joint's stiffness is taken from each hit, it enters by
-            the slope there.
-        every_channel: True where a fault of all channels alike is a site of its own.
+        rise: relative change of a link's stiffness in each record, from conditions and
+            values, shape (n_records,), for effects without any other action; None
+            for others. If the model is expanded about the stiffness of each hit, the
+            change enters by the slope at that stiffness.
+        every_channel: True if the same fault of all channels is a site.
     """
 
     effect: Effect
@@ -118,10 +118,10 @@ class LumpedEffect:
 
     @property
     def name(self) -> str:
-        """Name of the effect, under which the catalogue knows the entry."""
+        """Name of the effect, which identifies the entry in the catalogue."""
         return self.effect.name
 
 
 def one_row(values: ComplexArray) -> ComplexArray:
-    """Return a line array as one row that every record shares."""
+    """Return a line array as one row that is common to all records."""
     return np.asarray(values, dtype=np.complex128)[None, :]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Forces made ready for the damped transform, with the end of their band faded out."""
+"""Prepare forces for the damped transform, with the end of their band tapered."""
 
 import math
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ FADED = RESPONSE.faded_band
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Excitation:
-    """Forces made ready once: transformed, with the time axis of the response.
+    """Prepared forces: their transform, and the time axis of the response.
 
     Attributes:
         spectrum: damped transform of the gated force, shape (n_records, n_lines).
@@ -29,7 +29,7 @@ class Excitation:
         damping: a [1/s].
         conditions: of each record.
         taper: of the nonlinear part near the Nyquist frequency, shape (n_lines,).
-        padded: samples that the transforms go over, even.
+        padded: length of the transforms [samples], even.
     """
 
     spectrum: ComplexArray
@@ -75,7 +75,7 @@ def prepare_excitation(
 
 
 def pass_band_end(frequency: FloatArray) -> FloatArray:
-    """Return an anti-alias filter that is known by its pass band alone.
+    """Return the gain of an anti-alias filter of which only the pass band is known.
 
     Args:
         frequency: over the sample rate [-].

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Compiled march of the nonlinear link force along a known linear motion.
+"""Compiled time integration of the nonlinear link force along a linear motion.
 
-Only the difference e between the motion with and without the effect is stepped, so
-that a force law of amplitude 0 leaves the linear response untouched to the last bit.
-The link's own compliance is a sum of modes, each stepped exactly for a force that is
-a straight line within the step (first-order hold); the force at the end of a step is
-found from the motion predicted with an extrapolated force, whose error is of the
-order dt^2/m of a second difference and far below the noise.
+Only the difference between the motion with and without the effect is integrated, so
+that a force law of amplitude 0 leaves the linear response unchanged to the last bit.
+The link's compliance is a sum of modes, each integrated exactly for a force that is
+linear within the step (first-order hold); the force at the end of a step is computed
+from the motion predicted with an extrapolated force, whose error is of the order
+dt^2/m of a second difference and far below the noise.
 
-All that a step calls is compiled into it: handing arrays over would cost more than the
-step.
+All functions called in a step are inlined: passing arrays would take longer than the
+step itself.
 """
 
 import math
@@ -35,38 +35,38 @@ QUADRATIC_DAMPING = 4
 CURVES = 5
 LANES = RESPONSE.lanes
 
-# What a march keeps of its lanes lies in two plain arrays, each quantity at a place
-# that the compiler knows: with an array for each, a step takes twice as long.
+# The state of all lanes is in two plain arrays, each quantity at an offset that is a
+# compile-time constant: with one array per quantity, a step takes twice as long.
 _FORCE, _GUESS, _BEFORE, _MOTION, _SPEED, _SLOPE = (i * LANES for i in range(6))
-"""Places of the force of all laws, its guess, the last motion, the motion, its rate,
-and what a unit of force takes of that rate within a step."""
+"""Offsets of the force of all laws, its estimate, the last motion, the motion, its
+rate, and the change of that rate per unit force within a step."""
 _MODES = 6 * LANES
 _REAL, _IMAGINARY, _TURN, _QUARTER, _START, _START_I, _END, _END_I, _POLE, _POLE_I = (
     i * LANES for i in range(10)
 )
-"""Places within a mode: its motion, growth, hold weights and pole (re, im)."""
+"""Offsets within a mode: its motion, growth, hold weights and pole (re, im)."""
 _MODE = 10 * LANES
-_OWN, _EARLIER, _HOPE = (i * LANES for i in range(3))
-"""Places within a law: its force, that of the step before, and what is hoped for."""
+_OWN, _EARLIER, _EXTRAPOLATED = (i * LANES for i in range(3))
+"""Offsets within a law: its force, that of the previous step, and the extrapolation."""
 _LAW = 3 * LANES
 
 
-class MarchLaws(NamedTuple):
-    """All force laws of a link as the compiled march wants them.
+class IntegrationLaws(NamedTuple):
+    """All force laws of a link in the arrays of the time integration.
 
-    They lie in common arrays: a law that is handed over as an array of its own, or cut
-    out of one as a view, costs more at every step than what is done with it.
+    Common arrays are used because passing each law as an array or a view would take
+    longer at every step than its evaluation.
 
     Attributes:
         kinds: which laws, shape (n_laws,).
         p: their parameters, shape (n_laws, 2).
-        ends: where the sliders of each law begin, and end, shape (n_laws + 1,).
-        slips: slip displacements of the sliders [m], rising within a law, shape
+        ends: first slider of each law, and the end of the last, shape (n_laws + 1,).
+        slips: slip displacements of the sliders [m], ascending within a law, shape
             (n_sliders,).
         weights: stiffness of each slider [N/m], same shape.
-        tables: of sliders, four rows a law, shape (4 n_laws, n_points).
-        tops: what goes with them, shape (n_laws, 7).
-        curves: of curve laws, three rows a law, shape (3 n_laws, n_points).
+        tables: of sliders, four rows per law, shape (4 n_laws, n_points).
+        tops: properties of these tables, see `slide`, shape (n_laws, 7).
+        curves: of curve laws, three rows per law, shape (3 n_laws, n_points).
     """
 
     kinds: IntArray
@@ -110,7 +110,7 @@ def _forces(
     p: FloatArray,
     curves: FloatArray,
 ) -> None:
-    """Write the force of law `a` in every lane, unless it is one of sliders."""
+    """Write the force of law `a`, other than a slider law, in every lane."""
     kind, first, second, own = kinds[a], p[a, 0], p[a, 1], a * _LAW + _OWN
     if kind == POLYNOMIAL:
         for k in range(LANES):
@@ -124,8 +124,8 @@ def _forces(
             f[own + k] = first * w[_SPEED + k] * abs(w[_SPEED + k])
     elif kind == COULOMB:
         for k in range(LANES):
-            hope = f[a * _LAW + _HOPE + k]
-            f[own + k] = _rub(first, second, w[_SPEED + k], w[_SLOPE + k], hope)
+            extrapolated = f[a * _LAW + _EXTRAPOLATED + k]
+            f[own + k] = _rub(first, second, w[_SPEED + k], w[_SLOPE + k], extrapolated)
     elif kind == CURVES:
         for k in range(LANES):
             r, v = w[_MOTION + k], w[_SPEED + k]
@@ -134,10 +134,10 @@ def _forces(
 
 @compiled()
 def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> FloatArray:
-    """Return what a march keeps of its lanes, at rest.
+    """Return the initial state of the lanes, at rest.
 
     Modes are scaled by their residues, so that a real part is a displacement; each is
-    stepped by its growth and by first-order-hold weights.
+    advanced by its growth and by first-order-hold weights.
     """
     w = np.zeros(_MODES + poles.shape[0] * _MODE)
     for m in range(poles.shape[0]):
@@ -157,40 +157,40 @@ def _made_ready(poles: ComplexArray, residues: ComplexArray, dt: float) -> Float
 
 @compiled(fastmath=True, inline="always")
 def _predict(w: FloatArray, n_modes: int) -> None:
-    """Step the modes in place with a guessed force, and add them to the motion."""
+    """Advance the modes in place with an estimated force; add them to the motion."""
     for m in range(n_modes):
         at = _MODES + m * _MODE
         for k in range(LANES):
             x, y = w[at + _REAL + k], w[at + _IMAGINARY + k]
             turn, quarter = w[at + _TURN + k], w[at + _QUARTER + k]
-            pull, push = w[_FORCE + k], w[_GUESS + k]
+            old, change = w[_FORCE + k], w[_GUESS + k]
             moved = turn * x - quarter * y
-            moved -= w[at + _START + k] * pull + w[at + _END + k] * push
+            moved -= w[at + _START + k] * old + w[at + _END + k] * change
             w[at + _IMAGINARY + k] = (
                 turn * y
                 + quarter * x
-                - w[at + _START_I + k] * pull
-                - w[at + _END_I + k] * push
+                - w[at + _START_I + k] * old
+                - w[at + _END_I + k] * change
             )
             w[at + _REAL + k] = moved
             w[_MOTION + k] += moved
 
 
 @compiled(fastmath=True)
-def _march_lanes(
+def _integrate_lanes(
     displacement: FloatArray,
     velocity: FloatArray,
     w: FloatArray,
-    laws: MarchLaws,
+    laws: IntegrationLaws,
     needs_velocity: bool,
     first: int,
     out: FloatArray,
 ) -> None:
-    """March the records from `first` on, as many as there are lanes."""
+    """Integrate as many records as there are lanes, beginning at `first`."""
     n_modes, n_laws = (w.size - _MODES) // _MODE, laws.kinds.size
     states = np.zeros((LANES, laws.slips.size, 2))
     active = np.zeros((n_laws, LANES), dtype=np.int64)
-    # Taken out once: each look into a tuple counts a reference up and down.
+    # Unpacked once: each access to a tuple changes a reference count.
     kinds, p, ends, slips, weights, tables, tops, curves = laws
     sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * _LAW)
     for i in range(displacement.shape[0]):
@@ -201,9 +201,9 @@ def _march_lanes(
         for a in range(n_laws):
             for k in range(LANES):
                 at = a * _LAW + k
-                f[at + _HOPE] = 2.0 * f[at + _OWN] - f[at + _EARLIER]
+                f[at + _EXTRAPOLATED] = 2.0 * f[at + _OWN] - f[at + _EARLIER]
                 f[at + _EARLIER] = f[at + _OWN]
-                w[_GUESS + k] += f[at + _HOPE]
+                w[_GUESS + k] += f[at + _EXTRAPOLATED]
         _predict(w, n_modes)
         if needs_velocity:
             for k in range(LANES):
@@ -243,27 +243,27 @@ def _march_lanes(
 
 
 @compiled(nogil=True)
-def march(
+def integrate_link_force(
     displacement: FloatArray,
     velocity: FloatArray,
     poles: ComplexArray,
     residues: ComplexArray,
     dt: float,
-    laws: MarchLaws,
+    laws: IntegrationLaws,
     needs_velocity: bool,
 ) -> FloatArray:
-    """Return the force of all laws of a link along the coupled motion.
+    """Integrate the force of all laws of a link along the coupled motion.
 
     Args:
         displacement: linear motion across the link [m], shape (n_steps, n_columns):
-            a column a record, and columns of zeros up to a multiple of `LANES`.
-        velocity: its rate [m/s], same shape; not looked at unless needed.
+            one column per record, and zero columns up to a multiple of `LANES`.
+        velocity: its rate [m/s], same shape; ignored unless needed.
         poles: of the link's compliance [rad/s], shape (n_modes, n_records), one of
             each conjugate pair.
-        residues: of it, doubled for a pair [m/N rad/s], same shape.
+        residues: of the compliance, doubled for a pair [m/N rad/s], same shape.
         dt: step [s].
         laws: that act together.
-        needs_velocity: True where one of them looks at it.
+        needs_velocity: True if one of them depends on the velocity.
 
     Returns:
         Force of the laws together [N], shape (n_steps, n_columns).
@@ -274,11 +274,11 @@ def march(
         count = min(LANES, n_records - first)
         own_poles = np.full((n_modes, LANES), -1.0 + 0.0j)
         own_residues = np.zeros((n_modes, LANES), dtype=np.complex128)
-        # One by one: the check of shapes behind a slice takes seconds to compile.
+        # Copied in a loop: the shape check of a slice takes seconds to compile.
         for m in range(n_modes):
             for k in range(count):
                 own_poles[m, k] = poles[m, first + k]
                 own_residues[m, k] = residues[m, first + k]
         w = _made_ready(own_poles, own_residues, dt)
-        _march_lanes(displacement, velocity, w, laws, needs_velocity, first, out)
+        _integrate_lanes(displacement, velocity, w, laws, needs_velocity, first, out)
     return out

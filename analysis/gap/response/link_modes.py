@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Modes of the compliance across a link, with every linear effect that is switched on.
+"""Modes of the compliance across a link, including the linear effects of a fit.
 
-The compiled march steps the motion that a nonlinear link force causes. It needs the
-poles and residues of the link's compliance, record by record: a preload, a settling
-or an attached oscillator changes them as it changes the linear response.
+The time integration computes the motion caused by a nonlinear link force. It needs the
+poles and residues of the link's compliance for each record, since a preload, a settling
+or an attached oscillator changes them.
 """
 
 from collections.abc import Sequence
@@ -50,11 +50,11 @@ def link_modes(
         theta: masses, stiffnesses, dampings [SI], shape (n_base,).
         conditions: of each record.
         link: index of the link.
-        actions: effects; those with a stiffness hook count.
+        actions: effects; only those with a stiffness hook are used.
 
     Returns:
-        Poles [rad/s], one of each conjugate pair, and residues [m/N rad/s], those of
-        a pair doubled; both of shape (n_modes, n_records).
+        Poles [rad/s], one of each conjugate pair, and residues [m/N rad/s], doubled
+        for a pair; both of shape (n_modes, n_records).
     """
     linear = [a for a in actions if a.entry.stiffness is not None]
     records = conditions.preload.size
@@ -80,7 +80,7 @@ def link_modes(
 def _one_of_each_pair(
     poles: ComplexArray, residues: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Keep upper poles, their residues doubled, and real ones; pad with nothing."""
+    """Keep upper poles, with doubled residues, and real poles; pad with zeros."""
     size = np.abs(poles) + 1e-300
     upper = poles.imag > RESPONSE.real_pole_share * size
     weight = np.where(
@@ -116,7 +116,7 @@ def _base_parts(
 def _part(
     model: LumpedModel, theta: FloatArray, conditions: HitConditions, action: Action
 ) -> _Part:
-    """Resolve an effect's dynamic stiffness into its rational parts, exactly."""
+    """Decompose an effect's dynamic stiffness exactly into its rational parts."""
     if action.kind == "body":
         across = np.eye(len(model.bodies))[action.index]
     else:

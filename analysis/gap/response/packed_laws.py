@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Put the force laws of a link into the common arrays of the compiled march."""
+"""Pack the force laws of a link into the arrays of the time integration."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ from jointbench.analysis.gap.response.effect_hooks import Law
 from jointbench.analysis.gap.response.force_integration import (
     CURVES,
     SLIDERS,
-    MarchLaws,
+    IntegrationLaws,
 )
 
 PARAMETERS = 2
@@ -18,13 +18,13 @@ SLIDER_ROWS = 4
 CURVE_ROWS = 3
 
 
-def pack_laws(laws: Sequence[Law]) -> MarchLaws:
-    """Return laws that act together at one link as the march wants them."""
+def pack_laws(laws: Sequence[Law]) -> IntegrationLaws:
+    """Return laws that act together at one link in packed arrays."""
     p = np.zeros((len(laws), PARAMETERS))
     for row, law in zip(p, laws, strict=True):
         row[: law.parameters.size] = law.parameters
     sizes = [law.slips.size for law in laws]
-    return MarchLaws(
+    return IntegrationLaws(
         kinds=np.array([law.kind for law in laws], dtype=np.int64),
         p=p,
         ends=np.cumsum([0, *sizes], dtype=np.int64),
@@ -37,7 +37,7 @@ def pack_laws(laws: Sequence[Law]) -> MarchLaws:
 
 
 def _rows(laws: Sequence[Law], kind: int, count: int) -> FloatArray:
-    """Return the tables of one kind of law, so many rows a law, zeros for others."""
+    """Return the tables of one kind of law, `count` rows per law, zeros for others."""
     own = [law.tables if law.kind == kind else None for law in laws]
     width = max((t.shape[1] for t in own if t is not None), default=1)
     rows = [np.zeros((count, width)) if t is None else t for t in own]

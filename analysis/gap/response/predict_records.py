@@ -4,14 +4,14 @@
 The linear part is evaluated on a line to the right of the imaginary axis of the
 Laplace plane: multiply the force by exp(-a t), pad to 1.5 times the length, transform,
 multiply by the transfer function at s = a + i omega, transform back, multiply by
-exp(a t). For a force that is band-limited between samples this is exact but for a
-wrap-around of exp(-16), with no step and no leakage. The last fiftieth of the band
-fades out: noise of the force there, which no filter lets through, would ring ahead of
-the hit, that is at the end of the transform, where exp(a t) is greatest.
+exp(a t). For a band-limited force this is exact except for a wrap-around of exp(-16),
+without discretisation error or leakage. The last fiftieth of the band is tapered: force
+noise there, above the pass band of any filter, would ring before the hit, that is at
+the end of the transform, where exp(a t) is largest.
 
 Source:
     Wilcox 1978, Int. J. Elec. Eng. Educ. 15, 247 (numerical Laplace transform with
-    damping); the choice a = 16 / (1.5 n dt) follows from the wrap-around wanted.
+    damping); the choice a = 16 / (1.5 n dt) follows from the required wrap-around.
 """
 
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ from jointbench.analysis.gap.response.force_integration import (
     CURVES,
     LANES,
     QUADRATIC_DAMPING,
-    march,
+    integrate_link_force,
 )
 from jointbench.analysis.gap.response.link_modes import link_modes
 from jointbench.analysis.gap.response.packed_laws import pack_laws
@@ -40,7 +40,7 @@ from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 _MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
-"""Laws that look at the velocity."""
+"""Laws that depend on the velocity."""
 
 
 def respond(
@@ -59,9 +59,9 @@ def respond(
         theta: base parameters [SI], shape (n_base,).
         excitation: prepared forces.
         actions: effects switched on.
-        oversampling: steps of the nonlinear march per sample.
-        measured: needed by effects that carry a phase of their own (hum), shape
-            as the result.
+        oversampling: steps of the time integration per sample.
+        measured: needed by effects that fit their own phase (hum), shape as the
+            result.
 
     Returns:
         Response in the model's output, shape (n_records, n_channels, n_samples).
@@ -92,26 +92,28 @@ def motion(
     bodies = range(len(model.bodies))
     variant = np.arange(excitation.hit.size) if h.shape[2] > 1 else 0
     linear = [h[i, excitation.hit, variant] * excitation.spectrum for i in bodies]
-    bent = [a for a in actions if a.entry.law is not None]
-    for link in sorted({a.index for a in bent}):
-        laws = [a.entry.law(a.values) for a in bent if a.index == link if a.entry.law]
-        pull = _link_force(
+    nonlinear = [a for a in actions if a.entry.law is not None]
+    for link in sorted({a.index for a in nonlinear}):
+        laws = [
+            a.entry.law(a.values) for a in nonlinear if a.index == link if a.entry.law
+        ]
+        link_force = _link_force(
             model, theta, excitation, actions, linear, link, laws, oversampling
         )
         for i in bodies:
-            linear[i] = linear[i] - _across(model, h, i, link) * pull
+            linear[i] = linear[i] - _across(model, h, i, link) * link_force
     return linear
 
 
 def undamped(spectra: ComplexArray, excitation: Excitation) -> FloatArray:
-    """Return what damped spectra mean in time, shape (..., n_samples)."""
+    """Transform damped spectra to time, shape (..., n_samples)."""
     n = excitation.growth.size
     x = scipy.fft.irfft(spectra, excitation.padded, axis=-1)
     return np.asarray(x[..., :n] * excitation.growth)
 
 
 def _across(model: LumpedModel, h: ComplexArray, body: int, link: int) -> ComplexArray:
-    """Motion of a body per force pulling the ends of a link together."""
+    """Return the motion of a body per unit force that contracts a link."""
     first, second = model.ends(link)
     value = h[body, second]
     if first >= 0:
@@ -129,10 +131,11 @@ def _link_force(
     laws: Sequence[Law],
     oversampling: int,
 ) -> ComplexArray:
-    """Damped spectrum of the nonlinear force across a link, anti-aliased.
+    """Return the damped spectrum of the nonlinear link force, anti-aliased.
 
-    The march errs with the square of its step, so that half as many steps tell what
-    is left of the error; friction at a standstill is too sharp for that.
+    The error of the time integration is proportional to the square of its step, so a
+    solution with half as many steps gives an extrapolation to zero step; dry friction
+    at standstill is not smooth enough for that.
     """
     first, second = model.ends(link)
     x = linear[second]
@@ -140,12 +143,12 @@ def _link_force(
         x = x - linear[first]
     modes = link_modes(model, theta, excitation.conditions, link, actions)
     fine = _between_samples(excitation, x, laws, oversampling)
-    force = _marched(excitation, fine, modes, laws, oversampling)
+    force = _integrated(excitation, fine, modes, laws, oversampling)
     if oversampling >= RESPONSE.extrapolated_steps and all(
         law.kind != COULOMB for law in laws
     ):
         coarse = fine[:, ::2]
-        half = _marched(excitation, coarse, modes, laws, oversampling // 2)
+        half = _integrated(excitation, coarse, modes, laws, oversampling // 2)
         force = (4.0 * force - half) / 3.0
     return np.asarray(force * excitation.taper)
 
@@ -158,8 +161,8 @@ def _between_samples(
 ) -> FloatArray:
     """Return motion and speed across a link, shape (2, n_steps, n_columns).
 
-    The motion alone where no law looks at the speed. A column a record, and columns of
-    zeros to fill the lanes of the march.
+    Only the motion is returned if no law depends on the speed. There is one column per
+    record, and zero columns fill the lanes of the time integration.
     """
     count = excitation.growth.size * oversampling
     moving = any(law.kind in _MOVING for law in laws)
@@ -176,24 +179,26 @@ def _between_samples(
 
 
 def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
-    """Return exp(a t) at so many steps a sample."""
+    """Return exp(a t) at `oversampling` steps per sample."""
     count = excitation.growth.size * oversampling
     dt = 1 / (excitation.sample_rate * oversampling)
     return np.asarray(np.exp(excitation.damping * dt * np.arange(count)))
 
 
-def _marched(
+def _integrated(
     excitation: Excitation,
     motions: FloatArray,
     modes: tuple[ComplexArray, ComplexArray],
     laws: Sequence[Law],
     oversampling: int,
 ) -> ComplexArray:
-    """Damped spectrum of the link force at one step size, up to Nyquist."""
+    """Return the damped spectrum of the link force at one step size, up to Nyquist."""
     motions = np.ascontiguousarray(motions)
     dt = 1 / (excitation.sample_rate * oversampling)
     packed = pack_laws(laws)
-    force = march(motions[0], motions[-1], *modes, dt, packed, len(motions) > 1)
+    force = integrate_link_force(
+        motions[0], motions[-1], *modes, dt, packed, len(motions) > 1
+    )
     records = excitation.hit.size
     damped = force.T[:records] / _growth(excitation, oversampling)
     spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=1)

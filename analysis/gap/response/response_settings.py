@@ -27,13 +27,13 @@ class ResponseSettings:
         1.5,
         "of the record",
         "length of a transform",
-        "nine campaigns: at most 0.5 units of chi2 against six lengths, and two "
-        "thirds of the time of length 2",
+        "nine campaigns: within 0.5 units of chi2 of six lengths, in two thirds of "
+        "the time of length 2",
     )
     pass_band: float = numerical(
         0.42,
         "of the sample rate",
-        "end of the pass band of an anti-alias filter that is not known otherwise",
+        "end of the pass band of an anti-alias filter, if unknown",
         "the filter assumed by the simulators; the end is estimated where it matters",
     )
     faded_band: float = numerical(
@@ -70,7 +70,7 @@ class ResponseSettings:
         8,
         "records",
         "records that are integrated side by side",
-        "timed: 13 ns a record and step, 24 before",
+        "timed: 13 ns per record and step; 24 ns without",
     )
     real_pole_share: float = numerical(
         1e-9,

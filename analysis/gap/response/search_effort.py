@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""How much a search has cost, so that it ends where nothing explains the records.
+"""Computing effort of a search, which limits a search without an explanation.
 
-Counted in samples predicted, not in seconds: the same records give the same answer on
-a fast machine and on a slow one.
+The effort is counted in predicted samples, not in seconds, so that the result does not
+depend on the speed of the machine.
 """
 
 from collections.abc import Iterator
@@ -15,11 +15,11 @@ import numpy as np
 
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 
-MARCHED = RESPONSE.step_effort
+STEP_EFFORT = RESPONSE.step_effort
 
 
 class SearchExhausted(Exception):
-    """A search has spent what it may."""
+    """The effort limit of a search is reached."""
 
 
 @dataclass(slots=True)
@@ -27,8 +27,8 @@ class Effort:
     """Samples predicted in a search.
 
     Attributes:
-        spent: so far.
-        limit: beyond which it ends.
+        spent: samples so far.
+        limit: largest number of samples.
     """
 
     spent: float = 0.0
@@ -41,7 +41,7 @@ _CURRENT: ContextVar[Effort | None] = ContextVar("effort", default=None)
 
 @contextmanager
 def counted() -> Iterator[Effort]:
-    """Count what is predicted within, from nothing."""
+    """Count the samples predicted within the context, from zero."""
     effort = Effort()
     token = _CURRENT.set(effort)
     try:
@@ -52,7 +52,7 @@ def counted() -> Iterator[Effort]:
 
 @contextmanager
 def limited(effort: Effort, limit: float) -> Iterator[None]:
-    """End what is done within by `SearchExhausted` once so much has been spent."""
+    """Raise `SearchExhausted` within the context once the limit is reached."""
     effort.limit = limit
     try:
         yield
@@ -65,15 +65,15 @@ def spend(samples: int, oversampling: int) -> None:
 
     Args:
         samples: of all channels.
-        oversampling: steps of a nonlinear march per sample; 0 without one.
+        oversampling: steps of the time integration per sample; 0 without one.
 
     Raises:
-        SearchExhausted: the search has spent what it may.
+        SearchExhausted: the effort limit is reached.
     """
     effort = _CURRENT.get()
     if effort is None:
         return
     with _ADDING:
-        effort.spent += samples * (1.0 + MARCHED * oversampling)
+        effort.spent += samples * (1.0 + STEP_EFFORT * oversampling)
     if effort.spent > effort.limit:
         raise SearchExhausted

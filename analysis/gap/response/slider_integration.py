@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Smooth sliders: their curves as tables, and a compiled step along them.
+"""Smooth sliders: tables of their curves, and a compiled step along them.
 
-A slider remembers how far it has been pushed. Its loading curve rises from elastic to
-slip; unloading it is elastic, or follows a second curve (Bouc and Wen). Both curves are
-tabulated once for a set of shape parameters, so that a step is one or two lookups.
+The state of a slider is its displacement. Its loading curve changes from elastic to
+slip; its unloading is elastic, or follows a second curve (Bouc and Wen). Both curves
+are tabulated once for a set of shape parameters, so that a step is one or two lookups.
 """
 
 from typing import NamedTuple
@@ -17,15 +17,15 @@ from jointbench.analysis.gap.response.response_settings import RESPONSE
 _TABLE_SIZE = RESPONSE.slider_table_points
 _IDENTITY = RESPONSE.slider_elastic_error
 _STALE = 1e30
-"""Loading coordinate of a slider that has unloaded since it was last known."""
+"""Loading coordinate that is invalid since the slider has unloaded."""
 
 
 @compiled(fastmath=True, inline="always")
 def _lookup(tables: FloatArray, row: int, per_unit: float, x: float) -> float:
     """Interpolate a row of evenly spaced points; constant above its end.
 
-    Rows are not sliced out, and the function is compiled into its caller: a view costs
-    more than the lookup, and an array that is handed over ten times as much.
+    Rows are not sliced, and the function is inlined: a view takes longer than the
+    lookup, and passing an array ten times as long.
     """
     position = x * per_unit
     index = int(position)
@@ -50,13 +50,13 @@ def slide(
     Args:
         u: displacement of the slider over its slip displacement [-].
         loading: its signed coordinate on the loading curve [-]; `_STALE` after
-            unloading, when it is looked up at need.
+            unloading, when it is looked up if needed.
         step: change of displacement over the slip displacement [-].
         tables: u of loading coordinate, its inverse, unloading coordinate of u, its
             inverse; shape (n_rows, n).
         tops: points per unit of the four tables; the state below which all four are
             the identity; 1 where unloading is elastic; end of loading; shape (7,).
-        row: where the four tables of this slider begin.
+        row: first of the four rows of this slider.
 
     Returns:
         The new u and loading coordinate.
@@ -80,16 +80,16 @@ def slide(
 
 
 class Bank(NamedTuple):
-    """A bank of sliders in a march: plain numbers, which cost nothing to hand over.
+    """A bank of sliders in the time integration, as plain numbers.
 
     Attributes:
-        law: which law of the link it is.
-        first: where its sliders begin.
-        beyond: where they end.
-        lanes: records that are marched side by side.
-        now: where in the motions its own begin [m].
-        last: where those of the step before begin [m].
-        force: where in the forces its own begin [N].
+        law: index of its law.
+        first: its first slider.
+        beyond: end of its sliders.
+        lanes: number of records integrated in parallel.
+        now: offset of its motions [m].
+        last: offset of the motions of the previous step [m].
+        force: offset of its forces [N].
     """
 
     law: int
@@ -102,7 +102,7 @@ class Bank(NamedTuple):
 
 
 class Sliders(NamedTuple):
-    """The sliders of all banks, in order of rising slip displacement within a bank.
+    """The sliders of all banks, by ascending slip displacement within a bank.
 
     Attributes:
         slips: slip displacements [m], shape (n_sliders,).
@@ -126,26 +126,26 @@ def bank_forces(
     tables: FloatArray,
     tops: FloatArray,
 ) -> None:
-    """Write the force of a bank, less that of the same bank held fast.
+    """Write the force of a bank, minus that of the same bank without slip.
 
-    Sliders come in order of rising slip displacement. Those that have never left their
-    elastic range follow the joint, and are passed over.
+    Sliders are in order of ascending slip displacement. Those that have never left
+    their elastic range follow the joint, and are skipped.
 
     Args:
-        bank: which one, and where its numbers are.
-        w: motions of the lanes among other things.
-        f: forces of the lanes among other things; written.
+        bank: the bank and its offsets.
+        w: state of the lanes, including the motions.
+        f: forces of the lanes; changed in place.
         states: displacement over slip displacement, and loading coordinate, shape
-            (n_lanes, n_sliders, 2); moved.
+            (n_lanes, n_sliders, 2); changed in place.
         active: sliders that have left their elastic range, shape (n_laws, n_lanes).
         sliders: of all banks.
-        tables: four rows a law, shape (4 n_laws, n_points).
-        tops: what goes with them, shape (n_laws, 7).
+        tables: four rows per law, shape (4 n_laws, n_points).
+        tops: properties of these tables, see `slide`, shape (n_laws, 7).
     """
-    # Taken out once: each look into a tuple of arrays counts a reference up and down.
+    # Unpacked once: each access to a tuple of arrays changes a reference count.
     slips, rates, weights = sliders
     a, first, beyond = bank.law, bank.first, bank.beyond
-    # Numbers of their own: an array might change with `states`, and is read each time.
+    # Local numbers: an array could alias `states`, and would be read at every use.
     own = (
         tops[a, 0],
         tops[a, 1],
@@ -177,7 +177,7 @@ def slider_tables(
 ) -> tuple[FloatArray, FloatArray]:
     """Tabulate the curves of a smooth slider.
 
-    With u the displacement of the slider over its slip displacement, the loading
+    If u is the displacement of the slider over its slip displacement, the loading
     rate is du/dr = 1 - loading u^n and the unloading rate 1 + unloading u^n.
 
     Args:
@@ -186,7 +186,7 @@ def slider_tables(
         sharpness: n [-].
 
     Returns:
-        Tables, shape (4, TABLE_SIZE), and what `slide` wants with them, shape (7,).
+        Tables, shape (4, TABLE_SIZE), and their properties (`tops` of `slide`), (7,).
 
     Source:
         Wen 1976, J. Eng. Mech. Div. 102, eq. (2), with |u| <= 1 normalised.
@@ -216,7 +216,7 @@ def slider_tables(
 
 
 def _cumulative(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Integrate y over x from the first point, by trapezia."""
+    """Integrate y over x from the first point, by the trapezoidal rule."""
     steps = 0.5 * (y[1:] + y[:-1]) * np.diff(x)
     return np.concatenate([[0.0], np.cumsum(steps)])
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Predictions side by side, in threads: what comes out does not depend on how many.
+"""Parallel predictions in threads; results do not depend on their number.
 
-The slopes of a fit and the directed tests are dozens of predictions that know nothing
-of each other, and both the compiled march and the transforms let other threads run.
-Rivals are not raced side by side: each is given up by the best of those before it.
+The slopes of a fit and the directed tests are dozens of independent predictions, and
+both the compiled time integration and the transforms release the interpreter lock.
+Candidates are not fitted in parallel: each fit is pruned by the best one before it.
 """
 
 import os
@@ -19,13 +19,13 @@ _POOL: ContextVar[ThreadPoolExecutor | None] = ContextVar("pool", default=None)
 
 @contextmanager
 def side_by_side(workers: int | None = None) -> Iterator[None]:
-    """Let predictions within run side by side.
+    """Run the predictions within the context in parallel.
 
-    Linear algebra keeps to one thread meanwhile: its matrices are small, and threads
-    of its own that wait for a busy core take ten times as long as none.
+    Linear algebra is limited to one thread meanwhile: its matrices are small, and its
+    own threads, waiting for a busy core, would take ten times as long.
 
     Args:
-        workers: threads; as many as there are cores if None.
+        workers: number of threads; the number of cores if None.
     """
     count = workers or os.cpu_count() or 1
     with threadpool_limits(limits=1):
@@ -41,14 +41,14 @@ def side_by_side(workers: int | None = None) -> Iterator[None]:
 
 
 def each(task: Callable[[int], None], count: int) -> None:
-    """Do a task for 0, 1, ..., side by side where that was asked for.
+    """Run a task for 0, 1, ..., in parallel within `side_by_side`.
 
     Args:
-        task: that writes its result to a place of its own, and asks for no threads.
-        count: how often.
+        task: writes its result to its own place, and starts no threads.
+        count: number of runs.
 
     Raises:
-        Exception: what the first task raised that failed.
+        Exception: that of the first task that failed.
     """
     pool = _POOL.get()
     if pool is None:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Descend to a minimum of the cost: Levenberg and Marquardt, coarse to fine."""
+"""Minimise the cost by the Levenberg-Marquardt method, coarse to fine."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL, Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem
 from jointbench.analysis.gap.response.threads import each
@@ -14,7 +14,7 @@ from jointbench.analysis.gap.search.search_settings import SEARCH
 
 
 def _steps_of(problem: FitProblem, x: FloatArray) -> FloatArray:
-    """Return the difference steps of x, turned inwards at a bound."""
+    """Return the difference steps of x, directed inwards at a bound."""
     step = np.full(x.size, SEARCH.base_step)
     tail = slice(problem.n_base, None)
     step[tail] = SEARCH.effect_step * np.maximum(np.abs(x[tail]), 1e-2)
@@ -25,15 +25,15 @@ def jacobian_of(
     problem: FitProblem,
     x: FloatArray,
     residual: FloatArray,
-    stage: Stage,
+    resolution: Resolution,
 ) -> FloatArray:
-    """Difference the residual.
+    """Return the Jacobian of the residual by differences, shape (n_rows, n).
 
     Args:
-        problem: what is fitted.
-        x: where, shape (n,).
+        problem: least-squares problem.
+        x: coordinates, shape (n,).
         residual: at x, shape (n_rows,).
-        stage: how thoroughly.
+        resolution: of the residual.
     """
     columns = np.empty((x.size, residual.size))
     steps = _steps_of(problem, x)
@@ -41,7 +41,7 @@ def jacobian_of(
     def difference(i: int) -> None:
         moved = x.copy()
         moved[i] += steps[i]
-        columns[i] = problem.residual(moved, stage)
+        columns[i] = problem.residual(moved, resolution)
         columns[i] -= residual
         columns[i] /= steps[i]
 
@@ -52,40 +52,40 @@ def jacobian_of(
 def minimise(
     problem: FitProblem,
     start: FloatArray,
-    stage: Stage = FULL,
+    resolution: Resolution = FULL,
     *,
     iterations: int = 20,
     rival: float | None = None,
-    jacobian_stage: Stage | None = None,
+    jacobian_resolution: Resolution | None = None,
     exact_slopes: bool = True,
 ) -> Fit:
-    """Descend from one start.
+    """Minimise the cost from one start.
 
     Args:
-        problem: what is fitted.
+        problem: least-squares problem.
         start: coordinates, shape (n,).
-        stage: window and step of the residual.
-        iterations: at most.
-        rival: cost of the best so far; a descent that at its pace would need very
-            many more steps to come there is given up.
-        jacobian_stage: a cheaper stage for the slopes, or None for the same.
-        exact_slopes: difference the slopes once more at the end, which an
-            intermediate stage does not need.
+        resolution: window and step of the residual.
+        iterations: largest number of steps.
+        rival: cost of the best fit so far; a descent that would need very many more
+            steps to reach it is stopped.
+        jacobian_resolution: coarser resolution for the slopes, or None for the same.
+        exact_slopes: difference the slopes once more at the end, which intermediate
+            fits do not need.
     """
 
     def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
-        if jacobian_stage is None:
-            return jacobian_of(problem, x, r, stage)
-        coarse = problem.residual(x, jacobian_stage)
-        return jacobian_of(problem, x, coarse, jacobian_stage)
+        if jacobian_resolution is None:
+            return jacobian_of(problem, x, r, resolution)
+        coarse = problem.residual(x, jacobian_resolution)
+        return jacobian_of(problem, x, coarse, jacobian_resolution)
 
     x = np.clip(start, problem.lower, problem.upper)
-    r, cost = _looked_at(problem, x, stage)
+    r, cost = _looked_at(problem, x, resolution)
     if not np.isfinite(cost):
-        return _hopeless(problem, x, r)
+        return _pruned(problem, x, r)
     damping, age, j = SEARCH.least_damping, 0, slopes(x, r)
     for k in range(iterations):
-        moved, damping = _step(problem, x, r, j, cost, damping, stage)
+        moved, damping = _step(problem, x, r, j, cost, damping, resolution)
         if moved is None:
             if age == 0:
                 break
@@ -119,8 +119,8 @@ def minimise(
     )
 
 
-def _hopeless(problem: FitProblem, x: FloatArray, r: FloatArray) -> Fit:
-    """Return the fit of a start at which the model runs away."""
+def _pruned(problem: FitProblem, x: FloatArray, r: FloatArray) -> Fit:
+    """Return the fit of a start at which the model diverges."""
     return Fit(
         x,
         problem.n_base,
@@ -140,13 +140,13 @@ def _excess(problem: FitProblem, cost: float) -> float:
 def _predicted_drop(
     problem: FitProblem, x: FloatArray, r: FloatArray, j: FloatArray, moved: FloatArray
 ) -> float:
-    """Return the drop of the cost that the linear model foretold."""
+    """Return the drop of the cost predicted by the linear model."""
     left = r + j @ (moved - x)
     return float(r @ r - left @ left + problem.penalty(x) - problem.penalty(moved))
 
 
 def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatArray:
-    """Update slopes by what a step has shown, at the price of no evaluation.
+    """Update slopes from the residuals of a step, without further evaluation.
 
     Source:
         Broyden 1965, Math. Comp. 19, 577, eq. (4.5), with parameters scaled by the
@@ -171,13 +171,13 @@ def _step(
     j: FloatArray,
     cost: float,
     damping: float,
-    stage: Stage,
+    resolution: Resolution,
 ) -> tuple[_Moved | None, float]:
-    """Try ever shorter steps until one goes down.
+    """Try successively shorter steps until one lowers the cost.
 
-    Effects hand stiffness and damping to the base and back, so their valleys are long
-    and curved. A step that climbed a wall is first led back down by what the data fix
-    well, with the slopes at hand, and only then shortened.
+    Effects and base can exchange stiffness and damping, so the valleys of the cost are
+    long and curved. A step that raises the cost is first corrected along the
+    well-determined directions, with the known slopes, and only then shortened.
     """
     hessian = j.T @ j + np.diag(problem.prior)
     gradient = j.T @ r + problem.prior * (x - problem.centre)
@@ -192,15 +192,15 @@ def _step(
         step = np.zeros(x.size)
         step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
         trial = _moved(problem, x, step / size)
-        try_r, try_cost = _looked_at(problem, trial, stage)
+        try_r, try_cost = _looked_at(problem, trial, resolution)
         for _ in range(SEARCH.corrections):
             if try_cost < cost or not np.isfinite(try_cost):
                 break
-            pull = j.T @ try_r + problem.prior * (trial - problem.centre)
+            gradient = j.T @ try_r + problem.prior * (trial - problem.centre)
             stiff = h + SEARCH.stiff_damping * np.eye(h.shape[0])
-            step[free] = -_solve(stiff, (pull / size)[free])
+            step[free] = -_solve(stiff, (gradient / size)[free])
             trial = _moved(problem, trial, step / size)
-            try_r, try_cost = _looked_at(problem, trial, stage)
+            try_r, try_cost = _looked_at(problem, trial, resolution)
         if np.isfinite(try_cost) and try_cost < cost:
             return (trial, try_r, try_cost), max(damping / 10, SEARCH.least_damping)
         damping = max(damping * 8, 1e-6)
@@ -210,7 +210,7 @@ def _step(
 
 
 def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve, or return the least of all solutions where two parameters are one."""
+    """Solve, with the smallest solution if parameters are linearly dependent."""
     return np.asarray(np.linalg.lstsq(matrix, right, rcond=1e-14)[0])
 
 
@@ -219,43 +219,47 @@ def _moved(problem: FitProblem, x: FloatArray, step: FloatArray) -> FloatArray:
     return np.clip(x + bounded, problem.lower, problem.upper)
 
 
-def cost_at(problem: FitProblem, x: FloatArray, stage: Stage) -> float:
-    """Return the cost at x, infinite where the model runs away."""
-    return _looked_at(problem, x, stage)[1]
+def cost_at(problem: FitProblem, x: FloatArray, resolution: Resolution) -> float:
+    """Return the cost at x, infinite if the model diverges."""
+    return _looked_at(problem, x, resolution)[1]
 
 
 def chi2_between(
-    problem: FitProblem, x: FloatArray, coarse: Stage, fine: Stage
+    problem: FitProblem, x: FloatArray, coarse: Resolution, fine: Resolution
 ) -> float:
-    """Return the chi2 by which two stages differ at x; NaN where one runs away."""
-    one, two = (_looked_at(problem, x, stage)[0] for stage in (coarse, fine))
+    """Return the chi2 between two resolutions at x; NaN if one diverges."""
+    one, two = (_looked_at(problem, x, resolution)[0] for resolution in (coarse, fine))
     with np.errstate(all="ignore"):
         return float(np.sum((two - one) ** 2))
 
 
 def _looked_at(
-    problem: FitProblem, x: FloatArray, stage: Stage
+    problem: FitProblem, x: FloatArray, resolution: Resolution
 ) -> tuple[FloatArray, float]:
     with np.errstate(all="ignore"):
         try:
-            r = problem.residual(x, stage)
-        except np.linalg.LinAlgError:  # a model whose modes cannot be told apart
+            r = problem.residual(x, resolution)
+        except np.linalg.LinAlgError:  # a model with coincident modes
             return np.full(problem.bench.blocks.group.size, np.inf), np.inf
         cost = float(r @ r) + problem.penalty(x)
     return r, cost if np.isfinite(cost) else np.inf
 
 
-_Stages = Sequence[tuple[Stage, int]]
-BASE_STAGES: _Stages = (
-    *((Stage(decay), SEARCH.window_iterations) for decay in SEARCH.base_windows),
+_Resolutions = Sequence[tuple[Resolution, int]]
+BASE_RESOLUTIONS: _Resolutions = (
+    *((Resolution(decay), SEARCH.window_iterations) for decay in SEARCH.base_windows),
     (FULL, SEARCH.base_iterations),
 )
 
 
-def fit_stages(problem: FitProblem, start: FloatArray, stages: _Stages) -> Fit:
-    """Fit coarse to fine; the last stage decides."""
+def fit_coarse_to_fine(
+    problem: FitProblem, start: FloatArray, resolutions: _Resolutions
+) -> Fit:
+    """Fit coarse to fine; the result is that of the last resolution."""
     x = start
-    for stage, iterations in stages[:-1]:
-        x = minimise(problem, x, stage, iterations=iterations, exact_slopes=False).x
-    last, iterations = stages[-1]
+    for resolution, iterations in resolutions[:-1]:
+        x = minimise(
+            problem, x, resolution, iterations=iterations, exact_slopes=False
+        ).x
+    last, iterations = resolutions[-1]
     return minimise(problem, x, last, iterations=iterations)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Pairs of great effects: searched under short windows, where nothing is out of phase.
+"""Search for pairs of large effects under short windows.
 
-Where one effect alone leaves a misfit of many times the noise, its fit has dragged the
-base far off its sheet, and directed tests from there point anywhere. The first few
-milliseconds after a hit are still in phase, and cheap. So pairs are put together
-there: the best second to each first, then others in the place of each, until no
-exchange helps.
+If one effect alone leaves a residual of many times the noise, the base of its fit is
+far from its nominal parameters, and directed tests at that base are unreliable. In the
+first few milliseconds after a hit, model and measurement are still in phase, and the
+prediction is fast. Pairs are therefore formed there: the best second effect for each
+first one, then exchanges of each effect, until no exchange lowers the cost.
 """
 
 from collections.abc import Sequence
@@ -14,32 +14,32 @@ import numpy as np
 
 from jointbench.analysis.gap.model.effect import labels_of, may_join, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
-from jointbench.analysis.gap.search.descent import fit_stages, minimise
-from jointbench.analysis.gap.search.race_starts import along
+from jointbench.analysis.gap.search.candidate_starts import along
+from jointbench.analysis.gap.search.descent import fit_coarse_to_fine, minimise
 from jointbench.analysis.gap.search.screening import screen
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress
 
-_SHORT = Stage(SEARCH.short_window, SEARCH.screening_steps)
-_LONGER = Stage(SEARCH.longer_window, SEARCH.screening_steps)
+_SHORT = Resolution(SEARCH.short_window, SEARCH.screening_steps)
+_LONGER = Resolution(SEARCH.longer_window, SEARCH.screening_steps)
 
 
 def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
-    """Search for pairs of great effects.
+    """Search for pairs of large effects.
 
     Args:
         bench: measurement and model.
-        progress: told what is being tried.
+        progress: receives the label of each candidate.
 
     Returns:
-        The best pairs, fitted under a window that holds several periods of the first
-        modes: starts for a race over the whole records.
+        The best pairs, fitted under a window of several periods of the first modes:
+        starts for a selection over the whole records.
     """
     problem = make_problem(bench, ())
-    base = fit_stages(
+    base = fit_coarse_to_fine(
         problem, np.zeros(problem.n_base), ((_SHORT, SEARCH.pair_iterations),)
     )
     singles = _best(
@@ -60,25 +60,25 @@ def far_pairs(bench: Bench, progress: Progress) -> list[Fit]:
     return [_longer(bench, f) for f in pairs]
 
 
-def without(bench: Bench, fit: Fit, k: int, stage: Stage) -> Fit:
-    """Return a fit less one effect, its base left where it is.
+def without(bench: Bench, fit: Fit, k: int, resolution: Resolution) -> Fit:
+    """Return a fit without one effect, with its base unchanged.
 
     Args:
         bench: measurement and model.
         fit: of several effects.
-        k: which of them.
-        stage: of the slopes.
+        k: index of the effect.
+        resolution: of the slopes.
     """
     terms = [t for i, t in enumerate(fit.terms) if i != k]
     problem = make_problem(bench, [t.candidate for t in terms])
     start = np.concatenate([fit.base, *(t.coordinates for t in terms)])
-    return minimise(problem, start, stage, iterations=0)
+    return minimise(problem, start, resolution, iterations=0)
 
 
 def _with_one_more(bench: Bench, fit: Fit, count: int, progress: Progress) -> list[Fit]:
-    """Return short fits of the effects that directed tests put first."""
+    """Return short fits of the effects with the largest directed tests."""
     others = [c for c in bench.candidates if may_join(c, fit.candidates)]
-    screening = screen(bench, fit, others, stage=_SHORT)
+    screening = screen(bench, fit, others, resolution=_SHORT)
     found = []
     for candidate in screening.leaders(count):
         problem = make_problem(bench, (*fit.candidates, candidate))

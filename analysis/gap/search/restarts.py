@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Second starts: fits whose base has lost its way start again from a better one."""
+"""Second starts: fits with a diverged base start again from a better base."""
 
 from collections.abc import Sequence
 
@@ -8,47 +8,47 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
+from jointbench.analysis.gap.search.candidate_starts import MOST_STEPS
 from jointbench.analysis.gap.search.descent import cost_at, minimise
-from jointbench.analysis.gap.search.race_starts import MOST_STEPS
 from jointbench.analysis.gap.search.search_settings import SEARCH
 from jointbench.analysis.gap.search.selection_round import Progress, finish
 
 
 def crossed(bench: Bench, fits: Sequence[Fit], progress: Progress) -> list[Fit]:
-    """Let fits that went astray start again from the base of the best.
+    """Start diverged fits again from the base of the best fit.
 
-    Two great effects drag the base with them while only one of them is fitted. The
-    second comes in far from the sheet, and there a pair that is right can end behind
-    one that is wrong.
+    While only one of two large effects is fitted, the base moves far from its nominal
+    parameters. The second effect is then added at that base, where a correct pair can
+    end with a higher cost than a wrong one.
 
     Args:
         bench: measurement and model.
-        fits: of as many effects each, best first.
-        progress: told what is being tried.
+        fits: each with the same number of effects, best first.
+        progress: receives the label of each candidate.
 
     Returns:
-        The fits, each the better of what it was and what it became.
+        The fits, each the better one of before and after.
     """
     return [_again(bench, f, fits[0], progress) if k else f for k, f in enumerate(fits)]
 
 
 def other_sliders(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
-    """Put other slider laws in the place of a fit's own, from where that one ended.
+    """Fit other slider laws from the final parameters of a fit with one.
 
-    Their costs have many valleys in stiffness and slip, so the right law may stop far
-    behind one that imitates it. What slides, and how far, they have in common but for
-    a factor: an Iwan element slips at a half to all of its largest slip.
+    Their costs have many minima in stiffness and slip, so the correct law may stop at a
+    far higher cost than an imitation. Stiffness and slip of these laws differ only by
+    a factor: an Iwan element slips between half and all of its largest slip.
 
     Args:
         bench: measurement and model.
         fit: of one effect.
-        progress: told what is being tried.
+        progress: receives the label of each candidate.
 
     Returns:
-        Fits that came as low as the one given, none where its effect does not slide.
+        Fits with a cost as low as the given one; none if its effect has no sliders.
     """
     own = fit.candidates[0]
     if len(fit.candidates) > 1 or not own.effect.has_sliders:
@@ -75,20 +75,20 @@ def other_sliders(bench: Bench, fit: Fit, progress: Progress) -> list[Fit]:
 
 
 def _slider_start(fit: Fit, candidate: Candidate, factor: float) -> FloatArray:
-    """Return a fit's base, and its slider's stiffness and slip as another law's."""
+    """Return start coordinates of another slider law from those of a fit."""
     stiffness, slip = fit.terms[0].coordinates[:2]
     shape = [p.encode(p.starts[0]) for p in candidate.effect.parameters[2:]]
     return np.array([*fit.base, stiffness, slip + np.log(factor), *shape])
 
 
 def caught_up(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
-    """Fit again under a noise that was estimated at the best, from the better start.
+    """Fit again with the noise estimated at the best fit, from the better start.
 
     Args:
-        bench: with the noise of the best.
-        fit: of another noise.
-        best: of this one.
-        progress: told what is being tried.
+        bench: with the noise of the best fit.
+        fit: found with another noise estimate.
+        best: the best fit.
+        progress: receives the label of each candidate.
     """
     problem = make_problem(bench, fit.candidates)
     borrowed = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
@@ -98,13 +98,16 @@ def caught_up(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
 
 
 def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
-    """Return the better of a fit and what it becomes from the best's base."""
-    pull, least = np.abs(fit.pulls).max(), np.abs(best.pulls).max()
-    if pull < SEARCH.diverged_sd or pull < least:
+    """Return the better of a fit and a refit from the base of the best fit."""
+    deviation, least = (
+        np.abs(fit.prior_deviations).max(),
+        np.abs(best.prior_deviations).max(),
+    )
+    if deviation < SEARCH.diverged_sd or deviation < least:
         return fit
     problem = make_problem(bench, fit.candidates)
     start = np.clip(_borrowed(fit, best), problem.lower, problem.upper)
-    if cost_at(problem, start, MIDDLE) > _hope(fit, best):
+    if cost_at(problem, start, MIDDLE) > _least_promising_cost(fit, best):
         return fit
     progress(f"{words_of(fit.candidates)} (again)")
     middle = minimise(problem, start, MIDDLE, iterations=MOST_STEPS, rival=best.cost)
@@ -113,13 +116,13 @@ def _again(bench: Bench, fit: Fit, best: Fit, progress: Progress) -> Fit:
     return finish(problem, middle.x, progress)
 
 
-def _hope(fit: Fit, best: Fit) -> float:
-    """Return the cost at which a start is no better than nothing."""
+def _least_promising_cost(fit: Fit, best: Fit) -> float:
+    """Return the cost above which a start is not used."""
     return SEARCH.restart_cost_ratio * max(fit.cost, best.cost)
 
 
 def _borrowed(fit: Fit, best: Fit) -> FloatArray:
-    """Return a fit with the base of the best, and of its effects those they share."""
+    """Return coordinates of a fit with base and common effects of the best fit."""
     known = {t.candidate.label: t.coordinates for t in best.terms}
     own = [known.get(t.candidate.label, t.coordinates) for t in fit.terms]
     return np.concatenate([best.base, *own])

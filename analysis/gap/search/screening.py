@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Directed tests: how much chi2 would each effect take, and is that more than noise?
+"""Directed tests: predicted drop of chi2 by each effect, and its null distribution.
 
-The amplitude of an effect enters linearly at OFF, so that one evaluation gives its
+The amplitude of an effect enters linearly at zero, so one evaluation gives its
 direction in the space of residuals. With the base and its priors projected out, the
-squared score along it is the drop of chi2 to be expected, and the amplitude that goes
-with it is a start value. The largest drop over the catalogue is the statistic of the
-null test; under the null it is the maximum of correlated chi2 variables, drawn from
-the directions' own correlation.
+squared score along this direction is the expected drop of chi2, and the corresponding
+amplitude is a start value. The largest drop over the catalogue is the statistic of the
+null test; under the null hypothesis it is the maximum of correlated chi2 variables,
+drawn with the correlation of the directions.
 """
 
 import itertools
@@ -20,27 +20,27 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.response.threads import each
 from jointbench.analysis.gap.search.search_settings import SEARCH
 
 PROBE = SEARCH.probe_amplitude
-SCREEN = Stage(oversampling=SEARCH.screening_steps)
+SCREEN = Resolution(oversampling=SEARCH.screening_steps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Direction:
-    """One effect at one shape, tested.
+    """Directed test of one effect at one shape.
 
     Attributes:
         candidate: the effect and site.
         coordinates: start for a fit, shape (n_parameters,).
-        shift: of what is already fitted, as the effect takes its part, (n_x,).
-        drop: chi2 that it is predicted to take.
-        one_sided: True where only one sign is allowed.
-        suggested: True where the residual itself suggested the shape, so that the
-            drop is no fair test.
+        shift: predicted change of the fitted coordinates, shape (n_x,).
+        drop: predicted drop of chi2.
+        one_sided: True if only one sign is allowed.
+        suggested: True if the shape was derived from the residual, so that the drop
+            is biased.
     """
 
     candidate: Candidate
@@ -56,9 +56,9 @@ class Screening:
     """All directed tests of a fit.
 
     Attributes:
-        directions: by falling drop.
-        threshold: drop that a fit without a missing effect exceeds in 0.5 % of cases.
-        largest: the largest drop met.
+        directions: by decreasing drop.
+        threshold: drop that a complete model exceeds in 0.5 % of cases.
+        largest: the largest drop.
     """
 
     directions: tuple[Direction, ...]
@@ -84,24 +84,24 @@ def screen(
     fit: Fit,
     candidates: Sequence[Candidate],
     *,
-    stage: Stage = SCREEN,
+    resolution: Resolution = SCREEN,
     seed: int = 0,
 ) -> Screening:
     """Test every candidate at every point of its start grid.
 
     Args:
         bench: measurement and model.
-        fit: a minimum, possibly with effects switched on.
-        candidates: what to test.
-        stage: how thoroughly; the fit must be one of the same window.
+        fit: a minimum, with or without effects.
+        candidates: to be tested.
+        resolution: of the residual; the fit must have the same window.
         seed: of the null draws.
     """
     starts = [(c, u) for c in candidates for u in start_grid(c)]
     fixed = len(starts)
-    if stage.window is None:
+    if resolution.window is None:
         starts += [(c, u) for c in candidates for u in bench.hints(fit, c)]
     tangent = _tangent(fit)
-    base = bench.residual(fit.base, fit.terms, stage)
+    base = bench.residual(fit.base, fit.terms, resolution)
     left = np.empty((len(starts), tangent.q.shape[0]), dtype=np.float32)
     taken = np.empty((len(starts), fit.x.size))
     norm = np.empty(len(starts))
@@ -111,7 +111,7 @@ def screen(
         probe, unit = _probe(candidate, u)
         terms = (*fit.terms, Term(candidate, probe))
         row = np.zeros(tangent.q.shape[0])
-        row[: base.size] = (bench.residual(fit.base, terms, stage) - base) / unit
+        row[: base.size] = (bench.residual(fit.base, terms, resolution) - base) / unit
         taken[k] = tangent.q.T @ row
         norm[k] = row @ row
         left[k] = row - tangent.q @ taken[k]
@@ -122,12 +122,12 @@ def screen(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Tangent:
-    """What the parameters that are fitted can follow: slopes and priors, orthonormal.
+    """Space spanned by the fitted parameters: slopes and priors, orthonormal.
 
     Attributes:
-        q: orthonormal columns of slopes over priors, shape (n_rows + n_x, n_x).
-        r: upper triangle that belongs to them, shape (n_x, n_x).
-        residual: of the data over that of the priors, shape (n_rows + n_x,).
+        q: orthonormal columns of slopes above priors, shape (n_rows + n_x, n_x).
+        r: upper triangular factor, shape (n_x, n_x).
+        residual: of the data, then of the priors, shape (n_rows + n_x,).
     """
 
     q: FloatArray
@@ -137,14 +137,14 @@ class _Tangent:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Tested:
-    """Directions of the effects, split by what the fit can follow.
+    """Directions of the effects, projected on the space of the fit.
 
     Attributes:
-        left: what it cannot follow, shape (n_starts, n_rows + n_x).
-        taken: coordinates of what it can, shape (n_starts, n_x).
-        norm: squared length of the whole, shape (n_starts,).
-        fixed: how many belong to the grid; the others were suggested by the very
-            residual that is tested, so they are starts and no statistic.
+        left: components outside that space, shape (n_starts, n_rows + n_x).
+        taken: coordinates of the components inside it, shape (n_starts, n_x).
+        norm: squared lengths of the directions, shape (n_starts,).
+        fixed: number of grid points; the other starts were derived from the tested
+            residual, so they are not part of the statistic.
     """
 
     left: NDArray[np.float32]
@@ -161,7 +161,7 @@ def _tangent(fit: Fit) -> _Tangent:
 
 
 def _probe(candidate: Candidate, u: FloatArray) -> tuple[FloatArray, float]:
-    """Return coordinates that switch the effect on a little, and by how much."""
+    """Return coordinates with a small amplitude of the effect, and that amplitude."""
     first = candidate.effect.parameters[0]
     probe = u.copy()
     if first.starts:
@@ -171,7 +171,7 @@ def _probe(candidate: Candidate, u: FloatArray) -> tuple[FloatArray, float]:
 
 
 def start_grid(candidate: Candidate) -> list[FloatArray]:
-    """Return the start coordinates of a candidate, amplitude 0 where it is scored."""
+    """Return the start grid of a candidate, amplitude 0 if a score test sets it."""
     axes = [
         [p.encode(s) for s in p.starts] or [0.0] for p in candidate.effect.parameters
     ]
@@ -227,14 +227,15 @@ def _judge(
 
 
 def _solve(r: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve with a triangle that may be singular where a parameter does nothing."""
+    """Solve a triangular system, singular if a parameter has no influence."""
     return np.asarray(np.linalg.lstsq(r, right, rcond=1e-13)[0])
 
 
 def _phase_drop(drop: float, phases: int) -> float:
-    """Return the drop of an effect that chose its own phases, as one free of choice.
+    """Correct the drop of an effect for the phases that it fits.
 
-    Under the null the amplitude is the mean of `phases` Rayleigh variables, not 0.
+    Under the null hypothesis the amplitude is the mean of `phases` Rayleigh variables,
+    not 0.
     """
     mean, sd = np.sqrt(np.pi / 2), np.sqrt(2 - np.pi / 2)
     excess = (np.sqrt(drop) - np.sqrt(phases) * mean) / sd
@@ -249,12 +250,12 @@ def null_threshold(
     *,
     chance: float = STANDARD.null_chance,
 ) -> float:
-    """Draw the largest drop under the null and return its upper quantile.
+    """Draw the largest drop under the null hypothesis; return its upper quantile.
 
     Args:
         gram: inner products of the projected directions, shape (n, n).
-        one_sided: where only one sign counts, shape (n,).
-        left: their squared norms, inf where the base hides them, shape (n,).
+        one_sided: True if only one sign is allowed, shape (n,).
+        left: their squared norms, inf if the base hides them, shape (n,).
         seed: of the draws.
         chance: that a draw exceeds the quantile [-].
     """

@@ -27,8 +27,8 @@ class SearchSettings:
         1e-7,
         "-",
         "difference step of the logarithm of a base parameter",
-        "a step of 1e-5 bends the end of a record of hundreds of radians; a "
-        "maxwell of 0.4 % was lost",
+        "at 1e-5 the slope is inaccurate at the end of a record of hundreds of "
+        "radians; a maxwell of 0.4 % was missed",
     )
     effect_step: float = numerical(
         1e-6,
@@ -39,7 +39,7 @@ class SearchSettings:
     patience: float = numerical(
         12.0,
         "steps",
-        "steps of the last size that a descent may still need to reach a rival",
+        "steps of the last size within which a descent must be able to reach a rival",
         "development campaigns",
     )
     longest_step: float = numerical(
@@ -58,8 +58,8 @@ class SearchSettings:
         1e-11,
         "-",
         "first damping of Levenberg and Marquardt",
-        "where hits scatter, the common scale of masses and stiffnesses is so "
-        "soft that 1e-6 would hold it",
+        "if hits scatter, the common scale of masses and stiffnesses is so weakly "
+        "determined that 1e-6 would prevent its change",
     )
     stiff_damping: float = numerical(
         1e-3,
@@ -88,7 +88,7 @@ class SearchSettings:
     least_direction: float = numerical(
         1e-10,
         "of the squared length",
-        "part of a direction that the fit must leave for it to count",
+        "component of a direction outside the fit below which it is ignored",
         "rounding of single precision",
     )
     screening_steps: int = numerical(
@@ -101,7 +101,7 @@ class SearchSettings:
         4000,
         "draws",
         "draws of the largest drop under the null",
-        "a quantile of 0.5 % is known to 22 % of its chance",
+        "the chance of the 0.5 % quantile is known to 22 %",
     )
     middle_iterations: int = numerical(
         16,
@@ -118,7 +118,7 @@ class SearchSettings:
     short_window: float = numerical(
         0.005,
         "s",
-        "decay of the first window: nothing is out of phase in it",
+        "decay of the first window, in which model and measurement stay in phase",
         "development campaigns",
     )
     longer_window: float = numerical(
@@ -148,7 +148,7 @@ class SearchSettings:
     nominal_restart_chi2: float = numerical(
         100.0,
         "-",
-        "chi2/dof of the base above which an effect that may flip a sign also "
+        "chi2/dof of the base above which an effect that may change a sign also "
         "starts from the nominal values",
         "development campaigns",
     )
@@ -157,19 +157,19 @@ class SearchSettings:
         "steps, starts, starts of one set",
         "steps of every start in a selection round, starts kept, and starts kept "
         "of one set of effects",
-        "timed on the development campaigns: two of one set after three steps, "
-        "one after eight",
+        "computing time on the development campaigns: two starts of one set after "
+        "three steps, one after eight",
     )
     least_drop_share: float = numerical(
         0.04,
         "of the largest drop",
-        "directed drop below which an effect is no candidate",
+        "directed drop below which an effect is not a candidate",
         "development campaigns",
     )
     shape_starts: int = numerical(
         3,
         "starts",
-        "starts of a candidate that has a shape of its own",
+        "starts of a candidate with shape parameters",
         "docs/gap-ablations.md",
     )
     exchange_probe: float = numerical(
@@ -180,8 +180,8 @@ class SearchSettings:
     integration_error: float = numerical(
         50.0,
         "chi2",
-        "difference between two steps of the integration above which the finer "
-        "one is taken",
+        "difference between two step sizes of the time integration above which the "
+        "finer one is used",
         "a fourteenth of the noise of chi2 with 16 records",
     )
     exchange_candidates: int = numerical(
@@ -242,8 +242,7 @@ class SearchSettings:
     slider_cost_above: float = numerical(
         1000.0,
         "chi2",
-        "cost above that of a law of sliders at which another one is carried to "
-        "the end",
+        "cost above that of a slider law up to which another one is fitted to the end",
         "hidden 96033",
     )
     restart_share: float = numerical(

@@ -1,4 +1,4 @@
-"""Linear algebra of the gap tests in one thread, as the diagnosis itself runs it."""
+"""Linear algebra of the gap tests in one thread, as in a diagnosis."""
 
 from collections.abc import Iterator
 
@@ -9,6 +9,6 @@ from jointbench.acquisition.basics.one_thread import one_thread
 
 @pytest.fixture(scope="module", autouse=True)
 def in_one_thread() -> Iterator[None]:
-    """Keep small matrices from waiting for a second thread, which costs CPU time."""
+    """Prevent small matrices from waiting for a second thread, which costs CPU time."""
     with one_thread():
         yield

@@ -31,7 +31,7 @@ CONDITIONS = (
 def quiet_campaign(
     response: FloatArray | None = None, *, samples: int = SAMPLES
 ) -> Campaign:
-    """Return the hits, with the response given or none."""
+    """Return the hits with a given response, or with none."""
     time = np.arange(samples) / RATE
     shape = np.exp(-0.5 * ((time - 0.008) / 2.5e-4) ** 2)
     level = np.array([level for _, level, _ in CONDITIONS])
@@ -67,7 +67,7 @@ def term_of(bench: LumpedBench, name: str, site: str, values: list[float]) -> Te
 def made_campaign(
     effects: list[tuple[str, str, list[float]]], *, noise: float = 0.05, seed: int = 1
 ) -> Campaign:
-    """Return a campaign with hidden effects, a base off its sheet, and noise."""
+    """Return a campaign with hidden effects, a deviating base, and noise."""
     bench = make_bench(quiet_campaign())
     rng = np.random.default_rng(seed)
     draws = noise * rng.standard_normal(bench.campaign.response.shape)

@@ -1,4 +1,4 @@
-"""Outcomes of the gap engine made by hand: no race, so that tests stay fast."""
+"""Outcomes of the gap engine without a selection, so that tests stay fast."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.judgement.naming import gate
+from jointbench.analysis.gap.judgement.naming import accept
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -32,12 +32,12 @@ def outcome_of(
     """Fit the base and the tried effects to a campaign with hidden ones.
 
     Args:
-        hidden: name, site and values of what is in the campaign.
+        hidden: name, site and values of the effects in the campaign.
         tried: name and site of single explanations, best first.
         seed: of the noise.
-        rivals: how many of them are not told apart.
-        continuous: as if a shaker had done it, that never stops.
-        at_truth: start each try at the hidden values, which is quick and sure.
+        rivals: number of them that cannot be distinguished.
+        continuous: as if excited by a shaker without a pause.
+        at_truth: start each fit at the hidden values, which is fast and reliable.
     """
     campaign = made.made_campaign(hidden, seed=seed)
     if continuous:
@@ -58,8 +58,8 @@ def outcome_of(
         refined = again
         base = minimise(make_problem(again, ()), base.x)
     best = fits[0] if fits else base
-    null = gate(refined, base, base, tests)
-    judged = gate(refined, best, base, None) if fits else null
+    null = accept(refined, base, base, tests)
+    judged = accept(refined, best, base, None) if fits else null
     level = tuple(fits[:rivals]) or (base,)
     outcome = SearchOutcome(
         refined, base, null, tests, best, judged, tuple(fits), level

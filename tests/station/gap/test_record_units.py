@@ -18,7 +18,7 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnose import conclude
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Estimate, Gap
-from jointbench.analysis.gap.model.evidence_records import Exhibit
+from jointbench.analysis.gap.model.evidence_records import GapEvidence
 from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.record_campaign import RecordToExamine, read_record
@@ -101,21 +101,21 @@ def found() -> Diagnosis:
     return conclude(outcome, bench)
 
 
-def exhibit_of(diagnosis: Diagnosis) -> Exhibit:
+def evidence_of_diagnosis(diagnosis: Diagnosis) -> GapEvidence:
     """Return the exhibit, which all of these have."""
-    assert diagnosis.exhibit is not None
-    return diagnosis.exhibit
+    assert diagnosis.evidence is not None
+    return diagnosis.evidence
 
 
 def as_if(output: str) -> Diagnosis:
     """Return the diagnosis with the units the engine gives outputs of that kind."""
-    exhibit, unit = exhibit_of(found()), SENSED[output]
+    evidence, unit = evidence_of_diagnosis(found()), SENSED[output]
     return replace(
         found(),
-        exhibit=replace(
-            exhibit,
-            curves=replace(exhibit.curves, unit=unit),
-            spectra=replace(exhibit.spectra, unit=f"{unit}/N"),
+        evidence=replace(
+            evidence,
+            curves=replace(evidence.curves, unit=unit),
+            spectra=replace(evidence.spectra, unit=f"{unit}/N"),
         ),
     )
 
@@ -189,11 +189,11 @@ def test_effects_are_in_the_stand_ins(tmp_path: Path) -> None:
 def test_curves_and_spectra_are_in_the_stand_ins(tmp_path: Path, output: str) -> None:
     """Volts and volts over volts, whatever the output measures; values stay."""
     given = as_if(output)
-    exhibit = exhibit_of(record_of(tmp_path, output).in_stand_ins(given))
-    assert (exhibit.curves.unit, exhibit.spectra.unit) == ("V", "V/V")
-    before = exhibit_of(given)
-    assert_array_equal(exhibit.curves.measured, before.curves.measured)
-    assert_array_equal(exhibit.spectra.after, before.spectra.after)
+    evidence = evidence_of_diagnosis(record_of(tmp_path, output).in_stand_ins(given))
+    assert (evidence.curves.unit, evidence.spectra.unit) == ("V", "V/V")
+    before = evidence_of_diagnosis(given)
+    assert_array_equal(evidence.curves.measured, before.curves.measured)
+    assert_array_equal(evidence.spectra.after, before.spectra.after)
 
 
 def test_no_label_or_sentence_is_left_in_newtons(tmp_path: Path) -> None:
@@ -203,10 +203,12 @@ def test_no_label_or_sentence_is_left_in_newtons(tmp_path: Path) -> None:
         return [label for view in gap.views for label in view.share]
 
     where = "the residual grows with level (59 % of it at 30 N)"
-    exhibit = replace(exhibit_of(found()), where=where, look=("12 % at 3.5 N, more",))
-    given = replace(found(), exhibit=exhibit, reason="left by level 30 N")
+    evidence = replace(
+        evidence_of_diagnosis(found()), where=where, look=("12 % at 3.5 N, more",)
+    )
+    given = replace(found(), evidence=evidence, reason="left by level 30 N")
     printed = record_of(tmp_path, "displacement").in_stand_ins(given)
-    shown = exhibit_of(printed)
+    shown = evidence_of_diagnosis(printed)
     assert any(label.endswith(" N") for label in slices(given.gap_before))
     texts = [
         *slices(printed.gap_before),

@@ -119,7 +119,7 @@ def test_an_unknown_describes_its_signature_and_the_next_step() -> None:
     page = render(report)
     assert "best fit: " in page and "(rejected)" in page
     assert "recurs in softer hits by 10" in page
-    assert next_step(found("unknown")) == found("unknown").exhibit.advice  # type: ignore[union-attr]
+    assert next_step(found("unknown")) == found("unknown").evidence.advice  # type: ignore[union-attr]
 
 
 def test_a_rival_with_a_large_delta_score_needs_no_experiment() -> None:
@@ -195,7 +195,7 @@ def test_a_weak_effect_is_titled_by_its_directed_test() -> None:
     largest, limit = diagnosis.null_statistic
     assert largest > limit
     assert f"lowers chi2 by {largest:.0f}" in headline(diagnosis)
-    where = diagnosis.exhibit.where if diagnosis.exhibit else ""
+    where = diagnosis.evidence.where if diagnosis.evidence else ""
     assert "from its nominal value" not in where
 
 
@@ -207,9 +207,9 @@ def test_names_out_of_a_file_cannot_break_out_of_the_page() -> None:
 
 def test_a_diagnosis_without_evidence_still_makes_a_report() -> None:
     """The picture is left out, the rest stays."""
-    report = gap_report(replace(found("named"), exhibit=None), title="made")
+    report = gap_report(replace(found("named"), evidence=None), title="made")
     assert report.sections[0].anchor == "effects"
-    assert diagnosis_json(replace(found("named"), exhibit=None))["exhibit"] is None
+    assert diagnosis_json(replace(found("named"), evidence=None))["exhibit"] is None
 
 
 def test_pairs_are_put_into_words() -> None:

@@ -9,7 +9,7 @@ import pytest
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.linear_effects import CROSS_TALK
-from jointbench.analysis.gap.judgement.expected_misfit import EXACT, MODEL_ERROR
+from jointbench.analysis.gap.judgement.expected_residual import EXACT, MODEL_ERROR
 from jointbench.analysis.gap.response.curve_integration import (
     REACH,
     finest_of,
@@ -66,7 +66,7 @@ def test_an_effect_from_the_page_is_named_where_it_is_hidden(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("power", [2, 3, 5, 7])
 def test_a_tabulated_power_is_close_to_the_power(power: int) -> None:
-    """From 10 nm to 9 mm within 1e-6, on both sides of zero."""
+    """Within 1e-6 from 10 nm to 9 mm, on both sides of zero."""
     table = np.stack([tabulate(lambda r: r**power, REACH)])
     x = np.geomspace(1e-8, 9e-3, 501)
     x = np.concatenate([-x, x])
@@ -75,7 +75,7 @@ def test_a_tabulated_power_is_close_to_the_power(power: int) -> None:
 
 
 def test_a_corner_is_rounded_over_little_of_its_distance() -> None:
-    """A clearance of 5 um: 1 % beyond it, the curve is its own again."""
+    """A clearance of 5 um: 1 % beyond it, the table agrees with the curve."""
     table = np.stack([tabulate(lambda r: np.where(np.abs(r) > 5e-6, 3.0, 0.0), REACH)])
     inside, outside = (
         look_up(table, 0, finest_of(REACH), x) for x in (4.95e-6, -5.05e-6)
@@ -84,7 +84,7 @@ def test_a_corner_is_rounded_over_little_of_its_distance() -> None:
 
 
 def test_a_curve_that_is_not_finite_is_refused() -> None:
-    """The message says how many values are wrong."""
+    """The message states the number of wrong values."""
     with pytest.raises(UsageError, match="not finite"), np.errstate(invalid="ignore"):
         curve_law(drag=lambda v: np.sqrt(v))
 
@@ -101,7 +101,7 @@ def test_a_curve_that_is_not_finite_is_refused() -> None:
 def test_an_effects_file_that_is_unsound_is_refused(
     tmp_path: Path, text: str, word: str
 ) -> None:
-    """One line that says what is wrong, whatever the file does."""
+    """One line states the fault, for any fault of the file."""
     with pytest.raises(UsageError, match=word):
         read_effects(written(tmp_path, text))
 
@@ -111,7 +111,7 @@ def test_an_effects_file_that_is_unsound_is_refused(
     [
         ("quintic_stiffness", "Quintic", "small letters"),
         ("off=0.0", "off=None", "amplitude"),
-        ('"stiffness"', '"probe"', "never named"),
+        ('"stiffness"', '"probe"', "reserved for probes"),
         ('("link",)', '("joint",)', "sites"),
         ("law=quintic,", "", "hook"),
         ("k5 * r**5", "(k5 + 1.0) * r**5", "last bit"),
@@ -129,7 +129,7 @@ def test_an_effect_that_the_engine_cannot_use_is_refused(
 
 
 def test_an_effect_that_bears_a_built_in_name_is_refused(tmp_path: Path) -> None:
-    """Two effects of one name could not be told apart in a verdict."""
+    """Two effects of one name could not be distinguished in a verdict."""
     text = example(tmp_path).read_text("utf-8")
     own = read_effects(written(tmp_path, text.replace("quintic_", "cubic_")))
     with pytest.raises(UsageError, match="cubic_stiffness"):
@@ -140,15 +140,17 @@ def test_an_effect_that_bears_a_built_in_name_is_refused(tmp_path: Path) -> None
 def test_an_effect_that_bears_the_name_of_a_probe_is_refused(
     tmp_path: Path, name: str
 ) -> None:
-    """The engine would put its own probe in the place of the effect."""
+    """The engine would use its probe instead of the effect."""
     text = example(tmp_path).read_text("utf-8")
     own = read_effects(written(tmp_path, text.replace("quintic_stiffness", name)))
     with pytest.raises(UsageError, match=f"may not be called '{name}'.*another"):
         with_own(CATALOGUE, own)
 
 
-def test_every_built_in_effect_would_pass_as_an_own_one(tmp_path: Path) -> None:
-    """Hooks on their sites, and silent at amplitude 0: no rule is stricter."""
+def test_every_built_in_effect_meets_the_rules_of_a_user_defined_one(
+    tmp_path: Path,
+) -> None:
+    """Hooks at their sites, and no influence at amplitude 0: the rules are the same."""
     text = (
         "from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE as EFFECTS"
     )
@@ -166,7 +168,7 @@ STIFFER = "stiffness=lambda state, v: 0.0 * state.s[None, :] "
 
 
 def own_effect(folder: Path, sites: tuple[str, ...], hooks: str) -> Path:
-    """Write an effect of one amplitude at some sites, with its hooks as given."""
+    """Write an effect of one amplitude with given sites and hooks."""
     head = """
 import numpy as np
 from jointbench.analysis.gap.response.curve_law import curve_law
@@ -192,11 +194,11 @@ EFFECT = Effect("own", "own", (Parameter("a", "-", off=0.0),), "nowhere")
 def test_a_hook_is_refused_at_a_site_where_it_would_act_on_something_else(
     tmp_path: Path, hook: str, right: tuple[str, ...], wrong: tuple[str, ...]
 ) -> None:
-    """A law at body 0 would bend link 0; all the right sites together are taken."""
+    """A law at body 0 would act on link 0; all correct sites together are accepted."""
     given = f"{hook}={HOOKS[hook]}"
     assert len(read_effects(own_effect(tmp_path, right, given))) == 1
     for site in wrong:
-        message = f"its hook {hook} sits on {' or '.join(right)}, not on {site}$"
+        message = f"its hook {hook} acts on a {' or a '.join(right)}, not on a {site}$"
         with pytest.raises(UsageError, match=message):
             read_effects(own_effect(tmp_path, (*right, site), given))
 
@@ -205,12 +207,12 @@ def test_a_rise_is_refused_at_a_body(tmp_path: Path) -> None:
     """It would change the joint whose index is that of the body."""
     hooks = STIFFER + ", rise=lambda conditions, v: v[0] * conditions.preload"
     assert len(read_effects(own_effect(tmp_path, ("link",), hooks))) == 1
-    with pytest.raises(UsageError, match="its hook rise sits on link, not on body"):
+    with pytest.raises(UsageError, match="its hook rise acts on a link, not on a body"):
         read_effects(own_effect(tmp_path, ("link", "body"), hooks))
 
 
 def test_a_mixing_of_every_channel_is_refused(tmp_path: Path) -> None:
-    """The index of all channels is -1: it would mix into the last one alone."""
+    """The index of all channels is -1: it would mix into the last one only."""
     hooks = f"mixing={HOOKS['mixing']}, every_channel=True"
     with pytest.raises(UsageError, match="leave every_channel out"):
         read_effects(own_effect(tmp_path, ("channel",), hooks))
@@ -227,23 +229,23 @@ def test_a_mixing_of_every_channel_is_refused(tmp_path: Path) -> None:
         ("channel", "shape=lambda model, measured, v, rate: measured"),
     ],
 )
-def test_what_only_some_records_or_signals_show_is_loud_at_amplitude_0(
+def test_an_influence_at_amplitude_0_on_only_some_records_is_detected(
     tmp_path: Path, site: str, hooks: str
 ) -> None:
-    """Every power of the preload is silent at 1, so that others are tried as well."""
+    """Powers of the preload have no influence at 1, so other preloads are tried."""
     with pytest.raises(UsageError, match="last bit"):
         read_effects(own_effect(tmp_path, (site,), hooks))
 
 
-def test_the_page_tells_how_much_model_error_a_family_is_excused() -> None:
+def test_the_page_lists_the_model_error_of_each_family() -> None:
     """Its numbers are those of the engine."""
     page = PAGE.read_text("utf-8")
-    told = {name: float(x) for name, x in re.findall(r"`(\w+)` (\de-\d)", page)}
-    assert told == MODEL_ERROR
+    stated = {name: float(x) for name, x in re.findall(r"`(\w+)` (\de-\d)", page)}
+    assert stated == MODEL_ERROR
     assert f"Any other family gets {EXACT:.0e}".replace("e-0", "e-") in page
 
 
-def test_an_effects_file_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_an_effects_file_leaves_no_compiled_cache(tmp_path: Path) -> None:
     """No cache of compiled code appears beside a file that was run."""
     (entry,) = read_effects(example(tmp_path))
     assert isinstance(entry, LumpedEffect)

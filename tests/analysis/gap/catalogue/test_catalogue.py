@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every effect of the catalogue: off is off, and it grows from there in a line."""
+"""Every effect of the catalogue: none at amplitude 0, and linear near it."""
 
 import ast
 from dataclasses import replace
@@ -13,7 +13,7 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue import catalogue
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
 from jointbench.analysis.gap.model.effect import Candidate, Term
-from jointbench.analysis.gap.residuals.evaluation_stages import FULL
+from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.search.descent import minimise
@@ -52,26 +52,26 @@ def test_the_change_an_effect_makes_is_proportional_to_a_small_amplitude(
         changes.append(BENCH.residual(BASE, (Term(candidate, u),), FULL) - base)
     size = float(np.linalg.norm(changes[0]))
     assert size > 0
-    # Hum chooses its phase by the residual, which its amplitude does not alter.
+    # Hum fits its phase to the residual, which its amplitude does not change.
     assert float(np.linalg.norm(changes[1] - 2 * changes[0])) < 0.02 * size
 
 
 def test_the_catalogue_holds_the_twenty_two_effects_of_version_one() -> None:
-    """Names are fixed: files and reports rest on them."""
+    """Names are fixed: files and reports refer to them."""
     names = {entry.effect.name for entry in CATALOGUE}
     assert len(names) == len(CATALOGUE) == 22
     assert {"cubic_stiffness", "jenkins", "hidden_mode", "polarity", "hum"} <= names
 
 
 def test_every_effect_names_its_source_and_a_rival_with_an_experiment() -> None:
-    """Nobody has to take the catalogue's word."""
+    """The statements of the catalogue can be checked."""
     for entry in CATALOGUE:
         assert entry.effect.source
         assert entry.effect.separates
 
 
 def test_a_name_outside_the_catalogue_is_refused_with_near_matches() -> None:
-    """A misspelt --without must not pass in silence."""
+    """A misspelt --without must not be ignored."""
     with pytest.raises(UsageError, match="jenkins"):
         check_names(["jenkin"], CATALOGUE)
 
@@ -91,7 +91,7 @@ def test_the_catalogue_says_which_effects_start_at_peaks_and_find_phases() -> No
 
 
 def test_what_an_effect_declares_holds_whatever_it_is_called() -> None:
-    """Starts at peaks and free phases go with the declaration, not with a name."""
+    """Starts at peaks and free phases depend on the declaration, not on the name."""
     entry = next(e for e in CATALOGUE if e.effect.name == "hum")
     own = replace(entry, effect=replace(entry.effect, name="pick_up"))
     silent = replace(
@@ -120,7 +120,7 @@ def test_an_effect_without_a_frequency_cannot_start_at_peaks() -> None:
 def test_no_module_of_the_engine_but_the_catalogue_knows_an_effect_by_its_name() -> (
     None
 ):
-    """What an effect does to the search or to the wording is declared on its record."""
+    """An effect declares its influence on search and wording in its record."""
     root = Path(catalogue.__file__).parents[1]
     names = {entry.effect.name for entry in CATALOGUE}
     found = [

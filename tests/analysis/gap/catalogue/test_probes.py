@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a wrong law leaves is seen although the right one is not in the catalogue."""
+"""The residual of a wrong law is detected although the right law is not listed."""
 
 import gap_bench as made
 import numpy as np
@@ -25,13 +25,13 @@ def response_with(name: str, size: float) -> np.ndarray:
 
 @pytest.mark.parametrize("name", [p.effect.name for p in PROBES])
 def test_a_probe_of_no_size_changes_nothing(name: str) -> None:
-    """A size of 0 leaves the base's response to the last bit."""
+    """At size 0 the response of the base is unchanged to the last bit."""
     np.testing.assert_array_equal(response_with(name, 0.0), BENCH.response(BASE, [], 2))
 
 
 @pytest.mark.parametrize("name", [p.effect.name for p in PROBES])
 def test_a_probe_is_a_first_term(name: str) -> None:
-    """Twice the size is twice the change, so that one evaluation is its direction."""
+    """Twice the size is twice the change, so one evaluation gives its direction."""
     base = BENCH.response(BASE, [], 2)
     once, twice = (response_with(name, a) - base for a in (1e-5, 2e-5))
     assert np.abs(once).max() > 1e-12 * np.abs(base).max()
@@ -39,8 +39,10 @@ def test_a_probe_is_a_first_term(name: str) -> None:
 
 
 @pytest.mark.parametrize("names", [{"delay"}, {"polarity"}, set()])
-def test_a_great_misfit_and_next_to_no_catalogue_is_unknown(names: set[str]) -> None:
-    """Nothing to pair with is no reason to fail."""
+def test_a_large_residual_without_a_catalogue_is_unknown(
+    names: set[str],
+) -> None:
+    """The search ends without an error if no pair is possible."""
     campaign = made.made_campaign([("cubic_stiffness", "link:joint", [2e17])])
     entries = tuple(e for e in CATALOGUE if e.effect.name in names)
     found = diagnose(campaign, entries=entries)
@@ -49,7 +51,7 @@ def test_a_great_misfit_and_next_to_no_catalogue_is_unknown(names: set[str]) -> 
 
 
 def test_no_probe_can_be_named() -> None:
-    """They are beside the catalogue, with a family of their own."""
+    """They are not in the catalogue, and have a separate family."""
     assert all(p.effect.family == PROBE_FAMILY for p in PROBES)
     assert not any(c.effect.family == PROBE_FAMILY for c in BENCH.candidates)
     names = [p.effect.name for p in PROBES] + [e.effect.name for e in CATALOGUE]
@@ -57,9 +59,9 @@ def test_no_probe_can_be_named() -> None:
 
 
 def test_a_stop_is_no_name_for_a_spring_with_an_even_term() -> None:
-    """The stop takes most of it; what it leaves looks like the square of the motion."""
+    """The stop explains most of it; the rest resembles the square of the motion."""
     campaign = made.made_campaign([("quadratic_stiffness", "link:joint", [1e9])])
     entries = tuple(e for e in CATALOGUE if e.effect.name in {"gap", "coulomb"})
     found = diagnose(campaign, entries=entries)
     assert found.verdict is Finding.UNKNOWN
-    assert "look like: square of the motion, link:joint" in found.reason
+    assert "resembles a square of the motion at link:joint" in found.reason

@@ -33,17 +33,17 @@ LATE = ("delay", "channel:a1", [4e-5])
 
 @pytest.fixture(scope="module")
 def complete() -> Diagnosis:
-    """Return what is told of a campaign with nothing missing."""
+    """Return the diagnosis of a campaign with a complete model."""
     return diagnose(made.made_campaign([]))
 
 
 @pytest.fixture(scope="module")
 def late() -> Diagnosis:
-    """Return what is told of a campaign with a hidden delay."""
+    """Return the diagnosis of a campaign with a hidden delay."""
     return diagnose(made.made_campaign([LATE]), entries=LINEAR)
 
 
-def test_a_campaign_with_nothing_missing_is_told_so(complete: Diagnosis) -> None:
+def test_a_complete_model_gives_the_verdict_none(complete: Diagnosis) -> None:
     """Verdict none, no effect, no gap beyond noise."""
     assert complete.verdict is Finding.NONE
     assert complete.effects == ()
@@ -53,7 +53,7 @@ def test_a_campaign_with_nothing_missing_is_told_so(complete: Diagnosis) -> None
 def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap(
     late: Diagnosis,
 ) -> None:
-    """40 microseconds on the top channel come back within 4 sd; the gap closes."""
+    """A delay of 40 microseconds is found within 4 sd; the gap closes."""
     assert late.verdict is Finding.NAMED
     (effect,) = late.effects
     assert (effect.name, effect.site) == ("delay", "channel:a1")
@@ -62,8 +62,8 @@ def test_a_hidden_delay_is_named_with_site_size_and_a_smaller_gap(
     assert late.shrink > 0.9
 
 
-def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
-    """Hits at 4 kN say nothing of the one at 8 kN: held out, it misses as before."""
+def test_an_effect_that_one_condition_shows_is_named_but_not_predicted() -> None:
+    """Hits at 4 kN do not predict the one at 8 kN: held out, its gap remains."""
     found = diagnose(
         made.made_campaign([("preload_stiffness", "link:joint", [0.3])]),
         entries=LINEAR,
@@ -74,14 +74,14 @@ def test_what_one_condition_alone_shows_is_named_but_not_foretold() -> None:
     assert "not predicted by the others" in found.reason
 
 
-def test_what_all_conditions_show_is_foretold(late: Diagnosis) -> None:
-    """The reason is silent of what it would say of a lone condition."""
+def test_an_effect_that_all_conditions_show_is_predicted(late: Diagnosis) -> None:
+    """The reason has no sentence on a single condition."""
     assert late.gap_after.value < 0.1 * late.gap_before.value
     assert "not predicted" not in late.reason
 
 
 def test_a_delay_outside_the_catalogue_is_not_called_by_another_name() -> None:
-    """With delay taken out, nothing else explains it."""
+    """Without delay in the catalogue, no other effect explains it."""
     campaign = made.made_campaign([LATE])
     found = diagnose(campaign, without=frozenset({"delay"}), entries=LINEAR)
     assert found.verdict is Finding.UNKNOWN
@@ -104,16 +104,17 @@ def test_the_json_holds_the_keys_of_the_contract(complete: Diagnosis) -> None:
     }
 
 
-def test_what_all_rivals_hold_is_as_sure_as_all_of_them() -> None:
-    """Two pairs that share a delay: it is twice as sure as what they do not share."""
+def test_an_effect_of_all_rivals_has_their_summed_confidence() -> None:
+    """Two pairs share a delay: its confidence is the sum of that of the others."""
     outcome, bench = outcomes.outcome_of([LATE], ("delay", "channel:a1"))
     delay = outcome.best
     pairs = [pair_with(bench, delay, name) for name in ("extra_damping", "maxwell")]
     both = replace(outcome, ranked=tuple(pairs), best=pairs[0], level=tuple(pairs))
     found = conclude(both, bench)
     assert found.verdict is Finding.AMBIGUOUS
-    sure = {e.name: e.confidence for e in found.effects}
-    assert sure["delay"] == pytest.approx(sure["extra_damping"] + sure["maxwell"])
+    found_by = {e.name: e.confidence for e in found.effects}
+    both_others = found_by["extra_damping"] + found_by["maxwell"]
+    assert found_by["delay"] == pytest.approx(both_others)
     assert len(found.explanations) == 2
     assert found.experiment.startswith(("extra_damping", "maxwell"))
     assert "delay" not in found.experiment
@@ -132,7 +133,7 @@ def pair_with(bench: LumpedBench, first: Fit, name: str) -> Fit:
 
 @pytest.mark.parametrize("clipped", [False, True])
 def test_flat_tops_are_those_of_a_clipped_channel_only(clipped: bool) -> None:
-    """The crest of a slow ringing lies as near its top, yet it is round."""
+    """The crest of a slow oscillation has as many samples at its top, but is round."""
     time = np.arange(2048) / 16384.0
     ring = np.sin(2 * np.pi * 50.0 * time) * np.exp(-20.0 * time)
     noise = 0.002 * np.random.default_rng(4).standard_normal(time.size)
@@ -142,7 +143,7 @@ def test_flat_tops_are_those_of_a_clipped_channel_only(clipped: bool) -> None:
 
 
 def test_one_level_only_is_a_reason_not_to_name() -> None:
-    """The reason says what to do."""
+    """The reason states what to do."""
     campaign = made.quiet_campaign()
     level = np.abs(campaign.force).max(axis=1)
     flat = replace(campaign, force=campaign.force * (300.0 / level)[:, None])
@@ -158,7 +159,7 @@ def test_no_repeats_are_a_reason_not_to_name() -> None:
 
 
 def write(path: Path, campaign: Campaign, change: Callable[[h5py.File], None]) -> None:
-    """Write a campaign file and spoil it."""
+    """Write a campaign file and change it."""
     with h5py.File(path, "w") as file:
         file.attrs["schema"] = "two-body-campaign/1"
         file.attrs["fs_hz"] = campaign.sample_rate
@@ -176,25 +177,25 @@ def write(path: Path, campaign: Campaign, change: Callable[[h5py.File], None]) -
 
 
 def nothing(file: h5py.File) -> None:
-    """Leave the file as it is."""
+    """Leave the file unchanged."""
 
 
 def put_nan(file: h5py.File) -> None:
-    """Spoil one sample."""
+    """Make one sample NaN."""
     file["records/r03/accel"][1, 40] = np.nan
 
 
 def wrong_schema(file: h5py.File) -> None:
-    """Claim to be something else."""
+    """State another schema."""
     file.attrs["schema"] = "something/2"
 
 
 def no_nominal(file: h5py.File) -> None:
-    """Lose the sheet."""
+    """Remove the nominal parameters."""
     del file.attrs["nominal"]
 
 
-def bad_sheet(file: h5py.File) -> None:
+def bad_nominal(file: h5py.File) -> None:
     """Give a mass of zero."""
     file.attrs["nominal"] = json.dumps({**made.NOMINAL, "m2": 0.0})
 
@@ -216,7 +217,7 @@ def test_a_campaign_file_is_read_as_it_was_written(tmp_path: Path) -> None:
         (put_nan, BadData, "r03"),
         (wrong_schema, FormatError, "something/2"),
         (no_nominal, FormatError, "nominal"),
-        (bad_sheet, BadData, "m2"),
+        (bad_nominal, BadData, "m2"),
     ],
 )
 def test_a_spoilt_campaign_file_is_refused_by_name(
@@ -233,7 +234,7 @@ def test_a_spoilt_campaign_file_is_refused_by_name(
 
 
 def test_records_that_are_too_short_are_refused(tmp_path: Path) -> None:
-    """The message says how many samples are needed."""
+    """The message states the required number of samples."""
     path = tmp_path / "c.h5"
     write(path, made.quiet_campaign(samples=256), nothing)
     with pytest.raises(BadData, match="512"):

@@ -1,4 +1,4 @@
-"""No two sentences of a gap page exclude each other, whatever is hidden."""
+"""No two sentences of a gap report contradict each other, for any effect."""
 
 from dataclasses import replace
 
@@ -43,8 +43,8 @@ def test_every_effect_of_the_catalogue_is_hidden_once() -> None:
 
 
 @pytest.mark.parametrize("name", HIDDEN)
-def test_named_or_not_all_that_is_said_of_an_effect_goes_together(name: str) -> None:
-    """Terminal, page and JSON; once with the effect tried, once without."""
+def test_the_sentences_about_an_effect_do_not_contradict_each_other(name: str) -> None:
+    """Terminal, report and JSON; once with the effect fitted, once without."""
     site, values = HIDDEN[name]
     outcome, bench = outcomes.outcome_of(
         [(name, site, values)], (name, site), at_truth=True
@@ -52,7 +52,7 @@ def test_named_or_not_all_that_is_said_of_an_effect_goes_together(name: str) -> 
     named = conclude(outcome, bench)
     assert contradictions(named, frozenset({name})) == []
     nothing = {"best": outcome.base, "ranked": (), "level": (outcome.base,)}
-    lost = replace(outcome, gate=outcome.base_gate, **nothing)
+    lost = replace(outcome, acceptance=outcome.base_acceptance, **nothing)
     unknown = conclude(lost, bench)
     assert unknown.verdict in (Finding.UNKNOWN, Finding.NONE)
     assert contradictions(unknown, frozenset({name})) == []

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Laws of many thousands of times the noise: what they leave is noise all the same."""
+"""Laws of many thousands of times the noise: their residual is noise as well."""
 
 import gap_bench as made
 import numpy as np
 
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.model.policy import STANDARD
 from jointbench.analysis.gap.residuals.bench_noise import refine_noise
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -21,7 +21,7 @@ STEPS = 32
 
 
 def fits_of_a_stop(stiffness: float) -> tuple[FitProblem, Fit, Fit]:
-    """Return the problem of a stop, and its fits at four steps and at those needed."""
+    """Return the problem of a stop, and its fits at four and at the required steps."""
     bench = make_bench(made.quiet_campaign())
     stop = made.term_of(bench, "gap", "link:joint", [stiffness, 2e-6])
     clean = bench.response(BASE, [stop], STEPS)
@@ -34,8 +34,8 @@ def fits_of_a_stop(stiffness: float) -> tuple[FitProblem, Fit, Fit]:
     return problem, four, finish(problem, start, lambda line: None)
 
 
-def test_a_great_stop_is_marched_as_finely_as_it_needs() -> None:
-    """Four steps a sample leave more than noise allows, those that are taken do not."""
+def test_a_large_stop_is_integrated_as_finely_as_it_needs() -> None:
+    """Four steps per sample leave more than noise, the chosen number does not."""
     problem, four, needed = fits_of_a_stop(4e7)
     dof = problem.bench.blocks.dof
     allowed = STANDARD.chi2_limit * noise_sd(problem.bench)
@@ -44,7 +44,7 @@ def test_a_great_stop_is_marched_as_finely_as_it_needs() -> None:
 
 
 def test_clipped_samples_do_not_scatter_with_the_force() -> None:
-    """Hits that were harder than measured leave noise alone where they are clipped."""
+    """Hits that were harder than measured leave only noise in clipped samples."""
     whole = make_bench(made.quiet_campaign()).response(BASE, [])
     limit = 0.6 * np.abs(whole).max()
     factors = 1.0 + 2e-3 * np.array([0.3, -1.0, 0.9, -0.4, 0.8, 1.2, -0.7, 0.2])

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Laws of friction start from one another, for their costs have many valleys."""
+"""Friction laws start from one another, since their costs have many minima."""
 
 import gap_bench as made
 import numpy as np
 import pytest
 
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.search.descent import minimise
@@ -16,7 +16,7 @@ NOISE = 0.05
 
 
 def test_a_slider_is_found_from_a_law_that_imitates_it() -> None:
-    """From where a Bouc-Wen element ended, the Jenkins slider fits to the noise."""
+    """From the fit of a Bouc-Wen element, the Jenkins slider reaches the noise."""
     hidden = ("jenkins", "link:joint", [STIFFNESS, SLIP, SHARPNESS])
     campaign = made.made_campaign([hidden], noise=NOISE)
     bench = make_bench(campaign)
@@ -36,8 +36,8 @@ def test_a_slider_is_found_from_a_law_that_imitates_it() -> None:
     assert best.chi2 == pytest.approx(dof, rel=0.05)
 
 
-def test_what_does_not_slide_has_no_other_in_its_place() -> None:
-    """A cubic spring is no law of friction."""
+def test_an_effect_without_sliders_has_no_alternatives() -> None:
+    """A cubic spring is not a friction law."""
     bench = make_bench(made.made_campaign([]))
     term = made.term_of(bench, "cubic_stiffness", "link:joint", [0.0])
     problem = make_problem(bench, (term.candidate,))

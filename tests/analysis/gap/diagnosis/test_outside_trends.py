@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What an effect is worth is read under one noise, not from the noise of before."""
+"""The gain of an effect is computed with one noise estimate for both fits."""
 
 import gap_bench as made
 import numpy as np
@@ -30,8 +30,10 @@ def softening_campaign(seed: int) -> Campaign:
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_a_trend_outside_the_catalogue_lends_its_worth_to_no_other(seed: int) -> None:
-    """With loosening taken out nothing is named, with it loosening is."""
+def test_a_trend_outside_the_catalogue_is_not_credited_to_another_effect(
+    seed: int,
+) -> None:
+    """Without loosening in the catalogue nothing is named, with it loosening is."""
     campaign = softening_campaign(seed)
     assert diagnose(campaign, without=frozenset({"loosening"})).effects == ()
     found = diagnose(campaign)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where a joint settles anew in each hit, laws of its stiffness are found as well."""
+"""Laws of a joint's stiffness are found although it settles in each hit."""
 
 import gap_bench as made
 import numpy as np
@@ -13,7 +13,11 @@ from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.lumped_residual import settle
 from jointbench.analysis.gap.residuals.make_bench import make_bench
-from jointbench.analysis.gap.search.descent import BASE_STAGES, fit_stages, minimise
+from jointbench.analysis.gap.search.descent import (
+    BASE_RESOLUTIONS,
+    fit_coarse_to_fine,
+    minimise,
+)
 
 SETTLING = 1.5e-3 * np.array([0.4, -1.1, 0.8, 1.3, -0.6, 0.2, -0.9, 0.1])
 BASE = made.BASE
@@ -29,7 +33,7 @@ def settled_campaign(exponent: float) -> Campaign:
 
 
 def fitted(exponent: float) -> tuple[LumpedBench, float, float, float]:
-    """Return the bench, the exponent found, its sd and the chi2 that it took."""
+    """Return the bench, the exponent found, its sd and its drop of chi2."""
     bench, base = fit_base(make_bench(settled_campaign(exponent)))
     assert isinstance(bench, LumpedBench)
     law = made.term_of(bench, "preload_stiffness", "link:joint", [0.0])
@@ -43,14 +47,16 @@ def fitted(exponent: float) -> tuple[LumpedBench, float, float, float]:
 def test_a_quiet_base_is_found_though_every_hit_settles(
     seed: int, noise: float
 ) -> None:
-    """Scatter of 0.2 % hides it from a fit of the whole records."""
+    """With a scatter of 0.2 %, a fit of the whole records alone does not find it."""
     rng = np.random.default_rng(seed)
     plain = make_bench(made.quiet_campaign(samples=2048))
     settling = 2e-3 * rng.standard_normal(len(SETTLING))
     clean = settle(plain, settling).response(BASE, [])
     noisy = clean + noise * rng.standard_normal(clean.shape)
     start = make_bench(made.quiet_campaign(noisy, samples=2048))
-    late = fit_stages(make_problem(start, ()), np.zeros(BASE.size), BASE_STAGES)
+    late = fit_coarse_to_fine(
+        make_problem(start, ()), np.zeros(BASE.size), BASE_RESOLUTIONS
+    )
     assert far_off(start.refine(late.base, ()), late)
     bench, base = fit_base(start)
     assert base.chi2 == pytest.approx(bench.blocks.dof, rel=0.05)
@@ -80,7 +86,7 @@ def test_a_joint_that_loosens_far_beyond_its_scatter_is_named(loosened: float) -
     assert value.value == pytest.approx(loosened, abs=4 * value.sd)
 
 
-def test_a_trend_that_the_scatter_may_be_takes_no_more_chi2_than_it_is_worth() -> None:
-    """The drop is the square of the distance from off, in sd."""
+def test_the_drop_of_a_trend_within_the_scatter_matches_its_significance() -> None:
+    """The drop of chi2 is the squared distance from zero, in sd."""
     _, found, sd, drop = fitted(0.004)
     assert drop == pytest.approx((found / sd) ** 2, rel=0.1, abs=0.1)

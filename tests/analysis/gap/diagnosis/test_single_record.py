@@ -1,4 +1,4 @@
-"""A long record of one input and one output: cut, diagnosed, scored on what is left."""
+"""A long record of one input and one output: cut, diagnosed, scored on the rest."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ from jointbench.analysis.gap.diagnosis.single_record import (
     stretch_campaign,
 )
 from jointbench.analysis.gap.model.diagnosis_record import Finding
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.analysis.lumped.lumped_model import (
     Body,
     Link,
@@ -25,7 +25,7 @@ from jointbench.analysis.lumped.lumped_model import (
 )
 
 RATE = 1000.0
-SHEET = Sheet(
+NOMINAL = NominalParameters(
     LumpedModel(
         bodies=(Body("body", 1.0, 0.3),),
         links=(Link("joint", ("ground", "body"), 1e5, 12.0, 0.3, 0.3, joint=True),),
@@ -52,10 +52,10 @@ def linear_record(*, noise: float = 2e-3) -> tuple[SingleRecord, FloatArray]:
     return SingleRecord("made", force, clean + added, RATE), added
 
 
-def test_a_linear_record_misses_nothing_and_its_error_is_the_noise() -> None:
-    """On samples no fit has seen, the base leaves what was added and no more."""
+def test_a_linear_record_needs_no_effect_and_its_error_is_the_noise() -> None:
+    """On samples not used for the fit, the error of the base is the added noise."""
     record, added = linear_record()
-    found, (score,) = diagnose_record(record, TRAINING, (SCORED,), SHEET)
+    found, (score,) = diagnose_record(record, TRAINING, (SCORED,), NOMINAL)
     assert found.verdict is Finding.NONE
     assert found.effects == ()
     own = float(np.std(added[5000:6436]))
@@ -66,9 +66,9 @@ def test_a_linear_record_misses_nothing_and_its_error_is_the_noise() -> None:
 
 
 def test_the_lead_is_simulated_and_not_scored() -> None:
-    """It stands before each start; its samples carry no weight."""
+    """It precedes each start; its samples have no weight."""
     record, _ = linear_record()
-    campaign = stretch_campaign(record, TRAINING, SHEET)
+    campaign = stretch_campaign(record, TRAINING, NOMINAL)
     assert campaign.force.shape == (2, 2300)
     assert campaign.lead == 800
     np.testing.assert_array_equal(campaign.force[1, 800:], record.excitation[3000:4500])
@@ -82,11 +82,11 @@ def test_a_stretch_beyond_the_record_is_refused(stretch: Stretch) -> None:
     """Before its first sample, or after its last."""
     record, _ = linear_record()
     with pytest.raises(SamplingError, match=r"'scored'.*shorten"):
-        stretch_campaign(record, stretch, SHEET)
+        stretch_campaign(record, stretch, NOMINAL)
 
 
 def test_rows_of_other_lengths_and_nan_are_refused() -> None:
-    """No sample is made up."""
+    """Samples are never filled in."""
     row = np.zeros(100)
     with pytest.raises(SamplingError, match="same length"):
         SingleRecord("r", row, row[1:], RATE)

@@ -63,7 +63,7 @@ def quiet_rms(response: FloatArray) -> float:
 
 
 def test_every_accepted_hit_starts_at_rest_and_has_decayed_at_the_end() -> None:
-    """Only the noise is there before; 5 % of the response at most at the end."""
+    """Only noise before the hit; at most 5 % of the response at the end."""
     cut = cut_hits([recording([2000, 9000, 16000])], ["a0"])
     assert cut.force.shape[0] == 3
     assert quiet_rms(cut.response) < 1.2 * NOISE
@@ -72,15 +72,13 @@ def test_every_accepted_hit_starts_at_rest_and_has_decayed_at_the_end() -> None:
 
 
 def test_hits_that_were_rejected_stay_out() -> None:
-    """Verdicts are the bench's word."""
+    """The verdicts of the bench decide."""
     verdicts = [Verdict.OK, Verdict.DOUBLE, Verdict.OK]
     cut = cut_hits([recording([2000, 9000, 16000], verdicts=verdicts)], ["a0"])
     assert [hit.trigger for hit in cut.hits] == [2000, 16000]
 
 
-def test_hits_into_the_response_of_the_one_before_are_refused_with_the_way_out() -> (
-    None
-):
+def test_hits_during_the_response_to_the_previous_one_are_refused() -> None:
     """3 decay times between hits leave 5 % of the response ringing."""
     step = int(3 * DECAY * RATE)
     triggers = [2000 + k * step for k in range(12)]
@@ -90,7 +88,7 @@ def test_hits_into_the_response_of_the_one_before_are_refused_with_the_way_out()
 
 
 def test_one_hit_too_early_is_left_out_with_its_reason() -> None:
-    """The others are as good as before."""
+    """The other hits are unchanged."""
     early = 2000 + int(4 * DECAY * RATE)
     cut = cut_hits([recording([2000, early, 9000, 16000])], ["a0"])
     assert [hit.trigger for hit in cut.hits] == [2000, 9000, 16000]
@@ -99,19 +97,19 @@ def test_one_hit_too_early_is_left_out_with_its_reason() -> None:
 
 
 def test_without_a_pretrigger_nothing_is_cut() -> None:
-    """The line says how long it must be."""
+    """The message states the required length."""
     with pytest.raises(BadData, match="longer pre-trigger"):
         cut_hits([recording([PRETRIGGER - 1])], ["a0"])
 
 
 def test_a_recording_that_ends_too_soon_is_refused() -> None:
-    """Too few samples of response say nothing."""
+    """The response has too few samples."""
     with pytest.raises(BadData, match="record longer"):
         cut_hits([recording([2000], samples=2000 + SHORTEST // 2)], ["a0"])
 
 
 def test_a_bench_that_never_rests_is_refused() -> None:
-    """A tenth of the response is there before the hit."""
+    """A tenth of the response is present before the hit."""
     with pytest.raises(BadData, match="not quiet"):
         cut_hits([recording([2000, 9000], hum=1.5)], ["a0"])
 
@@ -122,7 +120,7 @@ def test_a_faint_hum_is_left_for_the_engine_to_name() -> None:
     assert np.abs(cut.response[:, 0, :QUIET]).max() > 0.02
 
 
-def test_the_offset_of_a_chain_is_taken_off() -> None:
+def test_the_offset_of_a_chain_is_subtracted() -> None:
     """Fifty times the noise, and half of it."""
     for offset in (0.05, 5e-4):
         cut = cut_hits([recording([2000, 9000, 16000], offset=offset)], ["a0"])

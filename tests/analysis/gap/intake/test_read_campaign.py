@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Campaign files from strangers: read as written, or refused in one line."""
+"""Campaign files of other programs: read as written, or refused in one line."""
 
 import json
 from collections.abc import Callable
@@ -172,7 +172,7 @@ def longer_record(file: h5py.File) -> None:
 
 
 def bytes_no_text(file: h5py.File) -> None:
-    """Store a sheet that is no text in any encoding of texts."""
+    """Store nominal parameters that are not text in any encoding."""
     file.attrs["nominal"] = np.bytes_(b"\xff\xfe{")
 
 
@@ -224,9 +224,9 @@ WRONG_ATTRIBUTES = [
         for name in ("level_N", "preload_N", "order", "hit_dof")
     ],
 ]
-WRONG_SHEETS = [
-    (attribute("/", sheet, text), sheet)
-    for sheet in ("nominal", "nominal_rel_sigma")
+WRONG_NOMINALS = [
+    (attribute("/", name, text), name)
+    for name in ("nominal", "nominal_rel_sigma")
     for text in (
         "[1, 2]",
         "8.0",
@@ -251,12 +251,12 @@ WRONG_SHEETS = [
 
 
 @pytest.mark.parametrize(
-    ("change", "word"), WRONG_SHAPES + WRONG_KINDS + WRONG_ATTRIBUTES + WRONG_SHEETS
+    ("change", "word"), WRONG_SHAPES + WRONG_KINDS + WRONG_ATTRIBUTES + WRONG_NOMINALS
 )
 def test_a_campaign_file_that_breaks_the_format_is_refused_in_one_line(
     tmp_path: Path, change: Change, word: str
 ) -> None:
-    """`FormatError` says which file and what in it, on one line."""
+    """`FormatError` names the file and its fault, on one line."""
     with pytest.raises(FormatError, match=word) as caught:
         read_changed(tmp_path, change)
     message = str(caught.value)
@@ -266,9 +266,7 @@ def test_a_campaign_file_that_breaks_the_format_is_refused_in_one_line(
 
 
 @pytest.mark.parametrize("value", [0.0, -4.0, np.nan, np.inf])
-def test_a_sheet_with_a_value_that_no_body_has_is_refused(
-    tmp_path: Path, value: float
-) -> None:
+def test_an_impossible_nominal_value_is_refused(tmp_path: Path, value: float) -> None:
     """The message names the value and the key."""
     change = attribute("/", "nominal", json.dumps({**NOMINAL, "m2": value}))
     with pytest.raises(BadData, match="m2"):
@@ -287,7 +285,7 @@ def test_a_sheet_with_a_value_that_no_body_has_is_refused(
 def test_a_campaign_that_claims_more_or_less_than_any_is_refused_unread(
     tmp_path: Path, change: Change, word: str
 ) -> None:
-    """Eight terabytes of accelerations are not asked for; no record is no campaign."""
+    """Eight terabytes of accelerations are not read; no record is no campaign."""
     with pytest.raises(HostileFile, match=word):
         read_changed(tmp_path, change)
 
@@ -295,7 +293,7 @@ def test_a_campaign_that_claims_more_or_less_than_any_is_refused_unread(
 def test_accelerations_of_a_wrong_shape_are_refused_before_a_sample_is_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Only shapes are looked at."""
+    """Only shapes are read."""
 
     def unwanted(*_: object, **__: object) -> None:
         pytest.fail("samples were read")
@@ -307,7 +305,7 @@ def test_accelerations_of_a_wrong_shape_are_refused_before_a_sample_is_read(
 
 
 @pytest.mark.parametrize("name", ["force", "accel"])
-def test_a_sample_that_is_no_number_is_blamed_on_its_record(
+def test_an_infinite_sample_is_reported_with_its_record(
     tmp_path: Path, name: str
 ) -> None:
     """Infinite in one record: the message names it."""
@@ -329,13 +327,13 @@ def test_a_file_that_is_no_hdf5_is_refused(tmp_path: Path, content: bytes) -> No
 
 
 def test_a_file_that_is_not_there_is_called_so(tmp_path: Path) -> None:
-    """The name may be wrong, the format is not to blame."""
+    """The name may be wrong; the message does not mention the format."""
     with pytest.raises(BadData, match="No such file"):
         read_campaign(tmp_path / "c.h5")
 
 
 def test_a_whole_campaign_is_read_as_it_was_written(tmp_path: Path) -> None:
-    """Samples, conditions and sheet."""
+    """Samples, conditions and nominal parameters."""
     path = tmp_path / "c.h5"
     whole(path)
     read = read_campaign(path)

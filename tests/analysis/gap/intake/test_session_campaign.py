@@ -18,7 +18,7 @@ from jointbench.analysis.gap.intake.session_campaign import (
     nominal_levels,
     session_campaign,
 )
-from jointbench.analysis.gap.model.nominal import Sheet
+from jointbench.analysis.gap.model.nominal import NominalParameters
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.lumped.lumped_model import (
     Body,
@@ -37,7 +37,7 @@ MODEL = LumpedModel(
     ),
     channels=(ResponseChannel("a2", "head"), ResponseChannel("a0", "bed")),
 )
-SHEET = Sheet(MODEL, {}, preload_reference=4000.0)
+NOMINAL = NominalParameters(MODEL, {}, preload_reference=4000.0)
 
 
 def run(
@@ -57,13 +57,13 @@ def run(
 
 
 def test_points_levels_preloads_and_order_come_from_the_recordings() -> None:
-    """A point belongs to the body whose channel sits there; channels by name."""
+    """A point belongs to the body of the channel at that point; channels by name."""
     runs = [
         run("first", point="3", peak=95.0),
         run("second", point="1", peak=105.0, preload=8000.0),
         run("third", point="head", peak=940.0),
     ]
-    campaign, left_out = session_campaign("visit", runs, SHEET)
+    campaign, left_out = session_campaign("visit", runs, NOMINAL)
     assert left_out == ()
     assert_array_equal(campaign.hit, [2, 0, 2])
     assert_array_equal(campaign.preload, [4000.0, 8000.0, 4000.0])
@@ -75,7 +75,7 @@ def test_points_levels_preloads_and_order_come_from_the_recordings() -> None:
 
 def test_a_model_of_three_bodies_makes_a_bench_with_every_joint_as_a_site() -> None:
     """The engine takes any number of bodies and links."""
-    campaign, _ = session_campaign("visit", [run("one"), run("two")], SHEET)
+    campaign, _ = session_campaign("visit", [run("one"), run("two")], NOMINAL)
     bench = make_bench(campaign)
     sites = {str(c.site) for c in bench.candidates}
     assert {"link:bolts", "link:slide", "body:head", "channel:a2"} <= sites
@@ -92,30 +92,30 @@ def test_peaks_are_grouped_into_the_levels_aimed_at() -> None:
 
 
 @pytest.mark.parametrize(
-    ("recording", "sheet", "words"),
+    ("recording", "nominal", "words"),
     [
-        (run("r", preload=None), SHEET, "--preload"),
-        (run("r", point="9"), SHEET, r"points = \['9'\]"),
+        (run("r", preload=None), NOMINAL, "--preload"),
+        (run("r", point="9"), NOMINAL, r"points = \['9'\]"),
         (
             run("r"),
-            replace(SHEET, model=replace(MODEL, output=Output.VELOCITY)),
+            replace(NOMINAL, model=replace(MODEL, output=Output.VELOCITY)),
             "velocity",
         ),
     ],
 )
-def test_what_is_missing_is_said_with_the_way_out(
-    recording: Recording, sheet: Sheet, words: str
+def test_a_missing_fact_is_reported_with_advice(
+    recording: Recording, nominal: NominalParameters, words: str
 ) -> None:
     """A preload, a body for a point, the right quantity."""
     with pytest.raises(BadData, match=words) as caught:
-        session_campaign("visit", [recording], sheet)
+        session_campaign("visit", [recording], nominal)
     assert "\n" not in str(caught.value)
 
 
 def test_several_preloads_need_a_reference() -> None:
     """One preload is its own reference."""
-    sheet = replace(SHEET, preload_reference=None)
-    campaign, _ = session_campaign("visit", [run("a"), run("b")], sheet)
+    nominal = replace(NOMINAL, preload_reference=None)
+    campaign, _ = session_campaign("visit", [run("a"), run("b")], nominal)
     assert campaign.preload_reference == 4000.0
     with pytest.raises(BadData, match="preload_reference"):
-        session_campaign("visit", [run("a"), run("b", preload=8e3)], sheet)
+        session_campaign("visit", [run("a"), run("b", preload=8e3)], nominal)

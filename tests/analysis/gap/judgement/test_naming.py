@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What keeps a fit from being a name although little of the gap is left."""
+"""Reasons against naming a fit although little of the gap is left."""
 
 import gap_bench as made
 import numpy as np
@@ -14,8 +14,8 @@ from jointbench.analysis.gap.catalogue.nonlinear_effects import (
     SATURATION,
 )
 from jointbench.analysis.gap.judgement.amplitudes import at_the_end
-from jointbench.analysis.gap.judgement.expected_misfit import forgiven
-from jointbench.analysis.gap.judgement.rivals import without_twins
+from jointbench.analysis.gap.judgement.expected_residual import forgiven
+from jointbench.analysis.gap.judgement.rivals import without_duplicates
 from jointbench.analysis.gap.model.effect import Candidate, Effect, Site
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.make_bench import make_bench
@@ -24,7 +24,7 @@ JOINT = Site("link", "joint")
 
 
 def fit_of(effect: Effect, coordinates: list[float], sd: float = 0.01) -> Fit:
-    """Return a fit of one effect to nothing at all, every coordinate known to `sd`."""
+    """Return a fit of one effect to zero data, with sd `sd` of each coordinate."""
     n = 1 + len(coordinates)
     x = np.array([0.0, *coordinates])
     nothing = np.zeros(n)
@@ -32,35 +32,35 @@ def fit_of(effect: Effect, coordinates: list[float], sd: float = 0.01) -> Fit:
     return Fit(x, 1, candidates, nothing, np.eye(n) / sd, 0.0, nothing, nothing)
 
 
-def test_a_shape_at_the_end_of_its_range_is_told_by_name() -> None:
-    """A Bouc-Wen element of exponent 6 stands in for a Jenkins slider."""
+def test_a_shape_at_the_end_of_its_range_is_named() -> None:
+    """A Bouc-Wen element of exponent 6 imitates a Jenkins slider."""
     found = at_the_end(fit_of(BOUC_WEN.effect, [0.01, -1.0, np.log(6.0), 0.0]))
     assert found == "n of bouc_wen@link:joint is at its limit"
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 4.0])
 def test_a_shape_inside_its_range_is_no_objection(exponent: float) -> None:
-    """Exponents that joints have are far from the limit."""
+    """Exponents of real joints are far from the limit."""
     fit = fit_of(BOUC_WEN.effect, [0.01, -1.0, np.log(exponent), 0.0])
     assert at_the_end(fit) == ""
 
 
-def test_a_shape_that_the_data_do_not_know_is_no_objection() -> None:
-    """At its limit by chance: its sd is as wide as its range."""
+def test_an_undetermined_shape_is_no_objection() -> None:
+    """It is at its limit by chance: its sd is as large as its range."""
     fit = fit_of(BOUC_WEN.effect, [0.01, -1.0, np.log(6.0), 0.0], sd=10.0)
     assert at_the_end(fit) == ""
 
 
-def test_only_a_law_that_cannot_be_exact_may_leave_much() -> None:
-    """The sliders of an Iwan element are counted by its maker; a Jenkins has one."""
+def test_only_an_inexact_law_has_a_large_model_error() -> None:
+    """The number of sliders of an Iwan element is unknown; a Jenkins has one."""
     base = bare_fit((), 1e6)
     iwan = forgiven(fit_of(IWAN.effect, [0.01, -1.0, 0.5, 2.6]), (base,), 100)
     jenkins = forgiven(fit_of(JENKINS.effect, [0.01, -1.0, 2.6]), (base,), 100)
     assert iwan >= 10 * jenkins
 
 
-def test_a_loose_law_does_not_excuse_what_another_one_leaves() -> None:
-    """An Iwan element takes a little of what a stop leaves, and no more."""
+def test_the_model_error_of_a_law_does_not_cover_another_one() -> None:
+    """An Iwan element excuses little of the residual of a stop."""
     stop, loose = Candidate(GAP.effect, JOINT), Candidate(IWAN.effect, JOINT)
     base, alone = bare_fit((), 1e9), bare_fit((stop,), 6000.0)
     both = bare_fit((stop, loose), 5900.0)
@@ -70,7 +70,7 @@ def test_a_loose_law_does_not_excuse_what_another_one_leaves() -> None:
 
 
 def bare_fit(candidates: tuple[Candidate, ...], chi2: float) -> Fit:
-    """Return a fit of which only its candidates and its chi2 matter."""
+    """Return a fit with given candidates and chi2."""
     nothing = np.zeros(1)
     left = np.array([np.sqrt(chi2)])
     return Fit(nothing, 1, candidates, left, np.eye(1), chi2, nothing, nothing)
@@ -84,16 +84,16 @@ def two_channel_fit(site: str) -> Fit:
     return Fit(nothing, 1, (gain, clipping), nothing, np.eye(3), 0.0, nothing, nothing)
 
 
-def test_one_fault_of_all_channels_and_of_one_are_one_statement() -> None:
-    """Beside another effect too: only one channel may reach the range of all."""
+def test_a_fault_of_one_channel_is_a_duplicate_of_that_of_all() -> None:
+    """Also with another effect: only one channel may reach the common range."""
     bench = make_bench(made.quiet_campaign())
     every, one = two_channel_fit("all"), two_channel_fit("a1")
-    assert without_twins(bench, [one, every]) == [every]
-    assert without_twins(bench, [every]) == [every]
+    assert without_duplicates(bench, [one, every]) == [every]
+    assert without_duplicates(bench, [every]) == [every]
 
 
-def test_two_channels_apart_are_two_statements() -> None:
-    """Only a fault of all channels takes the place of another."""
+def test_faults_of_two_channels_are_no_duplicates() -> None:
+    """Only a fault of all channels replaces another."""
     bench = make_bench(made.quiet_campaign())
     fits = [two_channel_fit("a0"), two_channel_fit("a1")]
-    assert without_twins(bench, fits) == fits
+    assert without_duplicates(bench, fits) == fits

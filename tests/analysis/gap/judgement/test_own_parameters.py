@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Parts of the records that want parameters of their own."""
+"""Parts of the records that need separate parameters."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +16,7 @@ LEVELS = ("30 N", "30 N", "100 N", "100 N", "300 N", "300 N")
 
 
 def shaken() -> tuple[np.ndarray, np.ndarray]:
-    """Return two decaying slopes and a minimum's residual of white noise."""
+    """Return two decaying slopes, and white noise as the residual of a minimum."""
     time = np.arange(SAMPLES)
     tones = [np.exp(-time / 90) * np.cos(w * time) for w in (0.2, 0.5)]
     slopes = np.stack([np.tile(t, RECORDS * CHANNELS) for t in tones], axis=1)
@@ -25,7 +25,7 @@ def shaken() -> tuple[np.ndarray, np.ndarray]:
 
 
 def worst(slopes: np.ndarray, residual: np.ndarray, allowed: float = 0.0) -> Any:
-    """Fit the residual by the slopes and cut what is left."""
+    """Fit the residual by the slopes, and divide the rest."""
     left = residual - slopes @ np.linalg.lstsq(slopes, residual, rcond=None)[0]
     group = np.repeat(np.arange(RECORDS), CHANNELS * SAMPLES)
     labels = tuple({"level": level} for level in LEVELS)
@@ -35,8 +35,8 @@ def worst(slopes: np.ndarray, residual: np.ndarray, allowed: float = 0.0) -> Any
     return most_unlike(bench, fit, allowed)
 
 
-def test_white_noise_wants_no_parameters_of_its_own() -> None:
-    """Twelve cuts of noise show nothing that chance would not."""
+def test_white_noise_needs_no_separate_parameters() -> None:
+    """Twelve divisions of noise show no significant difference."""
     assert worst(*shaken()).chance > 1e-3
 
 
@@ -48,8 +48,8 @@ def test_white_noise_wants_no_parameters_of_its_own() -> None:
         ((np.arange(SAMPLES) < 50)[None, None, :], "time"),
     ],
 )
-def test_a_part_that_answers_otherwise_is_named(rows: np.ndarray, view: str) -> None:
-    """Two sd along a slope, in one part only, are found in a view that cuts it."""
+def test_a_part_with_another_response_is_named(rows: np.ndarray, view: str) -> None:
+    """Two sd along a slope, in one part only, are found in the view with that part."""
     slopes, noise = shaken()
     part = np.broadcast_to(rows, SHAPE).reshape(-1)
     unlike = worst(slopes, noise + 2.0 * part * slopes[:, 0])
@@ -58,7 +58,7 @@ def test_a_part_that_answers_otherwise_is_named(rows: np.ndarray, view: str) -> 
 
 
 def test_a_line_of_the_spectrum_is_found() -> None:
-    """A hum of half the noise's sd, of a phase of its own in every record."""
+    """A hum of half the noise's sd, with another phase in every record."""
     slopes, noise = shaken()
     phase = np.random.default_rng(5).uniform(0, 2 * np.pi, RECORDS * CHANNELS)
     hum = 0.5 * np.sin(1.3 * np.arange(SAMPLES)[None, :] + phase[:, None])
@@ -67,8 +67,8 @@ def test_a_line_of_the_spectrum_is_found() -> None:
     assert unlike.chance < 1e-20
 
 
-def test_what_the_law_itself_may_leave_is_not_held_against_it() -> None:
-    """An allowance of the size of the misfit takes the finding away."""
+def test_the_model_error_of_a_law_is_allowed() -> None:
+    """With an allowance of the size of the residual there is no finding."""
     slopes, noise = shaken()
     part = np.broadcast_to((np.arange(CHANNELS) == 1)[None, :, None], SHAPE).reshape(-1)
     data = noise + 2.0 * part * slopes[:, 0]

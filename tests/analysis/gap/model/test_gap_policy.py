@@ -65,7 +65,7 @@ sweep = load_sweep()
 
 @pytest.mark.parametrize("record", [STANDARD, *sweep.PARTS.values()], ids=repr)
 def test_every_setting_has_unit_purpose_and_basis(record: object) -> None:
-    """No number without a word, and none of the wrong kind in its record."""
+    """Every number is documented, and of the kind of its record."""
     settings = settings_of(record)
     assert len(settings) == len(fields(record))  # type: ignore[arg-type]
     for one in settings:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The end of the converter's pass band is estimated, as no data sheet tells it."""
+"""The end of the converter's pass band, which no data sheet gives, is estimated."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -37,12 +37,12 @@ def lines_of(bench: LumpedBench) -> FloatArray:
 
 
 def early_end(frequency: FloatArray) -> FloatArray:
-    """Return a filter that ends earlier than the usual one."""
+    """Return a filter with a lower pass-band end than the default."""
     return np.asarray(0.5 - 0.5 * np.tanh((frequency - 0.415) / 0.012))
 
 
 def bench_of_a_stop() -> LumpedBench:
-    """Return hits on a joint with a stop, recorded through the earlier filter."""
+    """Return hits on a joint with a stop, recorded through the lower filter."""
     bench = make_bench(made.quiet_campaign())
     stop = made.term_of(bench, "gap", "link:joint", STOP)
     taper = early_end(lines_of(bench))
@@ -54,7 +54,7 @@ def bench_of_a_stop() -> LumpedBench:
     )
 
 
-def test_the_filter_is_found_where_a_stop_sounds() -> None:
+def test_the_filter_is_found_in_the_band_excited_by_a_stop() -> None:
     """Within a tenth from 0.38 to 0.45."""
     bench = bench_of_a_stop()
     stop = made.term_of(bench, "gap", "link:joint", STOP)
@@ -65,8 +65,8 @@ def test_the_filter_is_found_where_a_stop_sounds() -> None:
     assert taper[inside] == pytest.approx(early_end(frequency)[inside], abs=0.1)
 
 
-def test_without_a_nonlinear_law_the_filter_is_the_usual_one() -> None:
-    """Force and response carry it alike; an estimate of before is forgotten."""
+def test_without_a_nonlinear_law_the_filter_is_the_default() -> None:
+    """The filter is the same for force and response; an earlier estimate is dropped."""
     bench = bench_of_a_stop()
     stop = made.term_of(bench, "gap", "link:joint", STOP)
     found = with_converter_edge(bench, BASE, [stop])
@@ -76,8 +76,8 @@ def test_without_a_nonlinear_law_the_filter_is_the_usual_one() -> None:
     assert plain.excitation.taper == pytest.approx(pass_band_end(frequency))
 
 
-def test_a_great_stop_behind_an_early_filter_is_named(tmp_path: Path) -> None:
-    """Named alone: filter and march leave nothing that a second law makes up for."""
+def test_a_large_stop_seen_through_a_low_filter_is_named(tmp_path: Path) -> None:
+    """Named alone: filter and integration leave no error that a second law explains."""
     stop = HiddenEffect("gap", {"g": 3e-6, "k": 3e7})
     design = draw_design(941, grid="small", noise=NOISE)
     force, clean = simulate_records(design, [stop], converter=EARLY)

@@ -96,7 +96,7 @@ def test_a_slider_loads_along_its_curve_and_unloads_elastically() -> None:
 
 
 def test_a_slider_loads_again_along_its_loading_curve() -> None:
-    """After unloading it goes on from the point of the curve at which it stands."""
+    """After unloading it continues from its point on the curve."""
     tables, tops = slider_tables(1.0, 0.0, 12.0)
     u, loading = slide(0.0, 0.0, 0.9, tables, tops)
     low, _ = state = slide(u, loading, -0.2, tables, tops)
@@ -117,11 +117,11 @@ def test_many_small_steps_move_a_slider_as_far_as_one() -> None:
 
 
 def test_white_noise_is_estimated_from_the_top_of_the_spectrum() -> None:
-    """Within 2 % for 16 records, whatever the low-frequency residual."""
+    """Within 2 % for 16 records, independent of the low-frequency residual."""
     rng = np.random.default_rng(5)
     time = np.arange(2048) / made.RATE
-    misfit = 3.0 * np.sin(2 * np.pi * 300 * time)
-    residual = 0.2 * rng.standard_normal((16, 2, 2048)) + misfit
+    tone = 3.0 * np.sin(2 * np.pi * 300 * time)
+    residual = 0.2 * rng.standard_normal((16, 2, 2048)) + tone
     sigma = channel_sigma(residual, np.ones((16, 2)))
     assert sigma == pytest.approx(0.2 * np.ones((16, 2)), rel=0.02)
 
@@ -139,8 +139,8 @@ def test_scatter_is_found_when_repeats_differ_by_more_than_noise() -> None:
 PRELOADS = np.log([2e3, 2e3, 2e3, 2e3, 2e3, 2e3, 8e3, 8e3])
 
 
-def test_no_joint_repeats_better_than_a_scatter_that_counts() -> None:
-    """Three times the noise, but 3 parts in a million: a misfit, and no scatter."""
+def test_a_scatter_below_that_of_any_joint_counts_as_zero() -> None:
+    """Three times the noise, but 3 parts in a million: residual, not scatter."""
     rng = np.random.default_rng(7)
     noise = rng.standard_normal(16)
     groups = [np.arange(8), np.arange(8, 16)]
@@ -148,8 +148,8 @@ def test_no_joint_repeats_better_than_a_scatter_that_counts() -> None:
     assert gain_scatter(3e-4 * noise, np.full(16, 1e-8), groups) > 1e-4
 
 
-def test_a_trend_is_seen_past_a_record_that_says_hardly_anything() -> None:
-    """Seven sharp records make the law; the soft hit among them is no evidence."""
+def test_a_trend_is_found_despite_a_record_with_little_information() -> None:
+    """Seven precise records determine the trend; the soft hit has little weight."""
     sd = np.array([1e-4, 9e-6, 2e-6, 9e-6, 2e-5, 4e-6, 9e-6, 2e-5])
     drawn = sd * np.random.default_rng(3).standard_normal(8)
     values = drawn - 7e-5 * (PRELOADS - PRELOADS.mean())
@@ -157,7 +157,7 @@ def test_a_trend_is_seen_past_a_record_that_says_hardly_anything() -> None:
     assert np.polyfit(PRELOADS[1:], left[1:], 1)[0] == pytest.approx(0, abs=1e-5)
 
 
-def test_scatter_alone_is_rarely_taken_for_a_trend() -> None:
+def test_scatter_alone_is_rarely_a_trend() -> None:
     """2,000 draws of pure scatter over unequal noise: about 3e-4 may be changed."""
     rng = np.random.default_rng(4)
     sd = np.array([1e-3, 1e-4, 2e-5, 1e-4, 2e-4, 4e-5, 1e-4, 2e-4])
@@ -169,7 +169,7 @@ def test_scatter_alone_is_rarely_taken_for_a_trend() -> None:
     assert changed <= 4
 
 
-def test_whitening_leaves_unit_noise_where_a_direction_was_loud() -> None:
+def test_whitening_leaves_unit_noise_along_a_strong_direction() -> None:
     """I + b b^T becomes the identity along b."""
     b = np.zeros((1, 50))
     b[0, :10] = 2.0
@@ -181,7 +181,7 @@ def test_whitening_leaves_unit_noise_where_a_direction_was_loud() -> None:
     assert np.linalg.norm(left) == pytest.approx(1.0, rel=1e-9)
 
 
-def test_prediction_is_silent_without_force() -> None:
+def test_the_prediction_without_force_is_zero() -> None:
     """No force, no response."""
     bench = make_bench(made.quiet_campaign())
     still = replace(bench.excitation, spectrum=0 * bench.excitation.spectrum)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The transform hides neither noise at the end of the band nor the lanes of a march."""
+"""The damped transform: noise at the band end, and independence of records."""
 
 import gap_bench as made
 import numpy as np
@@ -19,13 +19,13 @@ DELAY = ("delay", "channel:a1", [20e-6])
 
 
 def excitation_of(force: FloatArray) -> Excitation:
-    """Return hits on the second body, made ready."""
+    """Return hits on the second body, prepared."""
     records = len(force)
     still = HitConditions(np.ones(records), np.zeros(records))
     return prepare_excitation(force, np.ones(records, dtype=int), made.RATE, still)
 
 
-def answer_to(
+def response_to(
     force: FloatArray, effect: tuple[str, str, list[float]], oversampling: int = 4
 ) -> FloatArray:
     """Return the response to hits on the second body with an effect."""
@@ -41,26 +41,26 @@ def answer_to(
 
 
 def ring_of(monkeypatch: pytest.MonkeyPatch, *, faded: float) -> float:
-    """Return what the noise of a hit rings in the last quarter of a delayed record.
+    """Return the ringing of hit noise in the last quarter of a delayed record.
 
-    Against a transform of six lengths, whose damping magnifies nothing.
+    The reference is a transform of six lengths, whose damping amplifies no noise.
     """
     rng = np.random.default_rng(3)
     force = CAMPAIGN.force[2:3].copy()
     force[:, 80:200] += FORCE_NOISE * rng.standard_normal(120)
     with monkeypatch.context() as patched:
         patched.setattr(forward, "FADED", faded)
-        short = answer_to(force, DELAY)
+        short = response_to(force, DELAY)
         patched.setattr(forward, "PADDED", 6.0)
         patched.setattr(forward, "DAMPING_EXPONENT", 24.0)
-        error = np.abs(short - answer_to(force, DELAY))
+        error = np.abs(short - response_to(force, DELAY))
     return float(error[..., 3 * made.SAMPLES // 4 : -64].max())
 
 
 def test_noise_at_the_end_of_the_band_does_not_ring(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Less than a tenth of what it rings without the fade-out, in a short record."""
+    """Less than a tenth of the ringing without the taper, in a short record."""
     direct = FORCE_NOISE / made.NOMINAL["m2"]
     plain = ring_of(monkeypatch, faded=1e-9)
     faded = ring_of(monkeypatch, faded=forward.FADED)
@@ -76,13 +76,13 @@ def test_noise_at_the_end_of_the_band_does_not_ring(
         ("coulomb", "link:joint", [5.0, 1e-4]),
     ],
 )
-def test_a_record_is_marched_alike_in_any_company(
+def test_the_response_of_a_record_does_not_depend_on_other_records(
     effect: tuple[str, str, list[float]],
 ) -> None:
-    """Eleven records fill a lane of eight and a part of another."""
+    """Eleven records fill eight lanes once, and a part of them again."""
     level = np.linspace(0.2, 1.0, 11)
     force = level[:, None] * CAMPAIGN.force[2]
-    together = answer_to(force, effect)
+    together = response_to(force, effect)
     for k in (0, 7, 8, 10):
-        alone = answer_to(force[k : k + 1], effect)[0]
+        alone = response_to(force[k : k + 1], effect)[0]
         assert np.abs(together[k] - alone).max() < 1e-9 * np.abs(alone).max()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A search that is too long ends, says so, and gives the same answer anywhere."""
+"""A search ends at its effort limit, reports it, and is reproducible."""
 
 from dataclasses import replace
 
@@ -20,8 +20,8 @@ from jointbench.analysis.gap.response.search_effort import (
 TWO = [("delay", "channel:a1", [4e-5]), ("cross_talk", "channel:a0", [0.02])]
 
 
-def test_a_march_costs_more_than_a_linear_response() -> None:
-    """Steps are counted too."""
+def test_time_integration_costs_more_than_a_linear_response() -> None:
+    """Integration steps are counted."""
     with counted() as effort:
         spend(100, 0)
         linear = effort.spent
@@ -29,8 +29,8 @@ def test_a_march_costs_more_than_a_linear_response() -> None:
     assert effort.spent - linear > 4 * linear
 
 
-def test_what_is_spent_beyond_a_limit_ends_the_search() -> None:
-    """Within the limit nothing happens, beyond it does, and without one never."""
+def test_effort_beyond_the_limit_ends_the_search() -> None:
+    """Below the limit or without one the search continues."""
     with counted() as effort:
         with limited(effort, 150.0):
             spend(100, 0)
@@ -40,7 +40,7 @@ def test_what_is_spent_beyond_a_limit_ends_the_search() -> None:
     spend(10**9, 8)
 
 
-def test_a_second_effect_that_may_not_be_looked_for_is_unknown() -> None:
+def test_without_effort_for_a_second_effect_the_verdict_is_unknown() -> None:
     """Two faults are named; with no effort allowed for the second, none is."""
     campaign = made.made_campaign(TWO)
     found = diagnose(campaign, entries=LINEAR)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The two routes to a response against each other, and the null test against draws."""
+"""The two methods for a response compared, and the null test against draws."""
 
 import importlib.util
 from dataclasses import replace
@@ -19,7 +19,7 @@ from second_route.verify import (
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
-from jointbench.analysis.gap.judgement.expected_misfit import noise_sd
+from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.model.effect import Effect
 from jointbench.analysis.gap.model.effect_parameter import Parameter
 from jointbench.analysis.gap.residuals.fit_records import Fit
@@ -34,7 +34,7 @@ from jointbench.analysis.lumped.lumped_model import Output
 
 
 def load(path: Path) -> ModuleType:
-    """Return a module by its file."""
+    """Load a module from its file."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -90,7 +90,7 @@ RECORDS = [0, 2, 5, 7]
 
 
 def bench_of() -> LumpedBench:
-    """Return hits without a response, with sizes for the faults of channels."""
+    """Return hits without a response, with scales for faults of channels."""
     campaign = made.quiet_campaign(samples=448)
     rows = ("force", "response", "hit", "level", "preload", "order")
     few = {name: getattr(campaign, name)[RECORDS] for name in rows}
@@ -100,12 +100,12 @@ def bench_of() -> LumpedBench:
 
 
 def actions_of(bench: LumpedBench, *names: str) -> list[Action]:
-    """Return effects of everyday size."""
+    """Return effects of typical size."""
     return bench.actions([made.term_of(bench, n, *VALUES[n]) for n in names])
 
 
 def compare(*names: str, oversampling: int = 8) -> Verification:
-    """Compare the routes under effects of everyday size."""
+    """Compare the methods for effects of typical size."""
     bench = bench_of()
     return verify_response(
         bench.campaign.model,
@@ -117,25 +117,25 @@ def compare(*names: str, oversampling: int = 8) -> Verification:
     )
 
 
-def held_straight(oversampling: int) -> float:
-    """Return the error of a force held straight within a step.
+def first_order_hold(oversampling: int) -> float:
+    """Return the error of a force that is linear within a step.
 
-    A line of frequency omega is off by (omega h)^2/12 in the mean; three times that,
-    for the harmonics that a bent force adds.
+    A component of frequency omega has a mean error of (omega h)^2/12; three times that
+    allows for the harmonics of a nonlinear force.
     """
     return float(3 * (FASTEST * SAMPLE / oversampling) ** 2 / 12)
 
 
 def extrapolated(oversampling: int) -> float:
-    """Return the error that is left once the square of the step is taken out.
+    """Return the error of the extrapolated solution.
 
-    The next term is of (omega h)^4; three times that, for the harmonics.
+    The next term is of order (omega h)^4; three times that allows for the harmonics.
     """
     return float(3 * (FASTEST * SAMPLE / oversampling) ** 4)
 
 
 def test_every_effect_of_the_catalogue_is_verified() -> None:
-    """No entry is passed over by the tests below."""
+    """The tests below cover every entry."""
     assert {entry.effect.name for entry in CATALOGUE} == set(VALUES)
 
 
@@ -150,7 +150,7 @@ def test_linear_effects_and_faults_agree_to_the_wrap_around(name: str) -> None:
     "name",
     ["cubic_stiffness", "quadratic_stiffness", "quadratic_damping"],
 )
-def test_smooth_laws_agree_to_the_extrapolated_step_of_the_march(name: str) -> None:
+def test_smooth_laws_agree_to_the_extrapolated_integration_step(name: str) -> None:
     """Bound 5.2e-6; seen: 9.7e-7, 9.1e-7, 9.9e-7."""
     assert compare(name).over_peak.max() < extrapolated(8)
 
@@ -165,9 +165,9 @@ def test_half_the_step_leaves_far_less_than_a_quarter_of_the_difference(
 
 
 @pytest.mark.parametrize("name", ["gap", "jenkins", "iwan", "bouc_wen"])
-def test_laws_with_corners_agree_to_the_step_of_the_march(name: str) -> None:
+def test_laws_with_corners_agree_to_the_integration_step(name: str) -> None:
     """Bound 3.3e-4; seen: 1.1e-4, 5.8e-5, 4.8e-5, 1.1e-4."""
-    assert compare(name).over_peak.max() < held_straight(8)
+    assert compare(name).over_peak.max() < first_order_hold(8)
 
 
 def test_dry_friction_agrees_to_a_jump_misplaced_within_a_step() -> None:
@@ -176,7 +176,7 @@ def test_dry_friction_agrees_to_a_jump_misplaced_within_a_step() -> None:
 
 
 def test_hum_is_found_at_its_phase() -> None:
-    """The second route finds the true phases, the first to the leakage of its line."""
+    """The second method finds the true phases, the first up to leakage of the line."""
     bench = bench_of()
     model, theta = bench.campaign.model, bench.campaign.model.nominal
     actions = actions_of(bench, "hum")
@@ -194,15 +194,15 @@ def test_hum_is_found_at_its_phase() -> None:
 
 
 @pytest.mark.parametrize("output", [Output.DISPLACEMENT, Output.VELOCITY])
-def test_the_routes_agree_whatever_the_channels_measure(output: Output) -> None:
-    """Displacement and velocity come out of both routes alike."""
+def test_the_methods_agree_for_all_quantities(output: Output) -> None:
+    """Displacement and velocity agree as well."""
     bench = bench_of()
     model = replace(bench.campaign.model, output=output)
     apart = verify_response(model, model.nominal, bench.excitation)
     assert apart.over_peak.max() < BAND_LIMITED
 
 
-def test_a_settled_joint_is_settled_in_both_routes() -> None:
+def test_both_methods_include_the_settling_of_a_joint() -> None:
     """The settling of each record changes its stiffness by exp(settling)."""
     bench = bench_of()
     settling = np.linspace(-0.01, 0.01, 4)
@@ -213,8 +213,8 @@ def test_a_settled_joint_is_settled_in_both_routes() -> None:
     assert apart.over_peak.max() < BAND_LIMITED
 
 
-def test_a_mass_added_to_a_bent_joint_is_a_heavier_body() -> None:
-    """The second route is right about pairs: the first knows the heavier body too."""
+def test_a_mass_added_to_a_nonlinear_joint_is_a_heavier_body() -> None:
+    """The second method is correct for pairs: the first agrees for the heavier body."""
     bench = bench_of()
     model, theta = bench.campaign.model, bench.campaign.model.nominal
     heavier = theta.copy()
@@ -224,25 +224,27 @@ def test_a_mass_added_to_a_bent_joint_is_a_heavier_body() -> None:
     first = respond(model, heavier, bench.excitation, cubic, oversampling=16)
     second = second_response(model, theta, bench.excitation, pair)
     apart = np.abs(first - second)[..., :-64].max()
-    assert apart < held_straight(16) * np.abs(second).max()
+    assert apart < first_order_hold(16) * np.abs(second).max()
 
 
 @pytest.mark.parametrize(
     "other", ["added_mass", "loosening", "hidden_mode", "maxwell", "preload_stiffness"]
 )
-def test_a_bent_joint_beside_a_linear_effect_agrees_as_by_itself(other: str) -> None:
-    """The march must know the compliance that the other effect leaves the link."""
-    assert compare("cubic_stiffness", other).over_peak.max() < held_straight(8)
+def test_a_nonlinear_joint_with_a_linear_effect_agrees_as_without_it(
+    other: str,
+) -> None:
+    """The integration must use the link compliance including the linear effect."""
+    assert compare("cubic_stiffness", other).over_peak.max() < first_order_hold(8)
 
 
 @pytest.mark.parametrize("other", ["jenkins", "gap"])
-def test_two_laws_at_one_link_agree_as_each_by_itself(other: str) -> None:
-    """Both forces bend the same joint at the same time."""
-    assert compare("cubic_stiffness", other).over_peak.max() < held_straight(8)
+def test_two_laws_at_one_link_agree_as_each_alone(other: str) -> None:
+    """Both forces act on the same joint at the same time."""
+    assert compare("cubic_stiffness", other).over_peak.max() < first_order_hold(8)
 
 
 def own_effect(name: str, *, curves: bool) -> LumpedEffect:
-    """Return an effect that no catalogue has."""
+    """Return an effect outside the catalogue."""
     amplitude = Parameter("k5", "N/m^5", off=0.0)
     effect = Effect(name, "stiffness", (amplitude,), "made for this test")
     if curves:
@@ -252,18 +254,18 @@ def own_effect(name: str, *, curves: bool) -> LumpedEffect:
     return LumpedEffect(effect, ("link",), stiffness=lambda state, v: v[0] * state.s)
 
 
-def test_an_effect_of_ones_own_is_verified_by_its_curves() -> None:
+def test_a_user_defined_effect_is_verified_by_its_curves() -> None:
     """A fifth power given as a curve agrees as the laws of the catalogue do."""
     bench = bench_of()
     k5 = np.array([0.1 * STIFFNESS / TRAVEL**4])
     action = Action(own_effect("fifth_power", curves=True), "link", 1, k5)
     model = bench.campaign.model
     apart = verify_response(model, model.nominal, bench.excitation, [action])
-    assert apart.over_peak.max() < held_straight(8)
+    assert apart.over_peak.max() < first_order_hold(8)
 
 
 def test_an_effect_without_a_second_route_is_refused_by_name() -> None:
-    """Nobody is told that two routes agree where there is one."""
+    """Agreement is not reported if there is only one method."""
     bench = bench_of()
     action = Action(own_effect("odd_damper", curves=False), "link", 1, np.ones(1))
     model = bench.campaign.model
@@ -271,8 +273,8 @@ def test_an_effect_without_a_second_route_is_refused_by_name() -> None:
         second_response(model, model.nominal, bench.excitation, [action])
 
 
-def test_a_law_that_runs_away_is_said_to() -> None:
-    """A joint that softens beyond its peak load tears, and no number comes out."""
+def test_a_diverging_law_is_reported() -> None:
+    """A joint that softens beyond its peak load diverges: an error, not a number."""
     bench = bench_of()
     softening = made.term_of(
         bench, "cubic_stiffness", "link:joint", [-4 * STIFFNESS / TRAVEL**2]
@@ -286,14 +288,14 @@ def test_a_law_that_runs_away_is_said_to() -> None:
 
 @pytest.fixture(scope="module")
 def null() -> tuple[LumpedBench, Fit]:
-    """Return the fitted base of a campaign that misses nothing."""
+    """Return the fitted base of a campaign without a missing effect."""
     bench, fit = fit_base(make_bench(made.made_campaign([], noise=0.05, seed=4)))
     assert isinstance(bench, LumpedBench)
     return bench, fit
 
 
 def test_a_fit_is_verified_against_its_noise(null: tuple[LumpedBench, Fit]) -> None:
-    """At a fitted base the routes differ by a millionth of the noise in chi2."""
+    """At a fitted base the methods differ by a millionth of the noise in chi2."""
     bench, fit = null
     apart = verify_fit(bench, fit)
     assert apart.over_noise is not None and apart.chi2 is not None
@@ -316,7 +318,7 @@ def test_the_threshold_agrees_with_directions_projected_by_least_squares(
 def test_a_campaign_drawn_from_a_base_is_explained_by_it(
     seed: int, null: tuple[LumpedBench, Fit]
 ) -> None:
-    """Chi2 is 1 within the sd that the gate allows for, and nothing is missing."""
+    """Chi2/dof is 1 within the sd of the acceptance criterion; nothing is missing."""
     drawn = drawing.drawn_campaign(*null, np.random.default_rng(seed))
     bench, fit = drawing.fitted(drawn)
     found = drawing.judge(bench, fit)

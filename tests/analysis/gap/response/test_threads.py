@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Slopes are the same to the last bit, however many threads help."""
+"""Slopes are identical for any number of threads."""
 
 import gap_bench as made
 import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.response.search_effort import (
@@ -21,7 +21,7 @@ SLIDER = ("jenkins", "link:joint", [8e5, 4e-6, 11.0])
 
 
 def slider_problem() -> tuple[FitProblem, FloatArray]:
-    """Return the problem of a hidden slider, and where it lies."""
+    """Return the problem of a hidden slider, and its coordinates."""
     bench = make_bench(made.made_campaign([SLIDER]))
     term = made.term_of(bench, *SLIDER)
     problem = make_problem(bench, (term.candidate,))
@@ -29,7 +29,7 @@ def slider_problem() -> tuple[FitProblem, FloatArray]:
 
 
 def test_slopes_do_not_depend_on_the_number_of_threads() -> None:
-    """Three threads march what one does."""
+    """Three threads give the same result as one."""
     problem, x = slider_problem()
     residual = problem.residual(x, MIDDLE)
     with counted() as alone:
@@ -43,7 +43,7 @@ def test_slopes_do_not_depend_on_the_number_of_threads() -> None:
 
 @pytest.mark.parametrize("workers", [1, 3])
 def test_a_search_ends_by_its_effort_in_any_thread(workers: int) -> None:
-    """What a thread spends counts, and what it raises is raised."""
+    """The effort of a thread counts, and its exception is raised."""
     problem, x = slider_problem()
     residual = problem.residual(x, MIDDLE)
     with counted() as effort, side_by_side(workers):
@@ -55,8 +55,8 @@ def test_a_search_ends_by_its_effort_in_any_thread(workers: int) -> None:
             jacobian_of(problem, x, residual, MIDDLE)
 
 
-def test_threads_end_with_the_block_that_asked_for_them() -> None:
-    """Outside, tasks are done one after the other by the caller itself."""
+def test_threads_end_with_their_context() -> None:
+    """Outside it, tasks run one after the other in the calling thread."""
     seen: list[int] = []
     with side_by_side(2):
         each(seen.append, 3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The engine on a bench without any dynamics: it must not know the difference."""
+"""The engine on a bench without dynamics: it must be independent of the physics."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -23,7 +23,7 @@ from jointbench.analysis.gap.model.effect import (
 )
 from jointbench.analysis.gap.model.effect_parameter import Parameter, Transform
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
-from jointbench.analysis.gap.residuals.evaluation_stages import Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.descent import minimise
@@ -64,12 +64,12 @@ class Curve:
         return Blocks(group, labels, ROWS, (GROUPS, 1, ROWS // GROUPS))
 
     def scale(self, word: str) -> float:
-        """Everything is of order one."""
+        """Return 1: all sizes are of order one."""
         return 1.0
 
     @property
     def expanded(self) -> bool:
-        """Tell that the curve is exact everywhere."""
+        """The curve is exact everywhere."""
         return False
 
     def phases(self, candidate: Candidate) -> int:
@@ -77,17 +77,17 @@ class Curve:
         return 0
 
     def hints(self, fit: Fit, candidate: Candidate) -> list[FloatArray]:
-        """A curve suggests nothing."""
+        """A curve gives no hints."""
         return []
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
     ) -> "Curve":
         """The noise is known."""
         return self
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01."""
         y = LOAD * np.exp(base[0])
@@ -107,12 +107,12 @@ def curve(square: float = 0.0, cube: float = 0.0, seed: int = 3) -> Curve:
 
 
 def run(bench: Curve) -> SearchOutcome:
-    """Run the loop in silence."""
+    """Run the search without progress lines."""
     return investigate(bench, lambda line: None)
 
 
 def names(outcome: SearchOutcome) -> list[str]:
-    """Return the names of the winner."""
+    """Return the effects of the best fit."""
     return sorted(c.effect.name for c in outcome.best.candidates)
 
 
@@ -120,14 +120,14 @@ def names(outcome: SearchOutcome) -> list[str]:
 def test_a_curve_with_nothing_missing_has_no_effect(seed: int) -> None:
     """Noise alone passes the null test."""
     outcome = run(curve(seed=seed))
-    assert outcome.gate.passed
+    assert outcome.acceptance.passed
     assert names(outcome) == []
 
 
 def test_a_single_effect_is_found_with_its_size() -> None:
     """A square of 0.02 is found within 4 sd."""
     outcome = run(curve(square=0.02))
-    assert outcome.gate.passed
+    assert outcome.acceptance.passed
     assert names(outcome) == ["square"]
     assert outcome.best.x[-1] == pytest.approx(0.02, abs=0.0015)
 
@@ -135,28 +135,28 @@ def test_a_single_effect_is_found_with_its_size() -> None:
 def test_two_effects_are_found_one_after_the_other() -> None:
     """A square and a cube are both named, in whichever order."""
     outcome = run(curve(square=0.05, cube=0.1))
-    assert outcome.gate.passed
+    assert outcome.acceptance.passed
     assert names(outcome) == ["cube", "square"]
 
 
 def test_an_effect_outside_the_catalogue_is_left_unexplained() -> None:
-    """A square with only a cube to offer does not pass the gate."""
+    """A hidden square is not accepted if the catalogue has only a cube."""
     bench = replace(curve(square=0.05), candidates=(effect("cube"),))
-    assert not run(bench).gate.passed
+    assert not run(bench).acceptance.passed
 
 
-def test_what_a_wrong_effect_leaves_is_told_by_its_shape() -> None:
-    """A cube that rides on a square is seen by a probe, and never named."""
+def test_the_residual_of_a_wrong_effect_is_recognised_by_its_shape() -> None:
+    """A cube in addition to a square is detected by a probe, and never named."""
     bench = replace(curve(square=0.05, cube=0.006), candidates=(effect("square"),))
     cube = effect("cube")
     probe = replace(cube, effect=replace(cube.effect, family=PROBE_FAMILY))
     outcome = run(replace(bench, probes=(probe,)))
-    assert "resembles a cube at curve:y" in outcome.gate.reason
+    assert "resembles a cube at curve:y" in outcome.acceptance.reason
     assert names(outcome) == ["square"]
 
 
 def test_half_a_pair_is_exchanged() -> None:
-    """A cube in the place of a fifth power gives way once its partner is in."""
+    """A cube that imitates a fifth power is replaced once the square is included."""
     noise = 0.01 * np.random.default_rng(8).standard_normal(ROWS)
     measured = 1.05 * LOAD + 0.2 * LOAD**2 + 0.3 * LOAD**5 + noise
     bench = Curve(measured, tuple(effect(name) for name in POWERS))
@@ -171,14 +171,14 @@ def test_half_a_pair_is_exchanged() -> None:
     assert all(labels_of(f.candidates) not in known for f in rest)
 
 
-def test_a_fit_that_went_astray_catches_up_from_the_base_of_the_best() -> None:
-    """From a slope of e^3 the way down is long; from the best's base it is short."""
+def test_a_diverged_fit_catches_up_from_the_base_of_the_best() -> None:
+    """From a slope of e^3 the descent is long; from the best base it is short."""
     bench = curve(cube=0.2)
     best = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
-    astray = replace(best, x=np.array([3.0, -15.0]), cost=1e9)
-    again = crossed(bench, [best, astray], lambda line: None)[1]
+    diverged = replace(best, x=np.array([3.0, -15.0]), cost=1e9)
+    again = crossed(bench, [best, diverged], lambda line: None)[1]
     assert again.cost == pytest.approx(best.cost, rel=1e-6)
-    assert caught_up(bench, astray, best, lambda line: None).cost == pytest.approx(
+    assert caught_up(bench, diverged, best, lambda line: None).cost == pytest.approx(
         best.cost, rel=1e-6
     )
 
@@ -198,7 +198,7 @@ def test_holding_out_agrees_with_a_refit_without_the_group() -> None:
     out = bench.blocks.group == 2
     keep = np.stack([LOAD * np.exp(fit.x[0]), LOAD**2], axis=1)[~out] / 0.01
     normal = keep.T @ keep + np.diag(fit.prior)
-    start = bench.residual(fit.base, fit.terms, Stage())
+    start = bench.residual(fit.base, fit.terms, Resolution())
     step = -np.linalg.solve(normal, keep.T @ start[~out] + fit.prior * fit.x)
     moved = start + fit.jacobian @ step
     assert held.chi2[2] == pytest.approx(float(moved[out] @ moved[out]), rel=1e-4)
@@ -206,10 +206,10 @@ def test_holding_out_agrees_with_a_refit_without_the_group() -> None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinked(Curve):
-    """A curve that bends beyond a load which only the last group passes by much."""
+    """A curve with a kink at a load that only the last group exceeds by much."""
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01."""
         y = FAR_LOAD * np.exp(base[0])
@@ -236,7 +236,7 @@ KINK = Candidate(
 
 
 def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
-    """As far off as scipy's fit to the others; the linear step errs twofold."""
+    """As scipy's fit to the others; the linear step errs by a factor of 2."""
     noise = 0.01 * np.random.default_rng(2).standard_normal(ROWS)
     bend = 0.5 * np.maximum(FAR_LOAD - 0.97, 0.0)
     bench = Kinked(1.05 * FAR_LOAD + bend + noise, (KINK,))
@@ -245,11 +245,11 @@ def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
     rows = bench.blocks.group == GROUPS - 1
 
     def seen(x: FloatArray) -> FloatArray:
-        r = bench.residual(x[:1], (Term(KINK, x[1:]),), Stage())
+        r = bench.residual(x[:1], (Term(KINK, x[1:]),), Resolution())
         return np.append(r[~rows], x[0] / 0.1)
 
     other = scipy.optimize.least_squares(seen, fit.x).x
-    left = bench.residual(other[:1], (Term(KINK, other[1:]),), Stage())[rows]
+    left = bench.residual(other[:1], (Term(KINK, other[1:]),), Resolution())[rows]
     held = hold_out(fit, bench).chi2[-1]
     j, r = fit.jacobian[rows], fit.residual[rows]
     hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
@@ -259,70 +259,74 @@ def test_a_group_that_alone_holds_an_effect_is_held_out_by_a_refit() -> None:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Unsure(Curve):
-    """A curve whose noise is thought a tenth of what it is until a fit is at hand."""
+class Overestimated(Curve):
+    """A curve whose noise is assumed a tenth of its size until it is estimated."""
 
-    sure: bool = False
+    refined: bool = False
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
-    ) -> "Unsure":
-        """Know the noise."""
-        return replace(self, sure=True)
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+    ) -> "Overestimated":
+        """Set the noise to its true size."""
+        return replace(self, refined=True)
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01, or / 0.001."""
-        return Curve.residual(self, base, terms, stage) * (1.0 if self.sure else 10.0)
+        return Curve.residual(self, base, terms, resolution) * (
+            1.0 if self.refined else 10.0
+        )
 
 
-def test_what_is_needless_once_the_noise_is_known_is_taken_back() -> None:
-    """A square of no amplitude earned its place by noise alone."""
+def test_an_effect_that_is_unnecessary_with_the_true_noise_is_removed() -> None:
+    """A square of zero amplitude was added because of noise alone."""
     plain = curve(cube=0.2)
-    bench = Unsure(plain.measured, plain.candidates)
+    bench = Overestimated(plain.measured, plain.candidates)
     base = minimise(make_problem(bench, ()), np.zeros(1))
     both = minimise(make_problem(bench, plain.candidates), np.zeros(3))
     found = judged(bench, [both], base, lambda line: None)
     assert [c.effect.name for c in found.fits[0].candidates] == ["cube"]
-    assert found.gate.passed
+    assert found.acceptance.passed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Torn(Curve):
-    """A curve that seems half as noisy from each fit to the next, and back."""
+class Alternating(Curve):
+    """A curve whose noise estimate alternates between two sizes."""
 
     quiet: bool = False
     rounds: list[bool] = field(default_factory=list)
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, astray: bool = False
-    ) -> "Torn":
+        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+    ) -> "Alternating":
         """Change the noise once more."""
         self.rounds.append(not self.quiet)
         return replace(self, quiet=not self.quiet)
 
     def residual(
-        self, base: FloatArray, terms: Sequence[Term], stage: Stage
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
     ) -> FloatArray:
         """Return (model - measurement) / 0.01, or / 0.005."""
-        return Curve.residual(self, base, terms, stage) * (2.0 if self.quiet else 1.0)
+        return Curve.residual(self, base, terms, resolution) * (
+            2.0 if self.quiet else 1.0
+        )
 
 
-def test_noise_that_goes_to_and_fro_ends_where_it_is_least() -> None:
-    """A few rounds show that it will never settle, and more would show no more."""
+def test_an_alternating_noise_estimate_ends_at_the_smaller_one() -> None:
+    """The iteration stops after a few rounds, since it will not converge."""
     plain = curve(cube=0.2)
-    bench = Torn(plain.measured, plain.candidates)
+    bench = Alternating(plain.measured, plain.candidates)
     base = minimise(make_problem(bench, ()), np.zeros(1))
     fit = minimise(make_problem(bench, (effect("cube"),)), np.zeros(2))
     last, _, _ = judging.judge(bench, [fit], base, lambda line: None)
-    assert isinstance(last, Torn)
+    assert isinstance(last, Alternating)
     assert last.quiet
     assert len(bench.rounds) <= 4
 
 
 def test_confidence_never_falls_with_more_evidence() -> None:
-    """A wider margin, more slack and one effect instead of two are never less sure."""
+    """A wider margin, more slack or one effect instead of two never lowers it."""
     poor = Evidence(15.0, 0.1, 5.0, 2)
     better = (
         replace(poor, margin=1e4),
@@ -330,12 +334,12 @@ def test_confidence_never_falls_with_more_evidence() -> None:
         replace(poor, amplitude=100.0),
         replace(poor, effects=1),
     )
-    sure = [confidence_of(evidence) for evidence in better]
-    assert all(0.5 < confidence_of(poor) <= c < 1.0 for c in sure)
-    assert max(sure) > confidence_of(poor) + 0.02
+    confidences = [confidence_of(evidence) for evidence in better]
+    assert all(0.5 < confidence_of(poor) <= c < 1.0 for c in confidences)
+    assert max(confidences) > confidence_of(poor) + 0.02
 
 
-def test_what_is_left_is_what_the_winner_leaves(
+def test_the_directed_tests_belong_to_the_best_fit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A pair that overtakes in the last round is judged by its own directed tests."""
@@ -345,11 +349,11 @@ def test_what_is_left_is_what_the_winner_leaves(
     base = minimise(make_problem(bench, ()), np.zeros(1))
     alone = minimise(make_problem(bench, (cube,)), np.zeros(2))
     both = minimise(make_problem(bench, (cube, square)), np.zeros(3))
-    _, ranked, gate = judging.judge(bench, [alone, both], base, lambda line: None)
+    _, ranked, acceptance = judging.judge(bench, [alone, both], base, lambda line: None)
     assert names_of(ranked[0]) == ["cube", "square"]
-    assert gate.left is not None
-    assert all(d.shift.shape == ranked[0].x.shape for d in gate.left.directions)
-    assert gate.passed
+    assert acceptance.left is not None
+    assert all(d.shift.shape == ranked[0].x.shape for d in acceptance.left.directions)
+    assert acceptance.passed
 
 
 def names_of(fit: Fit) -> list[str]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Starts of a race: a candidate set, as far as a directed test foretells it."""
+"""Start values of a set of candidates, predicted by a directed test."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
-from jointbench.analysis.gap.residuals.evaluation_stages import MIDDLE, Stage
+from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import (
@@ -23,8 +23,8 @@ SHARES = SEARCH.start_shares
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Runner:
-    """One start of one candidate set, as far as it has come."""
+class CandidateFit:
+    """One start of a set of candidates, and its fit so far."""
 
     problem: FitProblem
     x: FloatArray
@@ -33,21 +33,23 @@ class Runner:
 
     @property
     def label(self) -> str:
-        """The candidates in words, in an order of their own."""
+        """The candidates as text, sorted by label."""
         return words_of(self.problem.candidates)
 
 
-def along(problem: FitProblem, fit: Fit, direction: Direction, stage: Stage) -> Runner:
-    """Return the best start on the way that a directed test foretells.
+def along(
+    problem: FitProblem, fit: Fit, direction: Direction, resolution: Resolution
+) -> CandidateFit:
+    """Return the best start along the step that a directed test predicts.
 
-    The effect comes in and the base gives way together; what is far from small is
-    not foretold well, so shorter ways are looked at too.
+    The step changes effect and base together; the prediction is inaccurate for large
+    effects, so shorter steps are also evaluated.
 
     Args:
-        problem: of the fit's effects and the one tested, in that order.
-        fit: that was tested.
-        direction: the test.
-        stage: at which starts are compared.
+        problem: of the fit's effects and the tested one, in that order.
+        fit: fit that was tested.
+        direction: the directed test.
+        resolution: at which the starts are compared.
     """
     full = np.concatenate([fit.x + direction.shift, direction.coordinates])
     trials = [np.concatenate([fit.x, direction.coordinates])]
@@ -60,19 +62,19 @@ def along(problem: FitProblem, fit: Fit, direction: Direction, stage: Stage) -> 
     trials = [np.clip(x, problem.lower, problem.upper) for x in trials]
     costs = []
     for x in trials:
-        costs.append(cost_at(problem, x, stage))
+        costs.append(cost_at(problem, x, resolution))
     best = int(np.argmin(costs))
-    return Runner(problem, trials[best], costs[best])
+    return CandidateFit(problem, trials[best], costs[best])
 
 
 def started(bench: Bench, fit: Fit, direction: Direction) -> Fit:
-    """Return a first fit of what a directed test points to.
+    """Return a first fit of the candidate of a directed test.
 
     Args:
         bench: measurement and model.
-        fit: what the candidate is added to.
-        direction: the test.
+        fit: fit that the candidate is added to.
+        direction: the directed test.
     """
     problem = make_problem(bench, (*fit.candidates, direction.candidate))
-    runner = along(problem, fit, direction, MIDDLE)
-    return minimise(problem, runner.x, MIDDLE, iterations=MOST_STEPS)
+    candidate_fit = along(problem, fit, direction, MIDDLE)
+    return minimise(problem, candidate_fit.x, MIDDLE, iterations=MOST_STEPS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The chi2 that a right fit may leave: noise, and the error of its laws."""
+"""The chi2 that a correct fit may leave: noise, and the model error of its laws."""
 
 from collections.abc import Sequence
 
@@ -17,26 +17,26 @@ MODEL_ERROR = {
     "damping": 1e-6,
     "converter": 5e-6,
 }
-"""Share of the base's excess chi2 that a right law may leave, by its family
-where the effect has no `model_error` of its own: a stop closes between steps, a smooth
-law is as exact as its march, and linear damping has the share of its family; scatter
-carries samples over the edge of a clip, which its slope does not tell."""
+"""Share of the base's excess chi2 that a correct law may leave, by family, unless the
+effect sets its own `model_error`. A stop closes between two steps; a smooth law is as
+accurate as its time integration; linear damping has the share of its family; scatter
+moves samples across the limit of a clipped channel, which a slope cannot represent."""
 EXACT = 1e-9
-"""The same for what is linear or acts on a channel: it is as exact as the base, and
-any more would hide a second effect behind a great first one."""
+"""The same for effects that are linear or act on a channel: they are as exact as the
+base, and a larger share would hide a second effect next to a large first one."""
 
 
 def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
-    """Return the chi2 that a right fit may leave: of each effect a share of its own.
+    """Return the chi2 that a correct fit may leave due to the model error of its laws.
 
-    An effect is no textbook law, so a share of what it explains may be left; of what
-    another one explains, nothing. Else a second effect of a loose law would excuse
-    whatever the first one leaves.
+    A real effect deviates from its textbook law, so a share of the chi2 that the effect
+    itself explains may remain, but no share of the chi2 that another effect explains.
+    Otherwise an inexact second law would excuse any residual of the first.
 
     Args:
         fit: of any effects.
-        others: the base, and what else was fitted; where the fit without an effect is
-            not among them, the base stands for it.
+        others: the base and the other fits; if the fit without an effect is not among
+            them, the base is used instead.
         dof: degrees of freedom.
     """
     own, allowed = labels_of(fit.candidates), 0.0
@@ -53,9 +53,9 @@ def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
 
 
 def noise_sd(bench: Bench) -> float:
-    """Return the sd of chi2/dof under noise, that of the noise estimate included.
+    """Return the sd of chi2/dof under noise, including that of the noise estimate.
 
-    The noise is estimated from a share of the same samples, so that what both hold
+    The noise is estimated from a share of the same samples, so their common part
     cancels.
     """
     return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / JUDGEMENT.noise_share - 1.0)))
