@@ -13,6 +13,7 @@ from gap_contradictions import contradictions
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis import base_fit
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
 from jointbench.analysis.gap.search.selection_round import Progress
@@ -65,7 +66,9 @@ def test_a_base_in_a_wrong_valley_is_led_out_of_it(
     """
     left_out: set[str] = set()
     if not second_start:
-        monkeypatch.setattr(base_fit, "MOSTLY_SCATTER", 0.0)
+        monkeypatch.setattr(
+            base_fit, "DIAGNOSIS", replace(DIAGNOSIS, settled_share=0.0)
+        )
         few = {"loosening", "preload_stiffness", "cubic_stiffness", "maxwell", "delay"}
         left_out = {entry.effect.name for entry in CATALOGUE} - few
     tried: list[str] = []
