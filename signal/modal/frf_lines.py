@@ -9,7 +9,7 @@ from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatA
 from jointbench.signal.frf.frf import Frf
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, weakref_slot=True, eq=False)
 class FrfLines:
     """The lines of an FRF of a fit.
 

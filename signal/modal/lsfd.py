@@ -15,6 +15,7 @@ within.
 """
 
 from dataclasses import dataclass, replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -29,6 +30,9 @@ from jointbench.signal.modal.normal_equations import (
 
 # Powers of s of the residual terms, in addition to the derivative of the FRF's kind.
 _RESIDUAL_POWERS = (-2, -1, 0, 1, 2, 3, 4, 5, 6)
+_ORTHONORMAL: WeakKeyDictionary[FrfLines, ComplexArray] = WeakKeyDictionary()
+"""Columns of the residual terms: they depend on the lines alone, and a search asks for
+them once for every set of poles that it looks at."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,7 +88,7 @@ def residual_terms(lines: FrfLines, fit: LinearFit) -> ResidualTerms:
     """
     n_modal = 2 * fit.significance.size
     s = lines.laplace
-    used = _residual_terms(s, s**lines.derivatives)
+    used = _residual_terms(lines)
     parts = fit.coefficients[:, n_modal:] @ used.T
     scale = np.abs(s[s.size // 2])
     powers = np.array([(s / scale) ** k for k in _RESIDUAL_POWERS]).T
@@ -111,21 +115,24 @@ def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     columns = np.empty((s.size, modal_size(pole)), complex)
     columns[:, 0 : 2 * pole.size : 2] = own + mirrored
     columns[:, 1 : 2 * pole.size : 2] = 1j * (own - mirrored)
-    power = s**lines.derivatives
-    columns[:, : 2 * pole.size] *= power[:, None]
-    columns[:, 2 * pole.size :] = _residual_terms(s, power)
+    columns[:, : 2 * pole.size] *= (s**lines.derivatives)[:, None]
+    columns[:, 2 * pole.size :] = _residual_terms(lines)
     return columns
 
 
-def _residual_terms(s: ComplexArray, power: ComplexArray) -> ComplexArray:
+def _residual_terms(lines: FrfLines) -> ComplexArray:
     """Return columns that span the residual terms, orthonormal over the lines.
 
     Plain powers of s are nearly collinear.
     """
-    scale = np.abs(s[s.size // 2])
-    terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
-    rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
-    return _unstacked(np.linalg.qr(rows)[0])
+    known = _ORTHONORMAL.get(lines)
+    if known is None:
+        s = lines.laplace
+        scale, power = np.abs(s[s.size // 2]), s**lines.derivatives
+        terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
+        rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
+        known = _ORTHONORMAL[lines] = _unstacked(np.linalg.qr(rows)[0])
+    return known
 
 
 def modal_size(pole: ComplexArray) -> int:

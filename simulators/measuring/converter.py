@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.signal
+import scipy.special
 
 from jointbench.acquisition.basics.arrays import FloatArray
 
@@ -29,22 +29,31 @@ class AntiAlias:
     @property
     def half_length(self) -> int:
         """Taps on each side of the middle one; whole samples."""
-        taps, _ = scipy.signal.kaiserord(
-            self.attenuation,
-            2 * (self.stop_band - self.pass_band) / self.oversampling,
-        )
+        width = 2 * np.pi * (self.stop_band - self.pass_band) / self.oversampling
+        taps = np.ceil((self.attenuation - 7.95) / (2.285 * width) + 1)
         return self.oversampling * int(np.ceil(taps / (2 * self.oversampling)))
 
     def taps(self) -> FloatArray:
-        """Return the symmetric impulse response [-], shape (2 half_length + 1,)."""
-        return np.asarray(
-            scipy.signal.firwin(
-                2 * self.half_length + 1,
-                (self.pass_band + self.stop_band) / self.oversampling,
-                window=("kaiser", scipy.signal.kaiser_beta(self.attenuation)),
-            ),
-            dtype=float,
-        )
+        """Return the symmetric impulse response [-], shape (2 half_length + 1,).
+
+        Of unit gain at standstill. `scipy.signal` designs the same filter, at the price
+        of half a second of imports for every command that simulates.
+
+        Source:
+            Kaiser 1974, Proc. IEEE ISCAS, 20; Oppenheim and Schafer 2010, sec. 7.5.3.
+        """
+        half = self.half_length
+        edge = (self.pass_band + self.stop_band) / self.oversampling
+        step = np.arange(-half, half + 1)
+        shape = _kaiser_shape(self.attenuation)
+        window = scipy.special.i0(shape * np.sqrt(1 - (step / half) ** 2.0))
+        taps = edge * np.sinc(edge * step) * (window / scipy.special.i0(shape))
+        return np.asarray(taps / taps.sum(), dtype=float)
+
+
+def _kaiser_shape(attenuation: float) -> float:
+    """Return the shape of Kaiser's window for an attenuation above 50 dB."""
+    return 0.1102 * (attenuation - 8.7)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,8 +111,8 @@ def decimate(chunks: Iterable[FloatArray], filter_: AntiAlias) -> Iterator[Float
         ready = (waiting.shape[1] - 2 * half - 1) // every + 1
         if ready > 0:
             used = waiting[:, : (ready - 1) * every + 2 * half + 1]
-            full = scipy.signal.upfirdn(taps, used, up=1, down=every, axis=1)
-            yield full[:, 2 * half // every : 2 * half // every + ready]
+            pieces = np.lib.stride_tricks.sliding_window_view(used, taps.size, axis=1)
+            yield pieces[:, ::every] @ taps
             waiting = waiting[:, ready * every :]
 
 

@@ -111,11 +111,8 @@ def open_runs(url: str) -> RunSequence:
         UsageError: the scheme is unknown, or the bench cannot be as asked.
     """
     _require_scheme(url)
-    from jointbench.simulators.campaigns.write_campaign import campaign_truth
     from jointbench.simulators.two_body.bench import TwoBodyBench
     from jointbench.simulators.two_body.bench_url import specimen_from_url
-    from jointbench.simulators.two_body.campaign_bench import campaign_runs
-    from jointbench.station.sources.campaign_model import model_text
     from jointbench.station.sources.chassis_source import ChassisRun, ChassisSource
 
     bench = specimen_from_url(url)
@@ -123,6 +120,10 @@ def open_runs(url: str) -> RunSequence:
         source = ChassisSource(bench, samples=bench.samples)
         stream = WholeStream(source, bench.truth.preload)
         return RunSequence(bench.name, bench.simulated, (stream,))
+    from jointbench.simulators.campaigns.write_campaign import campaign_truth
+    from jointbench.simulators.two_body.campaign_bench import campaign_runs
+    from jointbench.station.sources.campaign_model import model_text
+
     campaign = bench.simulate()
     return RunSequence(
         bench.name,

@@ -3,9 +3,15 @@
 import re
 
 import pytest
-from banned_expressions import BANNED, ROOT, findings
+from banned_expressions import BANNED, ROOT, everywhere, findings
 
 GLOSSARY = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("place", everywhere(), ids=lambda path: path.name)
+def test_no_banned_expression_is_used(place):
+    """Texts, names and pages use the standard terms."""
+    assert [str(finding) for finding in findings([place])] == []
 
 
 @pytest.mark.parametrize("ban", BANNED, ids=lambda ban: ban.expression)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL
@@ -179,7 +180,7 @@ def _force_columns(
         return [np.zeros((0, sigma.shape[1] * n))] * records
     force = np.zeros((1, n))
     force[0, first] = bench.noise.force_sigma
-    cases = {}
+    cases, grams = {}, {}
     for hit in sorted(set(bench.campaign.hit.tolist())):
         still = HitConditions(np.ones(1), np.zeros(1))
         rate = bench.campaign.sample_rate
@@ -187,9 +188,11 @@ def _force_columns(
         y = respond(bench.campaign.model, bench.theta(base), shaken)[0]
         cases[hit] = _shifted(y, last - first)
         bench.mask(cases[hit])
+        rows = cases[hit].transpose(1, 0, 2)
+        grams[hit] = rows @ rows.transpose(0, 2, 1)
     return [
-        _leading((cases[int(h)] / s[:, None]).reshape(last - first, -1))
-        for h, s in zip(bench.campaign.hit, sigma, strict=True)
+        _leading(cases[h], grams[h], s)
+        for h, s in zip(bench.campaign.hit.tolist(), sigma, strict=True)
     ]
 
 
@@ -201,10 +204,21 @@ def _shifted(response: FloatArray, count: int) -> FloatArray:
     return out
 
 
-def _leading(rows: FloatArray) -> FloatArray:
-    """Return the few directions with most of the variance of unit noise in the rows."""
-    _, vectors = np.linalg.eigh(rows @ rows.T)
-    return np.asarray(vectors[:, -FORCE_SHAPES:].T @ rows)
+def _leading(rows: FloatArray, grams: FloatArray, sigma: FloatArray) -> FloatArray:
+    """Return the few directions with most of the variance of unit noise.
+
+    Args:
+        rows: shape (count, n_channels, n_samples).
+        grams: of the rows, channel by channel, shape (n_channels, count, count).
+        sigma: noise that the rows are taken over, shape (n_channels,).
+    """
+    last = len(rows) - 1
+    _, vectors = scipy.linalg.eigh(
+        np.tensordot(sigma**-2.0, grams, 1),
+        subset_by_index=(max(last + 1 - FORCE_SHAPES, 0), last),
+    )
+    shapes = np.tensordot(vectors.T, rows, 1) / sigma[:, None]
+    return np.asarray(shapes.reshape(len(shapes), -1))
 
 
 def _scatter_ways(

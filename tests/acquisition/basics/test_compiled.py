@@ -11,7 +11,7 @@ from jointbench.acquisition.basics.compiled import digest_of
 ROOT = Path(__file__).parents[3]
 OUTER = """
 from jointbench.acquisition.basics.compiled import compiled
-from pair.inner import OFFSET, scaled
+from PAIR.inner import OFFSET, scaled
 
 @compiled()
 def result(x):
@@ -19,49 +19,57 @@ def result(x):
 """
 INNER = """
 from jointbench.acquisition.basics.compiled import compiled
-from pair.constants import FACTOR
+from PAIR.constants import FACTOR
 
-OFFSET = {offset}
+OFFSET = 10
 
-@compiled(inline="{inline}")
+@compiled(inline="PAIR")
 def scaled(x):
     return FACTOR * x
 """
+PAIRS = ("always", "never")
+"""Packages by whether their inner function is inlined into the outer one."""
 ASKED = """
-from pair.outer import result
-print(result(1), sum(result.stats.cache_hits.values()))
+from importlib import import_module
+for pair in {pairs}:
+    result = import_module(f"{{pair}}.outer").result
+    print(result(1), sum(result.stats.cache_hits.values()))
 """
 
 
 def asked(folder: Path) -> list[str]:
-    """Return the result in a fresh interpreter, and whether it came from the cache."""
-    command = [sys.executable, "-c", ASKED]
+    """Return what each pair does in one fresh interpreter.
+
+    Its result, and whether it came from the cache.
+    """
+    command = [sys.executable, "-c", ASKED.format(pairs=PAIRS)]
     run = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, check=True
     )
-    value, hits = run.stdout.split()
-    return [value, "cached" if int(hits) else "compiled"]
+    told = [line.split() for line in run.stdout.splitlines()]
+    return [f"{value} {'cached' if int(n) else 'compiled'}" for value, n in told]
 
 
-@pytest.mark.parametrize("inline", ["always", "never"])
-def test_an_edit_of_any_source_is_compiled_at_the_next_run(
-    inline: str, tmp_path: Path
-) -> None:
+def write(folder: Path, file: str, text: str) -> None:
+    """Write a file of both pairs."""
+    for pair in PAIRS:
+        (folder / pair).mkdir(exist_ok=True)
+        (folder / pair / file).write_text(text.replace("PAIR", pair))
+
+
+def test_an_edit_of_any_source_is_compiled_at_the_next_run(tmp_path: Path) -> None:
     """The callee's body, a constant beside it, a constant that only the callee sees."""
-    pair = tmp_path / "pair"
-    pair.mkdir()
-    inner = INNER.format(offset=10, inline=inline)
-    (pair / "outer.py").write_text(OUTER)
-    (pair / "inner.py").write_text(inner)
-    (pair / "constants.py").write_text("FACTOR = 2\n")
-    assert asked(tmp_path) == ["12", "compiled"]
-    assert asked(tmp_path) == ["12", "cached"]
-    (pair / "inner.py").write_text(inner.replace("FACTOR * x", "FACTOR * x * 3"))
-    assert asked(tmp_path) == ["16", "compiled"]
-    (pair / "inner.py").write_text(inner.replace("OFFSET = 10", "OFFSET = 20"))
-    assert asked(tmp_path) == ["22", "compiled"]
-    (pair / "constants.py").write_text("FACTOR = 5\n")
-    assert asked(tmp_path) == ["25", "compiled"]
+    write(tmp_path, "outer.py", OUTER)
+    write(tmp_path, "inner.py", INNER)
+    write(tmp_path, "constants.py", "FACTOR = 2\n")
+    assert asked(tmp_path) == ["12 compiled"] * 2
+    assert asked(tmp_path) == ["12 cached"] * 2
+    write(tmp_path, "inner.py", INNER.replace("FACTOR * x", "FACTOR * x * 3"))
+    assert asked(tmp_path) == ["16 compiled"] * 2
+    write(tmp_path, "inner.py", INNER.replace("OFFSET = 10", "OFFSET = 20"))
+    assert asked(tmp_path) == ["22 compiled"] * 2
+    write(tmp_path, "constants.py", "FACTOR = 5\n")
+    assert asked(tmp_path) == ["25 compiled"] * 2
 
 
 def test_nothing_is_cached_by_one_file_alone() -> None:

@@ -3,6 +3,8 @@
 from itertools import pairwise
 
 import numpy as np
+import pytest
+import scipy.signal
 from numpy.testing import assert_allclose
 
 from jointbench.simulators.measuring.converter import (
@@ -39,6 +41,24 @@ def test_a_tone_in_the_stop_band_is_gone():
     filter_ = AntiAlias()
     (samples,) = decimate([_tone(0.7, 400, filter_)], filter_)
     assert np.abs(samples[0, 100:300]).max() < 4e-5
+
+
+@pytest.mark.parametrize(
+    "filter_", [AntiAlias(), AntiAlias(16, 0.395, 0.445, 90.0), AntiAlias(4, 0.4, 0.6)]
+)
+def test_filter_and_decimation_are_those_of_scipy_signal(filter_: AntiAlias) -> None:
+    """Length and taps of its Kaiser design, samples of its polyphase filter."""
+    every, width = filter_.oversampling, filter_.stop_band - filter_.pass_band
+    taps, beta = scipy.signal.kaiserord(filter_.attenuation, 2 * width / every)
+    half = every * int(np.ceil(taps / (2 * every)))
+    edge = (filter_.pass_band + filter_.stop_band) / every
+    design = scipy.signal.firwin(2 * half + 1, edge, window=("kaiser", beta))
+    assert_allclose(filter_.taps(), design, rtol=1e-13, atol=1e-17)
+    stream = np.random.default_rng(2).standard_normal((2, 600 * every))
+    full = scipy.signal.upfirdn(design, stream, up=1, down=every, axis=1)
+    (samples,) = decimate([stream], filter_)
+    first = half // every
+    assert_allclose(samples, full[:, first : first + samples.shape[1]], atol=1e-13)
 
 
 def test_the_cut_of_the_stream_does_not_change_the_samples():

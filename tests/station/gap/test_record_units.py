@@ -102,7 +102,7 @@ def found() -> Diagnosis:
 
 
 def evidence_of_diagnosis(diagnosis: Diagnosis) -> GapEvidence:
-    """Return the exhibit, which all of these have."""
+    """Return the evidence, which all of these have."""
     assert diagnosis.evidence is not None
     return diagnosis.evidence
 

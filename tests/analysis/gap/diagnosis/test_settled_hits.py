@@ -5,6 +5,7 @@ import gap_bench as made
 import numpy as np
 import pytest
 
+from jointbench.analysis.gap.catalogue.linear_effects import LINEAR
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.judgement.winner_judging import far_off
@@ -80,7 +81,7 @@ def test_a_joint_that_loosens_far_beyond_its_scatter_is_named(loosened: float) -
     clean = settle(bench, SETTLING).response(BASE, [law])
     rng = np.random.default_rng(4)
     noisy = clean + 0.02 * rng.standard_normal(clean.shape)
-    found = diagnose(made.quiet_campaign(noisy, samples=2048))
+    found = diagnose(made.quiet_campaign(noisy, samples=2048), entries=LINEAR)
     assert [e.name for e in found.effects] == ["loosening"]
     value = found.effects[0].parameters[0]
     assert value.value == pytest.approx(loosened, abs=4 * value.sd)
