@@ -49,5 +49,5 @@ def test_without_effort_for_a_second_effect_the_verdict_is_unknown() -> None:
     policy = replace(STANDARD, most_samples=1.0)
     found = diagnose(campaign, entries=LINEAR, policy=policy)
     assert found.verdict is Finding.UNKNOWN
-    assert "ended for its length" in found.reason
+    assert "reached its effort limit" in found.reason
     assert found.effects == ()
