@@ -46,8 +46,8 @@ def asked(folder: Path) -> list[str]:
     run = subprocess.run(
         command, cwd=folder, capture_output=True, text=True, check=True
     )
-    told = [line.split() for line in run.stdout.splitlines()]
-    return [f"{value} {'cached' if int(n) else 'compiled'}" for value, n in told]
+    printed = [line.split() for line in run.stdout.splitlines()]
+    return [f"{value} {'cached' if int(n) else 'compiled'}" for value, n in printed]
 
 
 def write(folder: Path, file: str, text: str) -> None:

@@ -36,7 +36,13 @@ def test_what_was_stored_is_read_back_to_the_last_bit(make_session) -> None:
     run_modal([session])
     result = run_chain(read_session(session).recordings).result
     stored = read_run(results_path(session)).modes[0].result
-    for name in ("natural_frequency", "frequency_sd", "shapes", "shapes_sd", "misfit"):
+    for name in (
+        "natural_frequency",
+        "frequency_sd",
+        "shapes",
+        "shapes_sd",
+        "residual_ratio",
+    ):
         wanted = getattr(result.model, name)
         assert np.array_equal(getattr(stored.model, name), wanted), name
     assert np.array_equal(stored.stabilisation.stable, result.stabilisation.stable)

@@ -31,7 +31,7 @@ EARLY = AntiAlias(oversampling=16, pass_band=0.395, stop_band=0.445, attenuation
 NOISE = 0.02
 LAWS = ("gap", "cubic_stiffness", "quadratic_stiffness", "quadratic_damping", "delay")
 ENTRIES = tuple(e for e in CATALOGUE if e.effect.name in LAWS)
-"""The stop, and what would make up for a filter or a march that is off."""
+"""The stop, and effects that could compensate an error of filter or integration."""
 
 
 def lines_of(bench: LumpedBench) -> FloatArray:
