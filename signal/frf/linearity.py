@@ -81,11 +81,15 @@ class Linearity:
         )
 
 
-def check_linearity(spectra: HitSpectra) -> Linearity:
+def check_linearity(
+    spectra: HitSpectra, band: tuple[float, float] | None = None
+) -> Linearity:
     """Test whether the FRF depends on the level of the hits.
 
     Args:
         spectra: of accepted hits, at least three at one point, on different levels.
+        band: lowest and highest frequency looked at [Hz]; None for all that the
+            hammer excites.
 
     Returns:
         The change with level and its significance. What drifts with time along with
@@ -98,7 +102,7 @@ def check_linearity(spectra: HitSpectra) -> Linearity:
         Seber and Lee, Linear Regression Analysis (2003), sec. 4.3 (F test); ISO
         7626-5:2019 asks for the check.
     """
-    low, high = excited_band(spectra)
+    low, high = band or excited_band(spectra)
     inside = (spectra.frequency >= low) & (spectra.frequency <= high)
     impulse = _levels(spectra, inside)
     outputs, inputs, pairs = pair_up(spectra)
