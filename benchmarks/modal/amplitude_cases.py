@@ -146,9 +146,7 @@ def record(
     return _with_hits(samples, size, tuple(channels)), masses
 
 
-def _with_hits(
-    samples: Floats, size: int, channels: tuple[Channel, ...]
-) -> Recording:
+def _with_hits(samples: Floats, size: int, channels: tuple[Channel, ...]) -> Recording:
     trigger = round(_LEAD * SAMPLE_RATE) + 1
     hits = tuple(
         Hit(

@@ -32,9 +32,8 @@ from jointbench.signal.amplitude.curve_of_fit import (
 )
 from jointbench.signal.amplitude.dependence_test import (
     CHANCE,
-    LARGEST_MISFIT,
     Change,
-    Evidence,
+    DependenceEvidence,
     change_of,
     decide,
     score_chance,
@@ -57,7 +56,9 @@ _DELAY, _DELAY_SHARE = 0.05, 0.7
 # Beyond this misfit no curve is given.
 _NO_CURVE = 3.0
 # A misfit above this is looked at again from a later start: other modes die out.
-_UNEASY = 1.5
+_UNEASY = 2.0
+# Fewer curves may leave this much more power than all of them.
+_FEWER = 2.0
 # Records must be this many delays long.
 _LEAST_DELAYS = 4
 
@@ -140,7 +141,13 @@ def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> _Fitte
     kept = without_companions(model, group)
     count, main = len(kept.members), None
     if count > 1:
-        apart = linear_residual(decays, whole)
+        best = fit_band(decays, kept.band(model, count))
+        # Twice the power that all curves leave: two modes taken for one leave far more.
+        apart = max(
+            linear_residual(decays, whole),
+            _FEWER * curved_residual(best, decays, whole),
+        )
+        main = best
         for fewer in range(1, count):
             tried = fit_band(decays, kept.band(model, fewer))
             if curved_residual(tried, decays, whole) < apart:
@@ -173,7 +180,7 @@ def _judged(
     change = change_of(curve)
     chance = score_chance(main, number)
     outcome, reason = decide(
-        Evidence(
+        DependenceEvidence(
             chance=chance,
             explained=main.share_explained,
             linear_misfit=main.linear.misfit,
@@ -191,7 +198,7 @@ def _judged(
         shown = None
     depends = outcome is Dependence.DEPENDS and shown is not None
     family, ratio = family_of(change) if depends and change else ("", float("nan"))
-    soft = _linear_limit(model, members[0])
+    soft = _linear_limit(model, members)
     if shown is not None and (depends or len(members) > 1):
         soft = SoftLimit(
             float(shown.frequency[0]),
@@ -242,12 +249,18 @@ def _later_change(
     )
 
 
-def _linear_limit(model: ModalModel, member: int) -> SoftLimit:
+def _linear_limit(model: ModalModel, members: tuple[int, ...]) -> SoftLimit:
+    """Return the strongest pole; poles that were merged into it widen its interval."""
+    head, others = members[0], list(members[1:])
+    frequency, ratio = model.natural_frequency, model.damping_ratio
+    apart = np.abs(frequency[others] - frequency[head]).min(initial=np.inf)
+    spread = np.abs(ratio[others] - ratio[head]).min(initial=np.inf)
+    wide = (0.5 * apart, 0.5 * spread) if others else (0.0, 0.0)
     return SoftLimit(
-        float(model.natural_frequency[member]),
-        float(model.frequency_sd[member]),
-        float(model.damping_ratio[member]),
-        float(model.damping_ratio_sd[member]),
+        float(frequency[head]),
+        float(np.hypot(model.frequency_sd[head], wide[0])),
+        float(ratio[head]),
+        float(np.hypot(model.damping_ratio_sd[head], wide[1])),
     )
 
 
@@ -278,7 +291,7 @@ def _plain(
         dependence=outcome,
         reason=why,
         curve=None,
-        soft=_linear_limit(model, member),
+        soft=_linear_limit(model, (member,)),
         significance=unknown,
         misfit=unknown,
         linear_misfit=unknown,

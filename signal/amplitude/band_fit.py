@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray
 from jointbench.signal.amplitude.band_lines import BandLines, band_lines
-from jointbench.signal.amplitude.joint_fit import JointFit, fit_jointly
+from jointbench.signal.amplitude.curve_fit import JointFit, fit_jointly
 from jointbench.signal.amplitude.noise_of_band import rewhitened
 from jointbench.signal.amplitude.ring_downs import RingDowns
 from jointbench.signal.amplitude.start_values import curved_modes, fit_linear
@@ -109,9 +109,7 @@ def _prepared(decays: RingDowns, band: Band) -> tuple[BandLines, ComplexArray]:
     return lines, poles
 
 
-def _curves(
-    lines: BandLines, linear: JointFit, pitch: float, power: int
-) -> JointFit:
+def _curves(lines: BandLines, linear: JointFit, pitch: float, power: int) -> JointFit:
     every = range(len(linear.modes))
     start = curved_modes(lines, linear, every, pitch, power)
     fit = fit_jointly(lines, start, power)

@@ -67,7 +67,7 @@ class BandLines:
     def freedom(self) -> int:
         """Real numbers that the data hold after the projection."""
         hits, virtual, lines = self.data.shape
-        return 2 * hits * virtual * (lines - self.background.shape[1])
+        return int(2 * hits * virtual * (lines - self.background.shape[1]))
 
 
 def band_lines(
@@ -120,9 +120,7 @@ def _lines(
     return 2 * np.pi * frequency[inside], np.asarray(spectra)
 
 
-def _tail_noise(
-    decays: RingDowns, size: int, band: tuple[float, float]
-) -> FloatArray:
+def _tail_noise(decays: RingDowns, size: int, band: tuple[float, float]) -> FloatArray:
     """Return the sd of real and imaginary part of a line, one a channel.
 
     From what follows the decay where the record goes on, else from its last quarter;

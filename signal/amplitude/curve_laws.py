@@ -138,15 +138,11 @@ def _root(curve: LevelCurve, part: slice) -> FloatArray:
     cross = curve.cross_covariance[part, part] * zeta
     own = curve.zeta_covariance[part, part] * zeta[:, None] * zeta
     matrix = np.block([[omega, cross], [cross.T, own]])
-    floor = np.concatenate(
-        (np.full(zeta.size, FREQUENCY_FLOOR), DAMPING_FLOOR * zeta)
-    )
+    floor = np.concatenate((np.full(zeta.size, FREQUENCY_FLOOR), DAMPING_FLOOR * zeta))
     return np.asarray(np.linalg.cholesky(matrix + np.diag(floor**2)))
 
 
-def _fit_law(
-    law: _Law, x: FloatArray, data: FloatArray, root: FloatArray
-) -> LawFit:
+def _fit_law(law: _Law, x: FloatArray, data: FloatArray, root: FloatArray) -> LawFit:
     """Fit one law; constants and sizes are linear, the exponent is searched for."""
 
     def left(p: float) -> tuple[FloatArray, int]:
@@ -162,15 +158,17 @@ def _fit_law(
         chi2 = float(rest @ rest)
         exponent = 2.0 if law.shapes is _cubic else 1.0
         return LawFit(law.name, exponent, 0.0, chi2, chi2 + size * np.log(data.size))
+
+    def residual(parameter: FloatArray) -> FloatArray:
+        return left(float(parameter[0]))[0]
+
     tried = [
-        scipy.optimize.least_squares(
-            lambda p: left(float(p[0]))[0], [start], bounds=law.bounds
-        )
+        scipy.optimize.least_squares(residual, [start], bounds=law.bounds)
         for start in law.starts
     ]
     best = min(tried, key=lambda one: float(one.cost))
     chi2, size = 2.0 * float(best.cost), left(float(best.x[0]))[1] + 1
-    slope = float(np.sum(best.jac**2))
+    slope = float(np.sum(np.asarray(best.jac) ** 2))
     excess = max(1.0, chi2 / max(data.size - size, 1))
     sd = float(np.sqrt(excess / slope)) if slope > 0 else float("inf")
     return LawFit(

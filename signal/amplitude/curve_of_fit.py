@@ -12,7 +12,7 @@ from jointbench.signal.amplitude.amplitude_curve import (
     AmplitudeCurve,
 )
 from jointbench.signal.amplitude.band_fit import BandFit
-from jointbench.signal.amplitude.joint_fit import curve_slices
+from jointbench.signal.amplitude.curve_fit import curve_slices
 from jointbench.signal.amplitude.ring_downs import RingDowns
 
 _POINTS = 40

@@ -14,15 +14,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.stats
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.amplitude.amplitude_curve import Dependence
 from jointbench.signal.amplitude.band_fit import BandFit
 from jointbench.signal.amplitude.curve_basis import slope_basis
-from jointbench.signal.amplitude.curve_of_fit import LevelCurve, known_part
-from jointbench.signal.amplitude.joint_fit import (
+from jointbench.signal.amplitude.curve_fit import (
     ModeState,
     curve_slices,
     fit_jointly,
 )
+from jointbench.signal.amplitude.curve_of_fit import LevelCurve, known_part
 
 CHANCE = 0.01
 """A linear mode in white noise is taken for a dependent one this often."""
@@ -36,8 +37,9 @@ LARGEST_MISFIT = 2.0
 _CLEAR = 3.0
 # A later start may change the change by this share of it.
 _KEPT = 0.5
-# Ends of the curve between which the change is taken, as shares of its points.
-_SOFT_END, _HARD_END = 0.1, 0.95
+# Ends of the curve between which the change is taken, as shares of its points: the
+# pair whose differences stand out most.
+_SOFT_ENDS, _HARD_ENDS = (0.05, 0.5), (0.75, 0.97)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +73,7 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
-class Evidence:
+class DependenceEvidence:
     """What the outcome rests on.
 
     Attributes:
@@ -136,14 +138,13 @@ def change_of(
         levels: L of both ends; None for almost the whole curve.
     """
     part = known_part(curve)
-    size = part.stop - part.start
-    if size < 3:
+    if part.stop - part.start < 3:
         return None
     if levels is None:
-        ends = part.start + np.round(np.array([_SOFT_END, _HARD_END]) * (size - 1))
+        soft, hard = _clearest(curve, part)
     else:
-        ends = np.array([np.argmin(np.abs(curve.level - level)) for level in levels])
-    soft, hard = (int(end) for end in np.clip(ends, part.start, part.stop - 1))
+        ends = [int(np.argmin(np.abs(curve.level - level))) for level in levels]
+        soft, hard = (min(max(end, part.start), part.stop - 1) for end in ends)
     log_zeta, zeta = curve.log_zeta, np.exp(curve.log_zeta)
     return Change(
         frequency=float(curve.log_omega[hard] - curve.log_omega[soft]),
@@ -156,14 +157,36 @@ def change_of(
     )
 
 
-def _difference_sd(covariance: np.ndarray, one: int, other: int) -> float:
+def _clearest(curve: LevelCurve, part: slice) -> tuple[int, int]:
+    """Return the soft and the hard end whose differences stand out most."""
+    last = part.stop - part.start - 1
+    softs, hards = (
+        range(part.start + round(low * last), part.start + round(high * last) + 1)
+        for low, high in (_SOFT_ENDS, _HARD_ENDS)
+    )
+
+    def stands_out(pair: tuple[int, int]) -> float:
+        soft, hard = pair
+        turn = (curve.log_omega[hard] - curve.log_omega[soft]) / _difference_sd(
+            curve.omega_covariance, soft, hard
+        )
+        fall = (curve.log_zeta[hard] - curve.log_zeta[soft]) / _difference_sd(
+            curve.zeta_covariance, soft, hard
+        )
+        return float(turn**2 + fall**2)
+
+    pairs = [(soft, hard) for soft in softs for hard in hards]
+    return max(pairs, key=stands_out)
+
+
+def _difference_sd(covariance: FloatArray, one: int, other: int) -> float:
     variance = (
         covariance[one, one] + covariance[other, other] - 2.0 * covariance[one, other]
     )
-    return float(np.sqrt(max(variance, 0.0)))
+    return float(np.sqrt(max(variance, 1e-30)))
 
 
-def decide(found: Evidence) -> tuple[Dependence, str]:
+def decide(found: DependenceEvidence) -> tuple[Dependence, str]:
     """Return the outcome and its reason."""
     change = found.change
     if change is None:
@@ -190,7 +213,7 @@ def decide(found: Evidence) -> tuple[Dependence, str]:
     )
 
 
-def _doubts(found: Evidence, change: Change) -> tuple[str, ...]:
+def _doubts(found: DependenceEvidence, change: Change) -> tuple[str, ...]:
     """Return what speaks against a dependence that the score test reports."""
     words = []
     if found.misfit >= LARGEST_MISFIT:
@@ -212,7 +235,7 @@ def _doubts(found: Evidence, change: Change) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _not_white(found: Evidence) -> str:
+def _not_white(found: DependenceEvidence) -> str:
     return (
         f"residual not white: {found.misfit:.2g} times the noise with curves (limit "
         f"{LARGEST_MISFIT:g}); modes are missing or not resolved"

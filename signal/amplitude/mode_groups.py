@@ -69,7 +69,7 @@ def mode_groups(model: ModalModel) -> tuple[ModeGroup, ...]:
         Groups by descending strength; every mode is in one of them.
     """
     frequency, ratio = model.natural_frequency, model.damping_ratio
-    strength = model.significance / np.maximum(ratio, 1e-6)
+    strength = _strength(model)
     left = np.ones(frequency.size, bool)
     heads: list[IntArray] = []
     for head in np.argsort(-strength):
@@ -84,6 +84,12 @@ def mode_groups(model: ModalModel) -> tuple[ModeGroup, ...]:
         left[members] = False
         heads.append(np.asarray(members))
     return tuple(_group(model, members, strength, heads) for members in heads)
+
+
+def _strength(model: ModalModel) -> FloatArray:
+    """Return how much each pole explains, narrow ones first."""
+    significance = np.nan_to_num(model.significance, nan=1.0)
+    return np.asarray(significance / np.maximum(model.damping_ratio, 1e-6))
 
 
 def _group(
@@ -135,7 +141,7 @@ def without_companions(model: ModalModel, group: ModeGroup) -> ModeGroup:
     frequency, ratio = model.natural_frequency, model.damping_ratio
     shapes = model.shapes / np.linalg.norm(model.shapes, axis=1)[:, None]
     alike = np.abs(shapes.conj() @ shapes[head]) ** 2 > _SAME_SHAPE
-    strength = model.significance / np.maximum(ratio, 1e-6)
+    strength = _strength(model)
     overlap = np.abs(frequency - frequency[head]) < _OVERLAP * ratio * frequency
     companion = alike & overlap & (ratio > _BROADER * ratio[head])
     companion &= strength < _WEAKER * strength[head]

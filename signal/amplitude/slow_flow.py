@@ -108,16 +108,9 @@ def decay_signal(
     """
     signal = np.empty(time.size, complex)
     change = np.empty((time.size, 2 * decay.values.shape[1] + 2), complex)
-    _trace(
-        decay.grid,
-        decay.omega,
-        decay.zeta,
-        decay.slope,
-        decay.tau,
-        decay.phase,
-        decay.values,
-        decay.inner_time,
-        decay.inner_phase,
+    _trace(  # type: ignore[no-untyped-call]
+        (decay.grid, decay.omega, decay.zeta, decay.slope, decay.tau, decay.phase),
+        (decay.values, decay.inner_time, decay.inner_phase),
         (float(decay.power), decay.centre, start, phase),
         time,
         signal,
@@ -128,21 +121,16 @@ def decay_signal(
 
 @compiled(nogil=True, error_model="numpy")
 def _trace(  # type: ignore[no-untyped-def]
-    grid,
-    omega,
-    zeta,
-    slope,
-    tau,
-    theta,
-    values,
-    inner_time,
-    inner_phase,
+    curves,
+    tables,
     numbers,
     time,
     signal,
     change,
 ):
     """Follow one decay; see `decay_signal`."""
+    grid, omega, zeta, slope, tau, theta = curves
+    values, inner_time, inner_phase = tables
     power, centre, start, phase = numbers
     last, size = grid.size - 1, values.shape[1]
     step = grid[1] - grid[0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where a joint fit starts: linear modes first, then curves from the ridges of decays."""
+"""Where a joint fit starts: linear modes, then curves from the ridges of decays."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from jointbench.signal.amplitude.curve_basis import (
     constant_basis,
     spline_basis,
 )
-from jointbench.signal.amplitude.joint_fit import JointFit, ModeState, fit_jointly
+from jointbench.signal.amplitude.curve_fit import JointFit, ModeState, fit_jointly
 
 # Least ratio of a decay to its noise over one e-fold of amplitude.
 _LEAST_SNR = 3.0
@@ -146,7 +146,9 @@ def curved_modes(
         ridges: False starts from the constants of the linear fit.
     """
     return tuple(
-        _curved(lines, linear, number, pitch, power if ridges else None) if number in which else mode
+        _curved(lines, linear, number, pitch, power if ridges else None)
+        if number in which
+        else mode
         for number, mode in enumerate(linear.modes)
     )
 
@@ -209,7 +211,9 @@ def _smooth(
     matrix += _FIRST_WEIGHT * basis.penalty + 1e-6 * np.eye(basis.size)
     right = (values * share[:, None]).T @ (value - constant)
     curve = constant + np.linalg.solve(matrix, right)
-    return np.asarray(np.clip(curve, constant - _ASTRAY[which], constant + _ASTRAY[which]))
+    return np.asarray(
+        np.clip(curve, constant - _ASTRAY[which], constant + _ASTRAY[which])
+    )
 
 
 def read_ridge(lines: BandLines, linear: JointFit, number: int, power: int) -> Ridge:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Masses on springs with one nonlinear joint, struck by a hammer: the second method.
 
-Time integration by central differences on a fine step, with sliders that keep their own
-state; the estimator knows neither the integrator nor the laws. Truth comes from harmonic
-balance: the joint's force under a harmonic motion gives an equivalent complex stiffness,
-and the complex eigenvalue problem of the structure with it gives frequency and damping.
+Time integration by central differences on a fine step, with sliders that keep their
+own state; the estimator knows neither the integrator nor the laws. Truth comes from
+harmonic balance: the joint's force under a harmonic motion gives an equivalent complex
+stiffness, and the eigenvalue problem with it gives frequency and damping.
 """
 
 from dataclasses import dataclass, field, replace
@@ -58,9 +58,7 @@ class Structure:
         extra = (spring + self.joint.slider_stiffness.sum()) * np.outer(
             self.direction, self.direction
         )
-        squared, shapes = scipy.linalg.eigh(
-            self.stiffness + extra, np.diag(self.mass)
-        )
+        squared, shapes = scipy.linalg.eigh(self.stiffness + extra, np.diag(self.mass))
         return np.sqrt(squared), shapes
 
 
@@ -136,7 +134,19 @@ def _joint_force(u, v, spring, force, state, cubic, quadratic, gap, stop):  # ty
 
 @njit(cache=False)
 def _march(  # type: ignore[no-untyped-def]
-    mass, stiffness, damping, direction, spring, limit, numbers, push, where, start, step, every, aside
+    mass,
+    stiffness,
+    damping,
+    direction,
+    spring,
+    limit,
+    numbers,
+    push,
+    where,
+    start,
+    step,
+    every,
+    aside,
 ):
     cubic, quadratic, gap, stop = numbers
     n = mass.size
@@ -290,7 +300,10 @@ def true_curve(structure: Structure, mode: int, displacements: Floats) -> TrueCu
 
 
 def _nearest(
-    structure: Structure, stiff: complex, pole: complex, shape: npt.NDArray[np.complex128]
+    structure: Structure,
+    stiff: complex,
+    pole: complex,
+    shape: npt.NDArray[np.complex128],
 ) -> tuple[complex, npt.NDArray[np.complex128]]:
     """Return the eigenvalue and vector closest to a pole and a shape."""
     n = structure.mass.size
@@ -320,6 +333,4 @@ def with_joint(structure: Structure, joint: Joint, base: float) -> Structure:
         base: stiffness that the sliders replace [N/m].
     """
     along = np.outer(structure.direction, structure.direction)
-    return replace(
-        structure, stiffness=structure.stiffness - base * along, joint=joint
-    )
+    return replace(structure, stiffness=structure.stiffness - base * along, joint=joint)

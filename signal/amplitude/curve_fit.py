@@ -7,7 +7,7 @@ covariance. The weights of the penalties maximise the marginal likelihood (Felln
 Schall): a curve is as smooth as the data leave it.
 
 Source:
-    Wood and Fasiolo, A generalized Fellner-Schall method, Biometrics 73 (2017), eq. (2).
+    Wood and Fasiolo, A generalized Fellner-Schall method, Biometrics 73 (2017), eq. 2.
 """
 
 from collections.abc import Sequence
@@ -179,9 +179,7 @@ def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
         return np.asarray(scale * solved)
 
 
-def _linearise(
-    lines: BandLines, modes: tuple[ModeState, ...], power: int
-) -> _Linear:
+def _linearise(lines: BandLines, modes: tuple[ModeState, ...], power: int) -> _Linear:
     """Return residual, J'J and J'r; derivatives run hit by hit."""
     columns = _columns(modes, lines.data.shape[0])
     total = sum(2 * m.basis.size + 2 * (m.shape.size - 1) for m in modes)
@@ -311,9 +309,7 @@ def _penalty_cost(modes: Sequence[ModeState]) -> float:
     )
 
 
-def _reweighted(
-    modes: tuple[ModeState, ...], now: _Linear
-) -> tuple[ModeState, ...]:
+def _reweighted(modes: tuple[ModeState, ...], now: _Linear) -> tuple[ModeState, ...]:
     """Return the modes with weights that raise the marginal likelihood."""
     if not any(mode.basis.rank for mode in modes):
         return modes
@@ -366,9 +362,7 @@ def _inverse(matrix: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.inv(scaled) * scale[:, None] * scale)
 
 
-def _finished(
-    lines: BandLines, modes: tuple[ModeState, ...], now: _Linear
-) -> JointFit:
+def _finished(lines: BandLines, modes: tuple[ModeState, ...], now: _Linear) -> JointFit:
     penalty, _ = _penalty(modes, now.gradient.size)
     covariance = _inverse(now.normal + penalty)
     used = float(np.sum(covariance * now.normal))
