@@ -95,7 +95,7 @@ def _joint(
     if law == "cubic":
         return Joint(cubic=float(rng.choice([-1, 1])) * lost / (0.75 * size**2))
     if law == "quadratic damping":
-        return Joint(quadratic_damping=lost / (8 / (3 * np.pi) * size * omega))
+        return Joint(quadratic_damping=lost / (8 / (3 * np.pi) * size * omega**2))
     if law == "clearance":
         return Joint(clearance=0.3 * size, stop_stiffness=1.5 * lost)
     return Joint()
