@@ -108,8 +108,9 @@ def _softening(rows: Sequence[Row]) -> str:
         ]
     )
     return (
-        "## One physical mode that softens by 0 to 5 % (wanted: one mode in 97 % of "
-        f"300)\n\nOne mode within 8 %: {_share(rows, one)}. Its 95 % interval holds the "
+        "## One physical mode that softens by 0 to 5 % (wanted: one mode in 97 % "
+        f"of 300)\n\nOne mode within 8 %: {_share(rows, one)}. Its 95 % interval holds "
+        "the "
         f"frequency of the stuck joint: {wilson(int(error.sum()), error.size)}.\n"
     )
 
@@ -131,7 +132,7 @@ def _linear(rows: Sequence[Row]) -> str:
 
 def _families(rows: Sequence[Row]) -> str:
     lines = [
-        "## Family of laws (wanted: right in 90 % of 60 where the curve spans a decade)",
+        "## Family of laws (wanted: right in 90 % of 60 where a curve spans a decade)",
         "",
         "| law | draws | not given | right where given |",
         "|---|---|---|---|",

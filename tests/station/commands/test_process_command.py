@@ -115,7 +115,14 @@ def test_a_changed_window_runs_what_depends_on_it_and_nothing_else(
     """FRF, modes and fill are run; hits and Kalman stage are taken as kept."""
     path = make_session("s.h5")
     first = done(path)
-    assert first.computed == ("hits", "kalman of stream", "frf", "modes", "fill", "amplitude")
+    assert first.computed == (
+        "hits",
+        "kalman of stream",
+        "frf",
+        "modes",
+        "fill",
+        "amplitude",
+    )
     second = done(path, WIDE)
     assert second.computed == ("frf", "modes", "fill", "amplitude")
     assert second.reused == ("hits", "kalman of stream")
