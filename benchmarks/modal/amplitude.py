@@ -2,10 +2,11 @@
 """How good the modes over amplitude are: coverage, errors, false findings.
 
 Usage: OMP_NUM_THREADS=1 python benchmarks/modal/amplitude.py --log LOG.jsonl
-    [--minutes 20] [--first 0] [--page docs/modal-amplitude-coverage.md]
+    [--minutes 20] [--first 0] [--parts linear ...]
+    [--page docs/modal-amplitude-coverage.md]
 
-Four parts take turns until the time is up; each draw is one line of the log, and a
-later run goes on where the log ends. Part and seed define a draw.
+The four parts (or those named) take turns until the time is up; each draw is one line
+of the log, and a later run goes on where the log ends. Part and seed define a draw.
 """
 
 import argparse
@@ -210,7 +211,7 @@ def wilson(held: int, n: int) -> str:
     middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
     half = z * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2)) / (1 + z**2 / n)
     return (
-        f"{held} of {n}: {100 * p:.1f} % ({100 * (middle - half):.1f} to "
+        f"{held} of {n}: {100 * p:.1f} % ({100 * max(middle - half, 0.0):.1f} to "
         f"{100 * (middle + half):.1f})"
     )
 
@@ -222,13 +223,15 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=20.0)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--page", type=Path)
+    parser.add_argument("--parts", nargs="*", default=list(PARTS), choices=list(PARTS))
     given = parser.parse_args()
     done = _read(given.log)
     ends = time.monotonic() + 60 * given.minutes
     seed = given.first
     while time.monotonic() < ends and seed < max(n for _, n in PARTS.values()):
         for part, (run, most) in PARTS.items():
-            if seed < most and (part, seed) not in done:
+            wanted = part in given.parts and seed < most
+            if wanted and (part, seed) not in done:
                 done[part, seed] = _drawn(run, part, seed, given.log)
         seed += 1
     if given.page is not None:

@@ -23,7 +23,11 @@ from jointbench.signal.amplitude.band_fit import (
     fit_band,
     linear_residual,
 )
-from jointbench.signal.amplitude.curve_laws import family_of, fit_laws
+from jointbench.signal.amplitude.curve_laws import (
+    family_by_law,
+    family_of,
+    fit_laws,
+)
 from jointbench.signal.amplitude.curve_of_fit import (
     LevelCurve,
     amplitude_curve,
@@ -198,6 +202,7 @@ def _judged(
         shown = None
     depends = outcome is Dependence.DEPENDS and shown is not None
     family, ratio = family_of(change) if depends and change else ("", float("nan"))
+    laws = fit_laws(curve, change) if depends else ()
     soft = _linear_limit(model, members)
     if shown is not None and (depends or len(members) > 1):
         soft = SoftLimit(
@@ -217,9 +222,9 @@ def _judged(
         frequency_change=change.frequency if change else 0.0,
         frequency_change_sd=change.frequency_sd if change else 0.0,
         damping_change=change.damping if change else 0.0,
-        family=family,
+        family=family_by_law(family, laws),
         ratio=ratio,
-        laws=fit_laws(curve, change) if depends else (),
+        laws=laws,
         replaces=tuple(float(model.natural_frequency[i]) for i in members),
     )
 

@@ -7,7 +7,7 @@ changes stiffness as a^2 and damping not at all, v|v| adds damping as a and leav
 stiffness alone, a stop or an opening acts above a threshold and dissipates nothing.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +29,7 @@ QUADRATIC = "quadratic damping"
 # Ratio d zeta / (-df/f): friction gives .27 to .47 by theory, elastic laws none.
 _FRICTION_RATIO = (0.1, 1.5)
 _CLEAR = 3.0
+_SLIDER = "slider (Jenkins)"
 _EXPONENTS = (0.4, 1.0, 2.0)
 _EXPONENT_RANGE = (0.05, 4.0)
 
@@ -54,6 +55,16 @@ def family_of(change: Change) -> tuple[str, float]:
     if abs(ratio) < low:
         return CUBIC, ratio
     return (MICRO_SLIP if ratio > 0 else "unresolved"), ratio
+
+
+def family_by_law(family: str, laws: Sequence[LawFit]) -> str:
+    """Return the family, friction where one slider explains the curve best.
+
+    At the onset of slip a slider's damping grows before its stiffness falls: R alone
+    takes that for quadratic damping.
+    """
+    slider = bool(laws) and laws[0].name == _SLIDER
+    return MICRO_SLIP if family == QUADRATIC and slider else family
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +114,7 @@ def _stop(x: FloatArray, gap: float) -> tuple[FloatArray, FloatArray]:
 
 _LAWS = (
     _Law("micro-slip power law", _power, _EXPONENTS),
-    _Law("slider (Jenkins)", _slider, (0.1, 0.3, 0.7), (0.005, 0.999)),
+    _Law(_SLIDER, _slider, (0.1, 0.3, 0.7), (0.005, 0.999)),
     _Law("cubic spring", _cubic, ()),
     _Law("quadratic damping", _quadratic, ()),
     _Law("clearance or opening", _stop, (0.1, 0.3, 0.7), (0.005, 0.999)),
