@@ -13,7 +13,7 @@ from jointbench.acquisition.basics.array_checks import (
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 
 # Errors of the model itself that no residual shows (harmonics of the joint's force,
-# shapes that turn a little), fixed before any figure was taken: docs/decisions/0086.
+# shapes that turn a little), fixed before the benchmark ran: docs/decisions/0086.
 FREQUENCY_FLOOR = 50e-6
 DAMPING_FLOOR = 5e-3
 
