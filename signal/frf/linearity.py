@@ -82,11 +82,14 @@ class Linearity:
         )
 
 
-def check_linearity(spectra: HitSpectra) -> Linearity:
+def check_linearity(
+    spectra: HitSpectra, band: tuple[float, float] | None = None
+) -> Linearity:
     """Test whether the FRF depends on the level of the hits.
 
     Args:
         spectra: of accepted hits, at least three at one point, at different levels.
+        band: lowest and highest frequency of the test [Hz]; None for the excited band.
 
     Returns:
         The change with level and its significance. A drift in time that follows the
@@ -99,7 +102,7 @@ def check_linearity(spectra: HitSpectra) -> Linearity:
         Seber and Lee, Linear Regression Analysis (2003), sec. 4.3 (F test); ISO
         7626-5:2019 requires the check.
     """
-    low, high = excited_band(spectra)
+    low, high = band or excited_band(spectra)
     inside = (spectra.frequency >= low) & (spectra.frequency <= high)
     impulse = _levels(spectra, inside)
     outputs, inputs, pairs = pair_up(spectra)

@@ -23,7 +23,7 @@ from jointbench.station.results.results_read import StoredResult, without_copies
 MOVED = 2.0
 """Standard deviations beyond which a quantity has moved."""
 STAGES_OF_PART = {
-    "modes": ("hits", "frf", "modes", "fill"),
+    "modes": ("hits", "frf", "modes", "fill", "amplitude"),
     "surface": ("structure", "surface"),
     "contact": ("structure", "surface", "contact"),
     "joint": ("hits", "frf", "modes", "fill", "joint"),

@@ -5,7 +5,7 @@
 
     hits    <- samples                      kalman  <- samples
     frf     <- hits, kalman, windows        modes   <- frf
-    fill    <- modes, samples (lost ones)
+    fill    <- modes, samples (lost ones)   amplitude <- modes, hits
 
 Every command and every recipe runs these stages, each through a store
 (`stage_store`) that keeps what it gives, or nothing.
@@ -18,12 +18,19 @@ from jointbench.acquisition.basics.errors import NoModeFound
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.provenance import Provenance
 from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
+from jointbench.signal.amplitude.amplitude_modes import amplitude_modes
+from jointbench.signal.amplitude.resolved_model import resolved_model
 from jointbench.signal.frf.estimators import Estimator
 from jointbench.signal.frf.frf import Frf, estimate_frf
 from jointbench.signal.hits.find_hits import HitCriteria
 from jointbench.signal.hits.windows import WindowRequest, requested_window
 from jointbench.signal.kalman.oscillator_bank import repair_dropouts
-from jointbench.signal.kalman.smoothing import KalmanSettings, smooth_recording
+from jointbench.signal.kalman.smoothing import (
+    KalmanSettings,
+    smooth_recording,
+    stage_gain_of,
+)
 from jointbench.signal.modal.data_limits import block_words, time_scale_words
 from jointbench.signal.modal.lscf import Progress
 from jointbench.signal.modal.modes import ModalResult, ModalSettings, identify_modes
@@ -68,12 +75,14 @@ class ModalChain:
         frf: from the accepted hits, after the Kalman stage.
         result: modes, stabilisation and synthesis.
         provenance: every step from the recordings to the modes.
+        amplitude: the modes over their amplitude; empty where that was not looked at.
     """
 
     recordings: tuple[Recording, ...]
     frf: Frf
     result: ModalResult
     provenance: Provenance
+    amplitude: tuple[AmplitudeMode, ...] = ()
 
 
 def run_chain(
@@ -168,7 +177,25 @@ def modal_chain(
     result = _modes_stage(frf, settings, run, at)
     filled = _fill_stage(judged, result, settings, run, at)
     whole = ModalChain(tuple(judged), frf, result, result.model.provenance)
-    return filled[0] if filled else whole
+    return _amplitude_stage(filled[0] if filled else whole, run, at)
+
+
+def _amplitude_stage(chain: ModalChain, run: StageRun, at: str) -> ModalChain:
+    """Resolve the modes over their amplitude; poles on one curve become one mode."""
+    found = run.stages.run(
+        f"amplitude{at}",
+        run.stages.key("amplitude", [], run.stages.keys[f"fill{at}"]),
+        tuple[AmplitudeMode, ...],
+        lambda: amplitude_modes(
+            chain.recordings, chain.result.model, progress=run.progress
+        ),
+    )
+    model = resolved_model(chain.result.model, found)
+    if model is chain.result.model:
+        return replace(chain, amplitude=found)
+    gain = stage_gain_of(chain.frf.provenance, model.natural_frequency)
+    result = replace(chain.result, model=model, stage_gain=gain)
+    return replace(chain, result=result, provenance=model.provenance, amplitude=found)
 
 
 def hits_stage(

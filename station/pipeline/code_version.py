@@ -38,6 +38,10 @@ STAGE_MODULES = {
         "signal.kalman.oscillator_bank",
         "signal.hits.windows",
     ),
+    "amplitude": (
+        "signal.amplitude.amplitude_modes",
+        "signal.amplitude.resolved_model",
+    ),
     "structure": ("signal.surface.structure_function",),
     "surface": ("signal.fractal.fractal_fit",),
     "contact": (

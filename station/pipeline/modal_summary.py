@@ -5,6 +5,7 @@ import numpy as np
 
 from jointbench.acquisition.records.recordings import Hit, Recording
 from jointbench.signal.modal.mode_ranking import rate_modes
+from jointbench.station.pipeline.amplitude_summary import amplitude_json
 from jointbench.station.pipeline.chain import (
     ModalChain,
 )
@@ -62,6 +63,7 @@ def modal_json(chain: ModalChain, notes: ModalNotes) -> dict[str, object]:
         "notes": list(notes.remarks()),
         "beyond_band": _beyond_json(notes),
         "linearity": _linearity_json(notes),
+        "amplitude": amplitude_json(chain.amplitude),
         "averages": chain.frf.averages,
         "added_decay_rate_per_s": chain.frf.added_decay_rate,
         "synthesis_error_rms": synthesis_error(chain),

@@ -11,6 +11,7 @@ from jointbench.station.pipeline.modal_summary import (
     stage_cells,
     synthesis_error,
 )
+from jointbench.station.report.amplitude_section import amplitude_sections
 from jointbench.station.report.checks_section import checks_section, systematic_words
 from jointbench.station.report.shapes_section import shapes_section
 from jointbench.station.schemas.geometry_file import Geometry
@@ -32,7 +33,7 @@ UNITS = {
 def modal_sections(
     chain: ModalChain, geometry: Geometry | None = None
 ) -> tuple[Section, ...]:
-    """Return the sections FRF, stabilisation, modes, shapes and checks."""
+    """Return the sections FRF, stabilisation, modes, amplitude, shapes, checks."""
     return (
         Section("frf", "Frequency response", (_frf_plot(chain), Text(_window(chain)))),
         Section("stabilisation", "Stabilisation", (_stabilisation_plot(chain),)),
@@ -41,6 +42,7 @@ def modal_sections(
             "Modes",
             (modes_table(chain), Text(_systematic(chain)), Text(_kalman(chain))),
         ),
+        *amplitude_sections(chain),
         shapes_section(chain, geometry),
         checks_section(chain),
     )

@@ -7,12 +7,17 @@ from rich.text import Text
 
 from jointbench.acquisition.basics.arrays import BoolArray
 from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.amplitude.amplitude_curve import Dependence
 from jointbench.signal.modal.mode_ranking import (
     FEW_ORDERS,
     Grade,
     ModeConfidence,
     rate_modes,
 )
+from jointbench.station.pipeline.amplitude_summary import (
+    COLUMNS as COLUMNS_OVER_AMPLITUDE,
+)
+from jointbench.station.pipeline.amplitude_summary import amplitude_rows
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.modal_notes import ModalNotes
 from jointbench.station.screen.terminal import console, table
@@ -57,6 +62,7 @@ def show_modal(chain: ModalChain, notes: ModalNotes, json_target: str | None) ->
     screen.print()
     for line in (*_legend(chain), *(f"note: {words}" for words in notes.remarks())):
         screen.print(Text(line))
+    _show_amplitude(screen, chain)
     _show_beyond(screen, notes)
 
 
@@ -97,6 +103,23 @@ def remark(chain: ModalChain, rated: ModeConfidence, number: int) -> str:
     if rated.broad[number]:
         words.append("broad: background?")
     return ", ".join(words)
+
+
+def _show_amplitude(screen: Console, chain: ModalChain) -> None:
+    """Show modes that depend on amplitude or may; count those that do not."""
+    shown = [m for m in chain.amplitude if m.dependence is not Dependence.NONE]
+    plain = len(chain.amplitude) - len(shown)
+    reasons = {mode.reason for mode in shown}
+    if len(reasons) == 1 and not any(mode.curve for mode in shown):
+        words = f"amplitude dependence not decided: {reasons.pop()}"
+        screen.print(Text(words))
+    elif shown:
+        title = "Modes over amplitude"
+        screen.print(table(title, COLUMNS_OVER_AMPLITUDE, amplitude_rows(shown)))
+    if plain:
+        screen.print(
+            Text(f"{plain} of {len(chain.amplitude)} modes do not depend on amplitude")
+        )
 
 
 def _show_beyond(screen: Console, notes: ModalNotes) -> None:

@@ -8,6 +8,7 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.analysis.lumped.identified import Identification
+from jointbench.signal.amplitude.amplitude_modes import amplitude_modes
 from jointbench.station.pipeline.chain import (
     ChainSettings,
     ModalChain,
@@ -143,7 +144,10 @@ def _modes_at(
     if known is None:
         return PreloadAnalysis(preload, judged_modes(group, settings, run, preload))
     modes, of_run = known
-    return PreloadAnalysis(preload, modes.with_recordings(group), of_run)
+    chain = modes.with_recordings(group)
+    # A results file keeps the modes; their curves are in the hits.
+    curves = amplitude_modes(chain.recordings, chain.result.model)
+    return PreloadAnalysis(preload, replace(chain, amplitude=curves), of_run)
 
 
 def _contact(

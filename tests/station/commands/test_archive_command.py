@@ -57,7 +57,7 @@ def test_a_comparison_says_what_differs_and_pairs_by_content(
     assert found.pairs == 2
     assert found.causes["windows.lead: chosen by the data -> 0.0"] == 2
     assert {d.since for d in found.differences if d.moved} == {"frf"}
-    assert set(found.stages) == {"frf", "modes", "fill"}
+    assert set(found.stages) == {"frf", "modes", "fill", "amplitude"}
     assert compare_results(before, before).moved == ()
     with pytest.raises(BadData, match="no session is in both"):
         compare_results(before[:1], after[1:])

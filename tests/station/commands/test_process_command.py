@@ -115,9 +115,16 @@ def test_a_changed_window_runs_what_depends_on_it_and_nothing_else(
     """FRF, modes and fill are run; hits and Kalman stage are taken as kept."""
     path = make_session("s.h5")
     first = done(path)
-    assert first.computed == ("hits", "kalman of stream", "frf", "modes", "fill")
+    assert first.computed == (
+        "hits",
+        "kalman of stream",
+        "frf",
+        "modes",
+        "fill",
+        "amplitude",
+    )
     second = done(path, WIDE)
-    assert second.computed == ("frf", "modes", "fill")
+    assert second.computed == ("frf", "modes", "fill", "amplitude")
     assert second.reused == ("hits", "kalman of stream")
 
 
@@ -126,7 +133,7 @@ def test_a_changed_band_leaves_the_frf_alone(make_session) -> None:
     path = make_session("s.h5")
     done(path)
     banded = Recipe(name="banded", modes={"band": ("100 Hz", "600 Hz")})
-    assert done(path, banded).computed == ("modes", "fill")
+    assert done(path, banded).computed == ("modes", "fill", "amplitude")
 
 
 def test_kept_stages_give_the_same_result_as_fresh_ones(make_session) -> None:

@@ -129,7 +129,7 @@ def test_all_of_our_code_that_runs_in_a_stage_is_in_its_version(make_session) ->
                 sys.setprofile(before)
 
     process_session(session, "0" * 64, Recipe(name="plain"), Watching())
-    assert set(met) == {"hits", "kalman", "frf", "modes", "fill"}
+    assert set(met) == {"hits", "kalman", "frf", "modes", "fill", "amplitude"}
     for stage, files in met.items():
         named = {_module(file) for file in files if file.startswith(f"{ROOT}{os.sep}")}
         ours = {name for name in named if not name.startswith("jointbench.tests")}

@@ -26,7 +26,7 @@ from jointbench.station.schemas.bench_model import BenchModel
 from jointbench.station.schemas.recipe import ContactPart, IdentificationPart, Recipe
 from jointbench.station.schemas.recipe_modal_parts import HitsPart, KalmanPart
 
-MODAL_STAGES = ["hits", "kalman of stream", "frf", "modes", "fill"]
+MODAL_STAGES = ["hits", "kalman of stream", "frf", "modes", "fill", "amplitude"]
 JOINT_STAGES = ["structure of face", "surface face", "contact", "joint"]
 BENCH = """\
 [bodies.base]

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: MIT
+"""How good the modes over amplitude are: coverage, errors, false findings.
+
+Usage: OMP_NUM_THREADS=1 python benchmarks/modal/amplitude.py --log LOG.jsonl
+    [--minutes 20] [--first 0] [--parts linear ...]
+    [--page docs/modal-amplitude-coverage.md]
+
+The four parts (or those named) take turns until the time is up; each draw is one line
+of the log, and a later run goes on where the log ends. Part and seed define a draw.
+"""
+
+import argparse
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from amplitude_cases import LAWS, Case, draw, linear_draw
+from amplitude_peers import PEERS, peer_curve
+from jointed_masses import true_curve
+
+from jointbench.acquisition.basics.errors import JointbenchError
+from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
+from jointbench.signal.amplitude.ring_downs import ring_downs
+from jointbench.station.pipeline.chain import ChainSettings, ModalChain, judged_modes
+
+_NORMAL_95 = 1.959964
+_NEAR = 0.08
+FAMILY = {
+    "micro-slip": "friction",
+    "jenkins": "friction",
+    "cubic": "elastic",
+    "clearance": "elastic",
+    "quadratic damping": "quadratic",
+}
+DECIBELS = (40.0, 60.0, 80.0)
+SOFTENING = (0.002, 0.005, 0.01, 0.02, 0.04)
+Row = dict[str, Any]
+
+
+def _chain(case: Case) -> ModalChain:
+    return judged_modes([case.recording], ChainSettings())
+
+
+def _nearest(chain: ModalChain, frequency: float) -> AmplitudeMode | None:
+    near = [m for m in chain.amplitude if abs(m.soft.frequency / frequency - 1) < _NEAR]
+    return min(near, key=lambda m: abs(m.soft.frequency - frequency), default=None)
+
+
+def _modes_near(chain: ModalChain, frequency: float) -> int:
+    found = chain.result.model.natural_frequency
+    return int(np.sum(np.abs(found / frequency - 1) < _NEAR))
+
+
+def curves(seed: int) -> Row:
+    """One joint, one law, one noise level: errors and coverage of the curve."""
+    law = LAWS[seed % len(LAWS)]
+    decibel = DECIBELS[seed // len(LAWS) % 3]
+    softening = SOFTENING[seed // (3 * len(LAWS)) % len(SOFTENING)]
+    bodies = None if seed % 2 else 1
+    case = draw(
+        10_000 + seed, law=law, softening=softening, decibel=decibel, bodies=bodies
+    )
+    frequency = float(case.structure.modes()[0][case.mode] / 2 / np.pi)
+    started = time.process_time()
+    chain = _chain(case)
+    row: Row = {
+        "law": law,
+        "decibel": decibel,
+        "softening": softening,
+        "bodies": case.structure.mass.size,
+        "cpu": time.process_time() - started,
+        "near": _modes_near(chain, frequency),
+    }
+    mode = _nearest(chain, frequency)
+    if mode is None or mode.curve is None:
+        return row | {"outcome": mode.dependence.value if mode else "no mode"}
+    return row | {"outcome": mode.dependence.value} | _scores(case, mode)
+
+
+def _scores(case: Case, mode: AmplitudeMode) -> Row:
+    curve = mode.curve
+    assert curve is not None
+    sizes = case.joint_amplitude * np.geomspace(1e-4, 3.0, 50)
+    truth = true_curve(case.structure, case.mode, sizes)
+    mass = int(curve.channel.split("@")[1]) - 1
+    f, z = truth.at(mass, curve.amplitude)
+    return {
+        "f_held": float(
+            np.mean(np.abs(curve.frequency - f) < _NORMAL_95 * curve.frequency_sd)
+        ),
+        "z_held": float(
+            np.mean(np.abs(curve.damping_ratio - z) < _NORMAL_95 * curve.damping_sd)
+        ),
+        "f_ppm": float(1e6 * np.sqrt(np.mean((curve.frequency / f - 1) ** 2))),
+        "z_percent": float(100 * np.median(np.abs(curve.damping_ratio / z - 1))),
+        "misfit": mode.misfit,
+        "exponent": mode.laws[0].exponent if mode.laws else None,
+        "law_found": mode.laws[0].name if mode.laws else None,
+        "peers": _peers(case, mode, mass, truth.at),
+    }
+
+
+def _peers(
+    case: Case, mode: AmplitudeMode, mass: int, truth: Callable[..., Any]
+) -> Row:
+    """Return errors of the peers, and ours at the same amplitudes."""
+    curve = mode.curve
+    assert curve is not None
+    decays = ring_downs([case.recording])
+    channel = decays.labels.index(curve.channel)
+    every = case.structure.modes()[0] / 2 / np.pi
+    own = float(curve.frequency[0])
+    others = every[np.abs(every - every[case.mode]) > 1.0]
+    room = min([0.15 * own, *(0.5 * np.abs(others - own))])
+    found: Row = {}
+    for name, peer in PEERS.items():
+        size, f, z = peer_curve(
+            peer,
+            list(decays.samples[:, channel]),
+            decays.sample_rate,
+            (own - room, own + room),
+            (own, float(curve.damping_ratio[0])),
+        )
+        inside = (size > curve.amplitude[0]) & (size < curve.amplitude[-1])
+        if inside.sum() < 3:
+            continue
+        true_f, true_z = truth(mass, size[inside])
+        ours = np.array([curve.at(float(one)) for one in size[inside]])
+        found[name] = [
+            float(1e6 * np.sqrt(np.mean((f[inside] / true_f - 1) ** 2))),
+            float(100 * np.median(np.abs(z[inside] / true_z - 1))),
+            float(1e6 * np.sqrt(np.mean((ours[:, 0] / true_f - 1) ** 2))),
+            float(100 * np.median(np.abs(ours[:, 1] / true_z - 1))),
+        ]
+    return found
+
+
+def softening(seed: int) -> Row:
+    """One physical mode that softens by 0 to 5 %: how many modes are reported."""
+    rng = np.random.default_rng(seed)
+    change = float(rng.uniform(0.0, 0.05))
+    decibel = float(rng.choice(DECIBELS))
+    case = draw(
+        20_000 + seed, law="micro-slip", softening=change, decibel=decibel, bodies=1
+    )
+    frequency = float(case.structure.modes()[0][0] / 2 / np.pi)
+    chain = _chain(case)
+    mode = _nearest(chain, frequency)
+    return {
+        "change": change,
+        "near": _modes_near(chain, frequency),
+        "outcome": mode.dependence.value if mode else "no mode",
+        "soft_error": mode.soft.frequency / frequency - 1.0 if mode else None,
+        "soft_sd": mode.soft.frequency_sd / frequency if mode else None,
+    }
+
+
+def linear(seed: int) -> Row:
+    """A linear structure: outcomes of its modes."""
+    recording, _ = linear_draw(30_000 + seed)
+    chain = judged_modes([recording], ChainSettings())
+    return {
+        "outcomes": [mode.dependence.value for mode in chain.amplitude],
+        "merged": sum(len(mode.replaces) - 1 for mode in chain.amplitude),
+    }
+
+
+def families(seed: int) -> Row:
+    """A random joint: is its family right."""
+    rng = np.random.default_rng(40_000 + seed)
+    law = LAWS[seed % len(LAWS)]
+    case = draw(
+        40_000 + seed,
+        law=law,
+        softening=float(rng.uniform(0.004, 0.03)),
+        decibel=float(rng.choice(DECIBELS)),
+        bodies=1,
+    )
+    frequency = float(case.structure.modes()[0][case.mode] / 2 / np.pi)
+    mode = _nearest(_chain(case), frequency)
+    if mode is None or mode.curve is None:
+        outcome = mode.dependence.value if mode else "no mode"
+        return {"law": law, "family": "", "span": 0, "outcome": outcome}
+    span = float(np.log10(mode.curve.amplitude[-1] / mode.curve.amplitude[0]))
+    return {
+        "law": law,
+        "family": mode.family,
+        "span": span,
+        "outcome": mode.dependence.value,
+        "right": mode.family.startswith(FAMILY[law]),
+        "ratio": None if np.isnan(mode.ratio) else mode.ratio,
+    }
+
+
+PARTS: dict[str, tuple[Callable[[int], Row], int]] = {
+    "curves": (curves, 300),
+    "softening": (softening, 300),
+    "linear": (linear, 400),
+    "families": (families, 60),
+}
+
+
+def wilson(held: int, n: int) -> str:
+    """Return a share with its 95 % Wilson interval, in percent."""
+    if n == 0:
+        return "none run"
+    z, p = _NORMAL_95, held / n
+    middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
+    half = z * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2)) / (1 + z**2 / n)
+    return (
+        f"{held} of {n}: {100 * p:.1f} % ({100 * max(middle - half, 0.0):.1f} to "
+        f"{100 * (middle + half):.1f})"
+    )
+
+
+def main() -> None:
+    """Run the benchmark."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--log", type=Path, required=True)
+    parser.add_argument("--minutes", type=float, default=20.0)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--page", type=Path)
+    parser.add_argument("--parts", nargs="*", default=list(PARTS), choices=list(PARTS))
+    given = parser.parse_args()
+    done = _read(given.log)
+    ends = time.monotonic() + 60 * given.minutes
+    seed = given.first
+    while time.monotonic() < ends and seed < max(n for _, n in PARTS.values()):
+        for part, (run, most) in PARTS.items():
+            wanted = part in given.parts and seed < most
+            if wanted and (part, seed) not in done:
+                done[part, seed] = _drawn(run, part, seed, given.log)
+        seed += 1
+    if given.page is not None:
+        from amplitude_page import page
+
+        given.page.write_text(page(done))
+
+
+def _drawn(run: Callable[[int], Row], part: str, seed: int, log: Path) -> Row:
+    try:
+        row = run(seed)
+    except JointbenchError as error:
+        row = {"failed": str(error)}
+    with log.open("a") as file:
+        file.write(json.dumps({"part": part, "seed": seed} | row) + "\n")
+    print(part, seed, row, flush=True)
+    return row
+
+
+def _read(log: Path) -> dict[tuple[str, int], Row]:
+    if not log.exists():
+        return {}
+    rows = [json.loads(line) for line in log.read_text().splitlines()]
+    return {(row["part"], row["seed"]): row for row in rows}
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: MIT
+"""Modes that depend on amplitude: from a linear modal model and all ring-downs.
+
+Each group of close poles is fitted without and with dependence on amplitude; the fewest
+curves that explain the decays better than all linear modes of the group are kept.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.amplitude.amplitude_curve import (
+    AmplitudeMode,
+    Dependence,
+    SoftLimit,
+)
+from jointbench.signal.amplitude.band_fit import (
+    BandFit,
+    curved_residual,
+    fit_band,
+    linear_residual,
+)
+from jointbench.signal.amplitude.curve_laws import (
+    family_by_law,
+    family_of,
+    fit_laws,
+)
+from jointbench.signal.amplitude.curve_of_fit import (
+    LevelCurve,
+    amplitude_curve,
+    level_curve,
+    shift_between,
+)
+from jointbench.signal.amplitude.dependence_test import (
+    CHANCE,
+    Change,
+    DependenceEvidence,
+    change_of,
+    decide,
+    score_chance,
+)
+from jointbench.signal.amplitude.level_comparison import compare_levels
+from jointbench.signal.amplitude.mode_groups import (
+    ModeGroup,
+    mode_groups,
+    without_companions,
+)
+from jointbench.signal.amplitude.ring_downs import RingDowns, ring_downs
+from jointbench.signal.hits.find_hits import accepted_hits
+from jointbench.signal.hits.hit_spectra import HitSpectra, hit_spectra
+from jointbench.signal.hits.windows import choose_window, join_windows
+from jointbench.signal.modal.modal_model import ModalModel
+
+# A finding must stay when the decays start later by this [s], or by this share of the
+# mode's time constant where that is less.
+_DELAY, _DELAY_SHARE = 0.05, 0.7
+# Beyond this misfit no curve is given.
+_NO_CURVE = 3.0
+# A misfit above this is looked at again from a later start: other modes die out.
+_UNEASY = 2.0
+# Fewer curves may leave this much more power than all of them.
+_FEWER = 2.0
+# Records must be this many delays long.
+_LEAST_DELAYS = 4
+
+Talk = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Fitted:
+    """Fits of one group, from two starts, and which poles began its curves."""
+
+    main: BandFit
+    later: BandFit | None
+    members: tuple[int, ...]
+
+
+@one_thread()
+def amplitude_modes(
+    recordings: Sequence[Recording],
+    model: ModalModel,
+    *,
+    progress: Talk | None = None,
+) -> tuple[AmplitudeMode, ...]:
+    """Resolve the modes of a linear fit over their amplitude.
+
+    Args:
+        recordings: with judged hits, as recorded.
+        model: of the linear fit to the same hits.
+        progress: called with what is done and the share of it; None for no calls.
+
+    Returns:
+        One record a physical mode, by ascending frequency. Those that stand for
+        several linear poles name them all in `replaces`.
+
+    Raises:
+        BadData: no hit was accepted.
+    """
+    judged = [r for r in recordings if accepted_hits(r)]
+    decays = ring_downs(judged)
+    spectra = hit_spectra(judged, join_windows([choose_window(r) for r in judged]))
+    groups = mode_groups(model)
+    found: list[AmplitudeMode] = []
+    for number, group in enumerate(groups):
+        if progress is not None:
+            progress("amplitude dependence", number / len(groups))
+        found += _resolved(decays, spectra, model, group)
+    return tuple(sorted(found, key=lambda mode: mode.replaces[0]))
+
+
+def _resolved(
+    decays: RingDowns, spectra: HitSpectra, model: ModalModel, group: ModeGroup
+) -> list[AmplitudeMode]:
+    """Return the modes of one group, merged where curves explain more than poles."""
+    levels = {i: _levels_at(spectra, model, i) for i in group.members}
+    head = levels[group.members[0]][0]
+    if head is None or head > CHANCE:
+        return [_not_fitted(model, i, *levels[i]) for i in group.members]
+    try:
+        fitted = _fit_group(decays, model, group)
+    except np.linalg.LinAlgError:
+        words = "the joint fit is singular"
+        return [_undecided(model, i, words) for i in group.members]
+    modes = []
+    for number, member in enumerate(fitted.members):
+        others = [i for i in group.members if i not in fitted.members]
+        own = (member, *others) if member == group.members[0] else (member,)
+        modes.append(_judged(decays, model, fitted, number, own, levels[member]))
+    return modes
+
+
+def _levels_at(
+    spectra: HitSpectra, model: ModalModel, member: int
+) -> tuple[float | None, str]:
+    frequency, ratio = model.natural_frequency[member], model.damping_ratio[member]
+    return compare_levels(spectra, float(frequency), float(ratio))
+
+
+def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> _Fitted:
+    """Fit the fewest curves that explain more than all linear modes do."""
+    whole = group.band(model, len(group.members))
+    kept = without_companions(model, group)
+    count, main = len(kept.members), None
+    if count > 1:
+        best = fit_band(decays, kept.band(model, count))
+        # Twice the power that all curves leave: two modes taken for one leave far more.
+        apart = max(
+            linear_residual(decays, whole),
+            _FEWER * curved_residual(best, decays, whole),
+        )
+        main = best
+        for fewer in range(1, count):
+            tried = fit_band(decays, kept.band(model, fewer))
+            if curved_residual(tried, decays, whole) < apart:
+                count, main = fewer, tried
+                break
+    band = kept.band(model, count)
+    main = main or fit_band(decays, band)
+    members = tuple(sorted(kept.members[:count]))
+    delay = min(_DELAY, _DELAY_SHARE / band.slowest)
+    if decays.samples.shape[2] < _LEAST_DELAYS * delay * decays.sample_rate:
+        return _Fitted(main, None, members)
+    later = fit_band(decays.later(delay), band)
+    if main.curved.misfit > _UNEASY and later.curved.misfit < main.curved.misfit:
+        return _Fitted(later, fit_band(decays.later(2 * delay), band), members)
+    return _Fitted(main, later, members)
+
+
+def _judged(
+    decays: RingDowns,
+    model: ModalModel,
+    fitted: _Fitted,
+    number: int,
+    members: tuple[int, ...],
+    levels: tuple[float | None, str],
+) -> AmplitudeMode:
+    """Return one mode with curve, outcome and laws."""
+    main = fitted.main
+    curve = level_curve(main, number)
+    after = None if fitted.later is None else level_curve(fitted.later, number)
+    change = change_of(curve)
+    chance = score_chance(main, number)
+    outcome, reason = decide(
+        DependenceEvidence(
+            chance=chance,
+            explained=main.share_explained,
+            linear_misfit=main.linear.misfit,
+            misfit=main.curved.misfit,
+            change=change,
+            later=_later_change(curve, after, change),
+            levels=levels[0],
+            levels_words=levels[1],
+        )
+    )
+    nothing = np.zeros(curve.level.size)
+    shift = (nothing, nothing) if after is None else shift_between(curve, after)
+    shown = amplitude_curve(curve, decays, shift)
+    if main.curved.misfit > _NO_CURVE:
+        shown = None
+    depends = outcome is Dependence.DEPENDS and shown is not None
+    family, ratio = family_of(change) if depends and change else ("", float("nan"))
+    laws = fit_laws(curve, change) if depends else ()
+    soft = _linear_limit(model, members)
+    if shown is not None and (depends or len(members) > 1):
+        soft = SoftLimit(
+            float(shown.frequency[0]),
+            float(shown.frequency_sd[0]),
+            float(shown.damping_ratio[0]),
+            float(shown.damping_sd[0]),
+        )
+    return AmplitudeMode(
+        dependence=outcome,
+        reason=reason,
+        curve=shown,
+        soft=soft,
+        significance=chance,
+        misfit=main.curved.misfit,
+        linear_misfit=main.linear.misfit,
+        frequency_change=change.frequency if change else 0.0,
+        frequency_change_sd=change.frequency_sd if change else 0.0,
+        damping_change=change.damping if change else 0.0,
+        family=family_by_law(family, laws),
+        ratio=ratio,
+        laws=laws,
+        replaces=tuple(float(model.natural_frequency[i]) for i in members),
+    )
+
+
+def _later_change(
+    curve: LevelCurve, after: LevelCurve | None, change: Change | None
+) -> Change | None:
+    """Return the change that a later start gives, for the levels both have.
+
+    The first finding is scaled to those levels, so that the two are of one kind.
+    """
+    if after is None or change is None:
+        return None
+    late = change_of(after)
+    if late is None:
+        return None
+    same = change_of(curve, late.levels)
+    if same is None:
+        return None
+    return Change(
+        frequency=change.frequency + late.frequency - same.frequency,
+        frequency_sd=late.frequency_sd,
+        damping=change.damping + late.damping - same.damping,
+        damping_sd=late.damping_sd,
+        zeta=late.zeta,
+        levels=late.levels,
+    )
+
+
+def _linear_limit(model: ModalModel, members: tuple[int, ...]) -> SoftLimit:
+    """Return the strongest pole; poles that were merged into it widen its interval."""
+    head, others = members[0], list(members[1:])
+    frequency, ratio = model.natural_frequency, model.damping_ratio
+    apart = np.abs(frequency[others] - frequency[head]).min(initial=np.inf)
+    spread = np.abs(ratio[others] - ratio[head]).min(initial=np.inf)
+    wide = (0.5 * apart, 0.5 * spread) if others else (0.0, 0.0)
+    return SoftLimit(
+        float(frequency[head]),
+        float(np.hypot(model.frequency_sd[head], wide[0])),
+        float(ratio[head]),
+        float(np.hypot(model.damping_ratio_sd[head], wide[1])),
+    )
+
+
+def _not_fitted(
+    model: ModalModel, member: int, chance: float | None, words: str
+) -> AmplitudeMode:
+    """Return a mode whose levels agree, or cannot be compared."""
+    if chance is None:
+        return _undecided(model, member, words)
+    return _plain(
+        model,
+        member,
+        Dependence.NONE,
+        f"hard and soft hits give the same FRF around it (chance {chance:.2g})",
+    )
+
+
+def _undecided(model: ModalModel, member: int, why: str) -> AmplitudeMode:
+    return _plain(model, member, Dependence.NOT_DECIDED, why)
+
+
+def _plain(
+    model: ModalModel, member: int, outcome: Dependence, why: str
+) -> AmplitudeMode:
+    """Return a mode without a curve."""
+    unknown = float("nan")
+    return AmplitudeMode(
+        dependence=outcome,
+        reason=why,
+        curve=None,
+        soft=_linear_limit(model, (member,)),
+        significance=unknown,
+        misfit=unknown,
+        linear_misfit=unknown,
+        replaces=(float(model.natural_frequency[member]),),
+    )

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: MIT
+"""Laws of joints fitted to a curve, ranked; and their family by one ratio.
+
+What frequency and damping do with amplitude is the first harmonic of the joint's force:
+micro-slip of exponent p loses stiffness as a^p and adds damping as a^p, a cubic spring
+changes stiffness as a^2 and damping not at all, v|v| adds damping as a and leaves
+stiffness alone, a stop or an opening acts above a threshold and dissipates nothing.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+import scipy.optimize
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.amplitude.amplitude_curve import (
+    DAMPING_FLOOR,
+    FREQUENCY_FLOOR,
+    LawFit,
+)
+from jointbench.signal.amplitude.curve_of_fit import LevelCurve, known_part
+from jointbench.signal.amplitude.dependence_test import Change
+
+MICRO_SLIP = "friction or micro-slip"
+CUBIC = "elastic (cubic spring or clearance)"
+QUADRATIC = "quadratic damping"
+# Ratio d zeta / (-df/f): friction gives .27 to .47 by theory, elastic laws none.
+_FRICTION_RATIO = (0.1, 1.5)
+_CLEAR = 3.0
+_SLIDER = "slider (Jenkins)"
+_EXPONENTS = (0.4, 1.0, 2.0)
+_EXPONENT_RANGE = (0.05, 4.0)
+
+
+def family_of(change: Change) -> tuple[str, float]:
+    """Return the family of laws and the ratio R = d zeta / (-df/f).
+
+    Args:
+        change: from soft to hard.
+
+    Returns:
+        The family, "unresolved" where neither change is clear, and R; nan where the
+        change of frequency is not clear.
+    """
+    by_frequency = abs(change.frequency) > _CLEAR * change.frequency_sd
+    by_damping = abs(change.damping) > _CLEAR * change.damping_sd
+    ratio = -change.damping / change.frequency if change.frequency else float("nan")
+    if not by_frequency:
+        return (QUADRATIC if by_damping else "unresolved"), float("nan")
+    low, high = _FRICTION_RATIO
+    if change.damping > 0 and abs(ratio) > high:
+        return QUADRATIC, ratio
+    if abs(ratio) < low:
+        return CUBIC, ratio
+    return (MICRO_SLIP if ratio > 0 else "unresolved"), ratio
+
+
+def family_by_law(family: str, laws: Sequence[LawFit]) -> str:
+    """Return the family, friction where one slider explains the curve best.
+
+    At the onset of slip a slider's damping grows before its stiffness falls: R alone
+    takes that for quadratic damping.
+    """
+    slider = bool(laws) and laws[0].name == _SLIDER
+    return MICRO_SLIP if family == QUADRATIC and slider else family
+
+
+@dataclass(frozen=True, slots=True)
+class _Law:
+    """Shapes of the changes of frequency and damping over amplitude x in (0, 1].
+
+    Attributes:
+        name: of the law.
+        shapes: what the change of ln omega and of zeta are proportional to.
+        starts: of the free parameter; empty where there is none.
+        bounds: of the free parameter.
+    """
+
+    name: str
+    shapes: Callable[[FloatArray, float], tuple[FloatArray, FloatArray]]
+    starts: tuple[float, ...]
+    bounds: tuple[float, float] = _EXPONENT_RANGE
+
+
+def _power(x: FloatArray, p: float) -> tuple[FloatArray, FloatArray]:
+    return x**p, x**p
+
+
+def _cubic(x: FloatArray, p: float) -> tuple[FloatArray, FloatArray]:
+    return x**2, np.zeros_like(x)
+
+
+def _quadratic(x: FloatArray, p: float) -> tuple[FloatArray, FloatArray]:
+    return np.zeros_like(x), x
+
+
+def _slider(x: FloatArray, slip: float) -> tuple[FloatArray, FloatArray]:
+    """One Jenkins element: nothing below `slip`, then the exact first harmonic."""
+    share = np.clip(slip / np.maximum(x, 1e-12), 0.0, 1.0)
+    angle = np.arccos(np.clip(1.0 - 2.0 * share, -1.0, 1.0))
+    loss = 1.0 - (angle - 0.5 * np.sin(2.0 * angle)) / np.pi
+    damping = 4.0 / np.pi * share * (1.0 - share)
+    return loss, damping
+
+
+def _stop(x: FloatArray, gap: float) -> tuple[FloatArray, FloatArray]:
+    """A stop beyond a gap (or an opening): elastic, above a threshold."""
+    share = np.clip(gap / np.maximum(x, 1e-12), 0.0, 1.0)
+    engaged = 1.0 - 2.0 / np.pi * (np.arcsin(share) + share * np.sqrt(1.0 - share**2))
+    return engaged, np.zeros_like(x)
+
+
+_LAWS = (
+    _Law("micro-slip power law", _power, _EXPONENTS),
+    _Law(_SLIDER, _slider, (0.1, 0.3, 0.7), (0.005, 0.999)),
+    _Law("cubic spring", _cubic, ()),
+    _Law("quadratic damping", _quadratic, ()),
+    _Law("clearance or opening", _stop, (0.1, 0.3, 0.7), (0.005, 0.999)),
+)
+
+
+def fit_laws(curve: LevelCurve, change: Change | None) -> tuple[LawFit, ...]:
+    """Fit laws to a curve and rank them.
+
+    Args:
+        curve: with covariance.
+        change: from soft to hard; None fits nothing.
+
+    Returns:
+        Best first, by chi-squared plus ln(points) times the number of parameters. The
+        Iwan joint is the micro-slip power law below macro-slip.
+    """
+    part = known_part(curve)
+    if change is None or part.stop - part.start < 6:
+        return ()
+    x = np.exp(curve.level[part] - curve.level[part.stop - 1])
+    data = np.concatenate((curve.log_omega[part], np.exp(curve.log_zeta[part])))
+    root = _root(curve, part)
+    fits = [_fit_law(law, x, data, root) for law in _LAWS]
+    return tuple(sorted(fits, key=lambda fit: fit.criterion))
+
+
+def _root(curve: LevelCurve, part: slice) -> FloatArray:
+    """Return the Cholesky factor of the covariance of ln omega and zeta, with floor."""
+    zeta = np.exp(curve.log_zeta[part])
+    omega = curve.omega_covariance[part, part]
+    cross = curve.cross_covariance[part, part] * zeta
+    own = curve.zeta_covariance[part, part] * zeta[:, None] * zeta
+    matrix = np.block([[omega, cross], [cross.T, own]])
+    floor = np.concatenate((np.full(zeta.size, FREQUENCY_FLOOR), DAMPING_FLOOR * zeta))
+    return np.asarray(np.linalg.cholesky(matrix + np.diag(floor**2)))
+
+
+def _fit_law(law: _Law, x: FloatArray, data: FloatArray, root: FloatArray) -> LawFit:
+    """Fit one law; constants and sizes are linear, the exponent is searched for."""
+
+    def left(p: float) -> tuple[FloatArray, int]:
+        columns = _columns(law, x, p)
+        whitened = scipy.linalg.solve_triangular(
+            root, np.column_stack((columns, data)), lower=True
+        )
+        solved = np.linalg.lstsq(whitened[:, :-1], whitened[:, -1], rcond=1e-10)[0]
+        return whitened[:, -1] - whitened[:, :-1] @ solved, columns.shape[1]
+
+    if not law.starts:
+        rest, size = left(1.0)
+        chi2 = float(rest @ rest)
+        exponent = 2.0 if law.shapes is _cubic else 1.0
+        return LawFit(law.name, exponent, 0.0, chi2, chi2 + size * np.log(data.size))
+
+    def residual(parameter: FloatArray) -> FloatArray:
+        return left(float(parameter[0]))[0]
+
+    tried = [
+        scipy.optimize.least_squares(residual, [start], bounds=law.bounds)
+        for start in law.starts
+    ]
+    best = min(tried, key=lambda one: float(one.cost))
+    chi2, size = 2.0 * float(best.cost), left(float(best.x[0]))[1] + 1
+    slope = float(np.sum(np.asarray(best.jac) ** 2))
+    excess = max(1.0, chi2 / max(data.size - size, 1))
+    sd = float(np.sqrt(excess / slope)) if slope > 0 else float("inf")
+    return LawFit(
+        law.name, float(best.x[0]), sd, chi2, chi2 + size * float(np.log(data.size))
+    )
+
+
+def _columns(law: _Law, x: FloatArray, p: float) -> FloatArray:
+    """Return constants of both curves and the law's shapes, stacked."""
+    shapes = law.shapes(x, p)
+    none, one = np.zeros_like(x), np.ones_like(x)
+    columns = [np.concatenate((one, none)), np.concatenate((none, one))]
+    if np.any(shapes[0]):
+        columns.append(np.concatenate((shapes[0], none)))
+    if np.any(shapes[1]):
+        columns.append(np.concatenate((none, shapes[1])))
+    return np.array(columns).T

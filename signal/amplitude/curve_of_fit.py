@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""The curve of one fitted mode in physical amplitude, with its bands."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.signal.amplitude.amplitude_curve import (
+    DAMPING_FLOOR,
+    FREQUENCY_FLOOR,
+    AmplitudeCurve,
+)
+from jointbench.signal.amplitude.band_fit import BandFit
+from jointbench.signal.amplitude.curve_fit import curve_slices
+from jointbench.signal.amplitude.ring_downs import RingDowns
+
+_POINTS = 40
+# A point of the curve is shown where its frequency is known to this share of half the
+# half-power width.
+_KNOWN = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LevelCurve:
+    """ln omega and ln zeta of a mode over L, with covariance.
+
+    Attributes:
+        level: ln of the amplitude at the largest channel, shape (n,).
+        log_omega: shape (n,).
+        log_zeta: shape (n,).
+        omega_covariance: misfit taken in, without floor, shape (n, n).
+        zeta_covariance: likewise, shape (n, n).
+        cross_covariance: of ln omega with ln zeta, likewise, shape (n, n).
+        channel: index of the largest channel.
+    """
+
+    level: FloatArray
+    log_omega: FloatArray
+    log_zeta: FloatArray
+    omega_covariance: FloatArray
+    zeta_covariance: FloatArray
+    cross_covariance: FloatArray
+    channel: int
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(
+            self,
+            "level",
+            "log_omega",
+            "log_zeta",
+            "omega_covariance",
+            "zeta_covariance",
+            "cross_covariance",
+        )
+
+
+def level_curve(fit: BandFit, number: int, points: int = _POINTS) -> LevelCurve:
+    """Return the curve of one mode on an even grid of L that the data inform."""
+    mode = fit.curved.modes[number]
+    basis, own = mode.basis, curve_slices(fit.curved.modes)[number]
+    level = np.linspace(basis.low, basis.high, points)
+    values = basis.at(level)
+    inflation = max(1.0, fit.curved.misfit) ** 2
+    covariance = fit.curved.covariance[own, own] * inflation
+    size = basis.size
+    physical = np.abs(fit.lines.mixing @ mode.shape)
+    channel = int(np.argmax(physical))
+    relative = values @ mode.log_omega
+    return LevelCurve(
+        level=level + np.log(physical[channel]) + fit.power * relative,
+        log_omega=relative + np.log(fit.lines.centre),
+        log_zeta=values @ mode.log_zeta,
+        omega_covariance=values @ covariance[:size, :size] @ values.T,
+        zeta_covariance=values @ covariance[size:, size:] @ values.T,
+        cross_covariance=values @ covariance[:size, size:] @ values.T,
+        channel=channel,
+    )
+
+
+def known_part(curve: LevelCurve) -> slice:
+    """Return the points whose frequency is known well enough to be shown."""
+    zeta = np.exp(curve.log_zeta)
+    good = np.sqrt(np.diag(curve.omega_covariance)) < _KNOWN * zeta
+    good &= np.sqrt(np.diag(curve.zeta_covariance)) < _KNOWN
+    where = np.flatnonzero(good)
+    if where.size == 0:
+        return slice(0, 0)
+    # One piece, from the hard end down.
+    breaks = np.flatnonzero(np.diff(where) > 1)
+    first = where[breaks[-1] + 1] if breaks.size else where[0]
+    return slice(int(first), int(where[-1]) + 1)
+
+
+def amplitude_curve(
+    curve: LevelCurve, decays: RingDowns, shift: tuple[FloatArray, FloatArray]
+) -> AmplitudeCurve | None:
+    """Return the curve in physical units; None where nothing of it is known.
+
+    Args:
+        curve: of the mode.
+        decays: name channels and unit.
+        shift: how far ln omega and ln zeta move when the decays start later, shape
+            (n,) each; it counts as one more standard uncertainty.
+    """
+    part = known_part(curve)
+    level = curve.level[part]
+    if level.size < 3 or np.any(np.diff(level) <= 0.0):
+        return None
+    zeta = np.exp(curve.log_zeta[part])
+    natural = np.sqrt(1.0 + zeta**2)
+    frequency = np.exp(curve.log_omega[part]) * natural / (2.0 * np.pi)
+    own_f = np.sqrt(np.diag(curve.omega_covariance)[part])
+    own_z = np.sqrt(np.diag(curve.zeta_covariance)[part])
+    f_sd = np.sqrt(own_f**2 + FREQUENCY_FLOOR**2 + shift[0][part] ** 2)
+    z_sd = np.sqrt(own_z**2 + DAMPING_FLOOR**2 + shift[1][part] ** 2)
+    return AmplitudeCurve(
+        amplitude=np.exp(level),
+        frequency=frequency,
+        frequency_sd=frequency * f_sd,
+        damping_ratio=zeta / natural,
+        damping_sd=zeta / natural * z_sd,
+        channel=decays.labels[curve.channel],
+        unit=decays.unit,
+    )
+
+
+def shift_between(main: LevelCurve, later: LevelCurve) -> tuple[FloatArray, FloatArray]:
+    """Return how far the curves of two fits differ, at the levels of the first.
+
+    Above the levels of the second the difference at its hard end is kept.
+    """
+    part = known_part(later)
+    if part.stop - part.start < 3:
+        none = np.zeros(main.level.size)
+        return none, none
+    level = later.level[part]
+    omega = np.interp(main.level, level, later.log_omega[part])
+    zeta = np.interp(main.level, level, later.log_zeta[part])
+    inside = np.clip(main.level, level[0], level[-1])
+    own_omega = np.interp(inside, main.level, main.log_omega)
+    own_zeta = np.interp(inside, main.level, main.log_zeta)
+    return np.abs(omega - own_omega), np.abs(zeta - own_zeta)

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: MIT
+"""Does a mode depend on its amplitude? A score test, and what it must not be fooled by.
+
+The score test asks whether slope and curvature of ln omega and ln zeta over ln a would
+gain more than white noise allows. It sees a softening of a hundredth of a percent, and
+fires just as well on a neighbour that was left out. So three outcomes: a dependence is
+reported only where it is large enough to matter, the curve explains the residual that
+the linear mode leaves, what is left is nearly white, the finding survives a later
+start, and the levels disagree as well when they are compared without any model.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.stats
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.signal.amplitude.amplitude_curve import Dependence
+from jointbench.signal.amplitude.band_fit import BandFit
+from jointbench.signal.amplitude.curve_basis import slope_basis
+from jointbench.signal.amplitude.curve_fit import (
+    ModeState,
+    curve_slices,
+    fit_jointly,
+)
+from jointbench.signal.amplitude.curve_of_fit import LevelCurve, known_part
+
+CHANCE = 0.01
+"""A linear mode in white noise is taken for a dependent one this often."""
+# Changes that matter: of frequency in halves of the half-power width, of damping.
+_FREQUENCY_EFFECT, _DAMPING_EFFECT = 0.1, 0.05
+# Share of the linear fit's excess that the curve must remove, where there is excess.
+_EXPLAINED, _EXCESS = 0.8, 1.1
+LARGEST_MISFIT = 2.0
+"""Rms residual over noise above which a residual is not white."""
+# A change must stand this many standard uncertainties from none.
+_CLEAR = 3.0
+# A later start may change the change by this share of it.
+_KEPT = 0.5
+# Ends of the curve between which the change is taken, as shares of its points: the
+# pair whose differences stand out most.
+_SOFT_ENDS, _HARD_ENDS = (0.05, 0.5), (0.75, 0.97)
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """What changes from soft to hard.
+
+    Attributes:
+        frequency: over the frequency [-].
+        frequency_sd: its standard uncertainty [-].
+        damping: of the damping ratio [-].
+        damping_sd: its standard uncertainty [-].
+        zeta: damping ratio at the soft end [-].
+        levels: L of both ends.
+    """
+
+    frequency: float
+    frequency_sd: float
+    damping: float
+    damping_sd: float
+    zeta: float
+    levels: tuple[float, float]
+
+    @property
+    def matters(self) -> bool:
+        """True where the change is clear and more than a tenth of a bandwidth."""
+        large = abs(self.frequency) > _FREQUENCY_EFFECT * self.zeta
+        other = abs(self.damping) > _DAMPING_EFFECT * self.zeta
+        clear = abs(self.frequency) > _CLEAR * self.frequency_sd
+        other_clear = abs(self.damping) > _CLEAR * self.damping_sd
+        return (large and clear) or (other and other_clear)
+
+
+@dataclass(frozen=True, slots=True)
+class DependenceEvidence:
+    """What the outcome rests on.
+
+    Attributes:
+        chance: of the score test [-].
+        explained: share of the excess residual that the curves remove [-].
+        linear_misfit: rms residual over noise without dependence [-].
+        misfit: the same with it [-].
+        change: from soft to hard, None where no curve is known.
+        later: the same with a later start.
+        levels: chance that the levels differ as much in a linear structure, compared
+            without a model of the decay; None where that could not be asked.
+        levels_words: why it could not, or empty.
+    """
+
+    chance: float
+    explained: float
+    linear_misfit: float
+    misfit: float
+    change: Change | None
+    later: Change | None
+    levels: float | None
+    levels_words: str
+
+
+def score_chance(fit: BandFit, number: int) -> float:
+    """Return the chance that a linear mode in white noise shows as much [-].
+
+    Args:
+        fit: of the band.
+        number: of the mode.
+    """
+    modes = tuple(
+        _bent(mode) if i == number else mode for i, mode in enumerate(fit.linear.modes)
+    )
+    bent = fit_jointly(fit.lines, modes, fit.power, steps=0)
+    first = curve_slices(modes)[number].start
+    # Constant, slope, curvature of ln omega, then of ln zeta.
+    asked = first + np.array([1, 2, 4, 5])
+    step = (bent.covariance @ bent.gradient)[asked]
+    information = np.linalg.inv(bent.covariance[np.ix_(asked, asked)])
+    return float(scipy.stats.chi2.sf(step @ information @ step, asked.size))
+
+
+def _bent(mode: ModeState) -> ModeState:
+    basis = slope_basis(float(mode.basis.grid[0]), mode.basis.low, mode.basis.high)
+    none = np.zeros(2)
+    return replace(
+        mode,
+        basis=basis,
+        log_omega=np.append(mode.log_omega, none),
+        log_zeta=np.append(mode.log_zeta, none),
+    )
+
+
+def change_of(
+    curve: LevelCurve, levels: tuple[float, float] | None = None
+) -> Change | None:
+    """Return what changes between two levels, or along the curve.
+
+    Args:
+        curve: of the mode.
+        levels: L of both ends; None for almost the whole curve.
+    """
+    part = known_part(curve)
+    if part.stop - part.start < 3:
+        return None
+    if levels is None:
+        soft, hard = _clearest(curve, part)
+    else:
+        ends = [int(np.argmin(np.abs(curve.level - level))) for level in levels]
+        soft, hard = (min(max(end, part.start), part.stop - 1) for end in ends)
+    log_zeta, zeta = curve.log_zeta, np.exp(curve.log_zeta)
+    return Change(
+        frequency=float(curve.log_omega[hard] - curve.log_omega[soft]),
+        frequency_sd=_difference_sd(curve.omega_covariance, soft, hard),
+        damping=float(zeta[hard] - zeta[soft]),
+        damping_sd=float(np.exp(log_zeta[soft]))
+        * _difference_sd(curve.zeta_covariance, soft, hard),
+        zeta=float(zeta[soft]),
+        levels=(float(curve.level[soft]), float(curve.level[hard])),
+    )
+
+
+def _clearest(curve: LevelCurve, part: slice) -> tuple[int, int]:
+    """Return the soft and the hard end whose differences stand out most."""
+    last = part.stop - part.start - 1
+    softs, hards = (
+        range(part.start + round(low * last), part.start + round(high * last) + 1)
+        for low, high in (_SOFT_ENDS, _HARD_ENDS)
+    )
+
+    def stands_out(pair: tuple[int, int]) -> float:
+        soft, hard = pair
+        turn = (curve.log_omega[hard] - curve.log_omega[soft]) / _difference_sd(
+            curve.omega_covariance, soft, hard
+        )
+        fall = (curve.log_zeta[hard] - curve.log_zeta[soft]) / _difference_sd(
+            curve.zeta_covariance, soft, hard
+        )
+        return float(turn**2 + fall**2)
+
+    pairs = [(soft, hard) for soft in softs for hard in hards]
+    return max(pairs, key=stands_out)
+
+
+def _difference_sd(covariance: FloatArray, one: int, other: int) -> float:
+    variance = (
+        covariance[one, one] + covariance[other, other] - 2.0 * covariance[one, other]
+    )
+    return float(np.sqrt(max(variance, 1e-30)))
+
+
+def decide(found: DependenceEvidence) -> tuple[Dependence, str]:
+    """Return the outcome and its reason."""
+    change = found.change
+    if change is None:
+        if found.misfit > LARGEST_MISFIT:
+            return Dependence.NOT_DECIDED, _not_white(found)
+        return Dependence.NOT_DECIDED, "the decays do not stand out of the noise"
+    if found.chance > CHANCE:
+        return Dependence.NONE, (
+            f"slopes over amplitude are those of noise (chance {found.chance:.2g})"
+        )
+    if not change.matters:
+        if found.misfit > LARGEST_MISFIT:
+            return Dependence.NOT_DECIDED, _not_white(found)
+        return Dependence.NONE, (
+            f"frequency changes by {100 * change.frequency:+.2g} %, damping by "
+            f"{100 * change.damping / change.zeta:+.2g} %: less than a tenth of half "
+            "the half-power width and 5 %, or not clear of its uncertainty"
+        )
+    for doubt in _doubts(found, change):
+        return Dependence.NOT_DECIDED, doubt
+    return Dependence.DEPENDS, (
+        f"score test {found.chance:.2g}, levels {found.levels:.2g}; the curve removes "
+        f"{100 * found.explained:.0f} % of the excess residual"
+    )
+
+
+def _doubts(found: DependenceEvidence, change: Change) -> tuple[str, ...]:
+    """Return what speaks against a dependence that the score test reports."""
+    words = []
+    if found.misfit >= LARGEST_MISFIT:
+        words.append(_not_white(found))
+    if found.linear_misfit > _EXCESS and found.explained < _EXPLAINED:
+        words.append(
+            f"residual not white: curves remove {100 * found.explained:.0f} % of the "
+            f"excess only (least {100 * _EXPLAINED:.0f} %); a neighbour may be missing"
+        )
+    if found.later is None or not _same(change, found.later):
+        words.append("the change does not stay when the decays start later")
+    if found.levels is None:
+        words.append(found.levels_words)
+    elif found.levels > CHANCE:
+        words.append(
+            "hard and soft hits give the same FRF around the mode (chance "
+            f"{found.levels:.2g}); what changes along a decay is no amplitude"
+        )
+    return tuple(words)
+
+
+def _not_white(found: DependenceEvidence) -> str:
+    return (
+        f"residual not white: {found.misfit:.2g} times the noise with curves (limit "
+        f"{LARGEST_MISFIT:g}); modes are missing or not resolved"
+    )
+
+
+def _same(change: Change, later: Change) -> bool:
+    """Return whether a change found from a later start is the same one."""
+    gap = abs(change.frequency - later.frequency)
+    room = _CLEAR * float(np.hypot(change.frequency_sd, later.frequency_sd))
+    by_frequency = gap <= max(_KEPT * abs(change.frequency), room)
+    gap = abs(change.damping - later.damping)
+    room = _CLEAR * float(np.hypot(change.damping_sd, later.damping_sd))
+    by_damping = gap <= max(_KEPT * abs(change.damping), room)
+    return bool(by_frequency and by_damping)
