@@ -14,7 +14,7 @@ from jointbench.simulators.serial_instruments.dialogue import (
     DiaviteSimulator,
     wave_counts,
 )
-from jointbench.simulators.serial_instruments.simulator import SerialSimulator
+from jointbench.simulators.serial_instruments.serial_simulator import SerialSimulator
 from jointbench.station.sources.read_profile import ProfileRequest, run_profile
 
 

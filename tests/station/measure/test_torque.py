@@ -14,7 +14,7 @@ from jointbench.simulators.serial_instruments.dialogue import (
     Mark10Simulator,
     WrenchSimulator,
 )
-from jointbench.simulators.serial_instruments.simulator import SerialSimulator
+from jointbench.simulators.serial_instruments.serial_simulator import SerialSimulator
 from jointbench.station.measure.bench_session import Measured, run_measure
 from jointbench.station.measure.bolt_torques import PeakHold
 from jointbench.station.measure.plan import read_plan
