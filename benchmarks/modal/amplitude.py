@@ -6,7 +6,7 @@ Usage: OMP_NUM_THREADS=1 python benchmarks/modal/amplitude.py --log LOG.jsonl
     [--page docs/modal-amplitude-coverage.md]
 
 The four parts (or those named) take turns until the time is up; each draw is one line
-of the log, and a later run goes on where the log ends. Part and seed define a draw.
+of the log, and a later run continues where the log ends. Part and seed define a draw.
 """
 
 import argparse
@@ -96,7 +96,7 @@ def _scores(case: Case, mode: AmplitudeMode) -> Row:
         ),
         "f_ppm": float(1e6 * np.sqrt(np.mean((curve.frequency / f - 1) ** 2))),
         "z_percent": float(100 * np.median(np.abs(curve.damping_ratio / z - 1))),
-        "misfit": mode.misfit,
+        "residual_ratio": mode.residual_ratio,
         "exponent": mode.laws[0].exponent if mode.laws else None,
         "law_found": mode.laws[0].name if mode.laws else None,
         "peers": _peers(case, mode, mass, truth.at),

@@ -111,8 +111,8 @@ class AmplitudeMode:
         curve: f(a) and zeta(a); None where the fit does not carry one.
         soft: the limit at small amplitude.
         significance: chance that a linear mode shows as much in white noise [-].
-        misfit: rms residual over noise with the curve [-].
-        linear_misfit: the same without dependence on amplitude [-].
+        residual_ratio: rms residual over noise with the curve [-].
+        linear_residual_ratio: the same without dependence on amplitude [-].
         frequency_change: from soft to hard, over the frequency [-].
         frequency_change_sd: its standard uncertainty [-].
         damping_change: of the damping ratio from soft to hard [-].
@@ -127,8 +127,8 @@ class AmplitudeMode:
     curve: AmplitudeCurve | None
     soft: SoftLimit
     significance: float
-    misfit: float
-    linear_misfit: float
+    residual_ratio: float
+    linear_residual_ratio: float
     frequency_change: float = 0.0
     frequency_change_sd: float = 0.0
     damping_change: float = 0.0

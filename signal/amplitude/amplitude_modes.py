@@ -57,9 +57,9 @@ from jointbench.signal.modal.modal_model import ModalModel
 # A finding must stay when the decays start later by this [s], or by this share of the
 # mode's time constant where that is less.
 _DELAY, _DELAY_SHARE = 0.05, 0.7
-# Beyond this misfit no curve is given.
+# Above this residual ratio no curve is given.
 _NO_CURVE = 3.0
-# A misfit above this is looked at again from a later start: other modes die out.
+# Above this residual ratio the fit is repeated from a later start.
 _UNEASY = 2.0
 # Fewer curves may leave this much more power than all of them.
 _FEWER = 2.0
@@ -164,7 +164,10 @@ def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> _Fitte
     if decays.samples.shape[2] < _LEAST_DELAYS * delay * decays.sample_rate:
         return _Fitted(main, None, members)
     later = fit_band(decays.later(delay), band)
-    if main.curved.misfit > _UNEASY and later.curved.misfit < main.curved.misfit:
+    if (
+        main.curved.residual_ratio > _UNEASY
+        and later.curved.residual_ratio < main.curved.residual_ratio
+    ):
         return _Fitted(later, fit_band(decays.later(2 * delay), band), members)
     return _Fitted(main, later, members)
 
@@ -187,8 +190,8 @@ def _judged(
         DependenceEvidence(
             chance=chance,
             explained=main.share_explained,
-            linear_misfit=main.linear.misfit,
-            misfit=main.curved.misfit,
+            linear_residual_ratio=main.linear.residual_ratio,
+            residual_ratio=main.curved.residual_ratio,
             change=change,
             later=_later_change(curve, after, change),
             levels=levels[0],
@@ -198,7 +201,7 @@ def _judged(
     nothing = np.zeros(curve.level.size)
     shift = (nothing, nothing) if after is None else shift_between(curve, after)
     shown = amplitude_curve(curve, decays, shift)
-    if main.curved.misfit > _NO_CURVE:
+    if main.curved.residual_ratio > _NO_CURVE:
         shown = None
     depends = outcome is Dependence.DEPENDS and shown is not None
     family, ratio = family_of(change) if depends and change else ("", float("nan"))
@@ -217,8 +220,8 @@ def _judged(
         curve=shown,
         soft=soft,
         significance=chance,
-        misfit=main.curved.misfit,
-        linear_misfit=main.linear.misfit,
+        residual_ratio=main.curved.residual_ratio,
+        linear_residual_ratio=main.linear.residual_ratio,
         frequency_change=change.frequency if change else 0.0,
         frequency_change_sd=change.frequency_sd if change else 0.0,
         damping_change=change.damping if change else 0.0,
@@ -298,7 +301,7 @@ def _plain(
         curve=None,
         soft=_linear_limit(model, (member,)),
         significance=unknown,
-        misfit=unknown,
-        linear_misfit=unknown,
+        residual_ratio=unknown,
+        linear_residual_ratio=unknown,
         replaces=(float(model.natural_frequency[member]),),
     )

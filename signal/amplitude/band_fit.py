@@ -115,7 +115,7 @@ def _curves(lines: BandLines, linear: JointFit, pitch: float, power: int) -> Joi
     fit = fit_jointly(lines, start, power)
     if fit.chi2 <= linear.chi2:
         return fit
-    # The ridges led astray: start from the straight lines of the linear fit.
+    # The ridges diverged: start from the straight lines of the linear fit.
     flat = curved_modes(lines, linear, every, pitch, power, ridges=False)
     again = fit_jointly(lines, flat, power)
     return min((fit, again), key=lambda one: one.chi2)

@@ -123,7 +123,7 @@ def _lines(
 def _tail_noise(decays: RingDowns, size: int, band: tuple[float, float]) -> FloatArray:
     """Return the sd of real and imaginary part of a line, one a channel.
 
-    From what follows the decay where the record goes on, else from its last quarter;
+    From what follows the decay where the record continues, else from its last quarter;
     that of the quietest hits, since a decay may not be over.
     """
     available = decays.samples.shape[2]

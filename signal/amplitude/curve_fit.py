@@ -79,7 +79,7 @@ class JointFit:
     freedom: float
 
     @property
-    def misfit(self) -> float:
+    def residual_ratio(self) -> float:
         """Rms residual over the noise of the tails [-]."""
         return float(np.sqrt(self.chi2 / max(self.freedom, 1.0)))
 
@@ -126,10 +126,10 @@ def fit_jointly(
     if not np.isfinite(now.chi2):
         raise np.linalg.LinAlgError("the fit cannot start: its signals overflow")
     for _ in range(steps):
-        penalty, pull = _penalty(state, now.gradient.size)
+        penalty, prior_gradient = _penalty(state, now.gradient.size)
         cost = now.chi2 + _penalty_cost(state)
         new, ahead, damping = _step(
-            lines, state, power, now, (penalty, pull, cost), damping
+            lines, state, power, now, (penalty, prior_gradient, cost), damping
         )
         if ahead is None:
             break
@@ -151,11 +151,11 @@ def _step(
     damping: float,
 ) -> tuple[tuple[ModeState, ...], _Linear | None, float]:
     """Try steps with more and more damping until one gains."""
-    penalty, pull, cost = prior
+    penalty, prior_gradient, cost = prior
     matrix = now.normal + penalty
     while damping < _MOST_DAMPING:
         damped = matrix + damping * np.diag(np.diag(now.normal) + 1e-12)
-        step = _solve(damped, now.gradient - pull)
+        step = _solve(damped, now.gradient - prior_gradient)
         new = _moved(state, step)
         if new is not None:
             ahead = _linearise(lines, new, power)
@@ -287,7 +287,7 @@ def _mode_moved(mode: ModeState, own: Sequence[FloatArray]) -> ModeState:
 
 def _penalty(modes: Sequence[ModeState], total: int) -> tuple[FloatArray, FloatArray]:
     """Return the penalty matrix and its gradient at the modes."""
-    matrix, pull = np.zeros((total, total)), np.zeros(total)
+    matrix, prior_gradient = np.zeros((total, total)), np.zeros(total)
     for mode, own in zip(modes, curve_slices(modes), strict=True):
         middle = own.start + mode.basis.size
         for where, weight, value in (
@@ -295,8 +295,8 @@ def _penalty(modes: Sequence[ModeState], total: int) -> tuple[FloatArray, FloatA
             (slice(middle, own.stop), mode.weights[1], mode.log_zeta),
         ):
             matrix[where, where] += weight * mode.basis.penalty
-            pull[where] += weight * mode.basis.penalty @ value
-    return matrix, pull
+            prior_gradient[where] += weight * mode.basis.penalty @ value
+    return matrix, prior_gradient
 
 
 def _penalty_cost(modes: Sequence[ModeState]) -> float:

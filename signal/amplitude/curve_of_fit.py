@@ -29,7 +29,7 @@ class LevelCurve:
         level: ln of the amplitude at the largest channel, shape (n,).
         log_omega: shape (n,).
         log_zeta: shape (n,).
-        omega_covariance: misfit taken in, without floor, shape (n, n).
+        omega_covariance: residual_ratio taken in, without floor, shape (n, n).
         zeta_covariance: likewise, shape (n, n).
         cross_covariance: of ln omega with ln zeta, likewise, shape (n, n).
         channel: index of the largest channel.
@@ -62,7 +62,7 @@ def level_curve(fit: BandFit, number: int, points: int = _POINTS) -> LevelCurve:
     basis, own = mode.basis, curve_slices(fit.curved.modes)[number]
     level = np.linspace(basis.low, basis.high, points)
     values = basis.at(level)
-    inflation = max(1.0, fit.curved.misfit) ** 2
+    inflation = max(1.0, fit.curved.residual_ratio) ** 2
     covariance = fit.curved.covariance[own, own] * inflation
     size = basis.size
     physical = np.abs(fit.lines.mixing @ mode.shape)

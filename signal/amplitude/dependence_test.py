@@ -31,7 +31,7 @@ CHANCE = 0.01
 _FREQUENCY_EFFECT, _DAMPING_EFFECT = 0.1, 0.05
 # Share of the linear fit's excess that the curve must remove, where there is excess.
 _EXPLAINED, _EXCESS = 0.8, 1.1
-LARGEST_MISFIT = 2.0
+LARGEST_RESIDUAL_RATIO = 2.0
 """Rms residual over noise above which a residual is not white."""
 # A change must stand this many standard uncertainties from none.
 _CLEAR = 3.0
@@ -79,8 +79,8 @@ class DependenceEvidence:
     Attributes:
         chance: of the score test [-].
         explained: share of the excess residual that the curves remove [-].
-        linear_misfit: rms residual over noise without dependence [-].
-        misfit: the same with it [-].
+        linear_residual_ratio: rms residual over noise without dependence [-].
+        residual_ratio: the same with it [-].
         change: from soft to hard, None where no curve is known.
         later: the same with a later start.
         levels: chance that the levels differ as much in a linear structure, compared
@@ -90,8 +90,8 @@ class DependenceEvidence:
 
     chance: float
     explained: float
-    linear_misfit: float
-    misfit: float
+    linear_residual_ratio: float
+    residual_ratio: float
     change: Change | None
     later: Change | None
     levels: float | None
@@ -190,7 +190,7 @@ def decide(found: DependenceEvidence) -> tuple[Dependence, str]:
     """Return the outcome and its reason."""
     change = found.change
     if change is None:
-        if found.misfit > LARGEST_MISFIT:
+        if found.residual_ratio > LARGEST_RESIDUAL_RATIO:
             return Dependence.NOT_DECIDED, _not_white(found)
         return Dependence.NOT_DECIDED, "the decays do not stand out of the noise"
     if found.chance > CHANCE:
@@ -198,7 +198,7 @@ def decide(found: DependenceEvidence) -> tuple[Dependence, str]:
             f"slopes over amplitude are those of noise (chance {found.chance:.2g})"
         )
     if not change.matters:
-        if found.misfit > LARGEST_MISFIT:
+        if found.residual_ratio > LARGEST_RESIDUAL_RATIO:
             return Dependence.NOT_DECIDED, _not_white(found)
         return Dependence.NONE, (
             f"frequency changes by {100 * change.frequency:+.2g} %, damping by "
@@ -216,9 +216,9 @@ def decide(found: DependenceEvidence) -> tuple[Dependence, str]:
 def _doubts(found: DependenceEvidence, change: Change) -> tuple[str, ...]:
     """Return what speaks against a dependence that the score test reports."""
     words = []
-    if found.misfit >= LARGEST_MISFIT:
+    if found.residual_ratio >= LARGEST_RESIDUAL_RATIO:
         words.append(_not_white(found))
-    if found.linear_misfit > _EXCESS and found.explained < _EXPLAINED:
+    if found.linear_residual_ratio > _EXCESS and found.explained < _EXPLAINED:
         words.append(
             f"residual not white: curves remove {100 * found.explained:.0f} % of the "
             f"excess only (least {100 * _EXPLAINED:.0f} %); a neighbour may be missing"
@@ -237,8 +237,8 @@ def _doubts(found: DependenceEvidence, change: Change) -> tuple[str, ...]:
 
 def _not_white(found: DependenceEvidence) -> str:
     return (
-        f"residual not white: {found.misfit:.2g} times the noise with curves (limit "
-        f"{LARGEST_MISFIT:g}); modes are missing or not resolved"
+        f"residual not white: {found.residual_ratio:.2g} times the noise with curves "
+        f"(limit {LARGEST_RESIDUAL_RATIO:g}); modes are missing or not resolved"
     )
 
 

@@ -2,7 +2,7 @@
 """Which poles of a linear fit may be one mode, and the band in which to find out.
 
 A mode that softens with amplitude is more than one pole to a linear estimator: a narrow
-one from the tails, broader ones below it from the loud starts.
+one from the tails, broader ones below it from the large-amplitude starts.
 """
 
 from dataclasses import dataclass, replace
@@ -127,8 +127,8 @@ def without_companions(model: ModalModel, group: ModeGroup) -> ModeGroup:
     """Leave out the poles that only patch up a stronger one which is not linear.
 
     A companion overlaps the strongest pole, is broader and weaker, and has its shape.
-    A real neighbour of that kind cannot be told from it; so this is asked only where
-    hard and soft hits disagree.
+    A real neighbour of that kind cannot be distinguished from it; so this is tested
+    only where hard and soft hits disagree.
 
     Args:
         model: of the linear fit.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The modal model that is handed on: one mode a curve, at its small-amplitude limit."""
+"""The modal model after merging: one mode per curve, at its small-amplitude limit."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ _PER_MODE = (
     "shapes_sd",
     "participation",
     "significance",
-    "misfit",
+    "residual_ratio",
     "stable_orders",
     "by_hand",
 )

@@ -26,7 +26,7 @@ _WIDEST = 15.0
 # Time over which a ridge's slope is taken, in time constants of the mode.
 _RIDGE_WINDOW = 0.35
 # A first curve keeps this close to the linear fit: ln omega, ln zeta.
-_ASTRAY = (0.1, 1.5)
+_DIVERGED = (0.1, 1.5)
 # A ridge is read where it stands this far above the noise.
 _RIDGE_SNR = 5.0
 # Smoothness of the first curves.
@@ -212,7 +212,7 @@ def _smooth(
     right = (values * share[:, None]).T @ (value - constant)
     curve = constant + np.linalg.solve(matrix, right)
     return np.asarray(
-        np.clip(curve, constant - _ASTRAY[which], constant + _ASTRAY[which])
+        np.clip(curve, constant - _DIVERGED[which], constant + _DIVERGED[which])
     )
 
 

@@ -71,8 +71,8 @@ def _mode_json(mode: AmplitudeMode) -> dict[str, object]:
         "frequency_change_sd": mode.frequency_change_sd,
         "damping_change": mode.damping_change,
         "chance": _number(mode.significance),
-        "misfit": _number(mode.misfit),
-        "linear_misfit": _number(mode.linear_misfit),
+        "residual_ratio": _number(mode.residual_ratio),
+        "linear_residual_ratio": _number(mode.linear_residual_ratio),
         "family": mode.family,
         "damping_over_softening": _number(mode.ratio),
         "laws": [

@@ -121,19 +121,19 @@ def _joint_force(u, v, spring, force, state, cubic, quadratic, gap, stop):  # ty
     elif u < -gap:
         total += stop * (u + gap)
     for j in range(spring.size):
-        pull = spring[j] * (u - state[j])
-        if pull > force[j]:
-            pull = force[j]
-            state[j] = u - pull / spring[j]
-        elif pull < -force[j]:
-            pull = -force[j]
-            state[j] = u - pull / spring[j]
-        total += pull
+        spring_force = spring[j] * (u - state[j])
+        if spring_force > force[j]:
+            spring_force = force[j]
+            state[j] = u - spring_force / spring[j]
+        elif spring_force < -force[j]:
+            spring_force = -force[j]
+            state[j] = u - spring_force / spring[j]
+        total += spring_force
     return total
 
 
 @njit(cache=False)
-def _march(  # type: ignore[no-untyped-def]
+def _integrate(  # type: ignore[no-untyped-def]
     mass,
     stiffness,
     damping,
@@ -209,7 +209,7 @@ def strike(
     inside = (time >= 0) & (time < width)
     push = np.where(inside, np.sin(np.pi * time / width) ** 2, 0.0)
     push *= impulse * FINE_RATE / push.sum()
-    samples = _march(
+    samples = _integrate(
         structure.mass,
         structure.stiffness,
         structure.damping,

@@ -159,7 +159,7 @@ def test_a_linear_structure_does_not_depend() -> None:
 
 
 def test_hits_of_one_level_decide_nothing() -> None:
-    """What changes along a decay may be a neighbour: without levels nobody knows."""
+    """A change along a decay may be a neighbour: levels are needed to decide."""
     structure, _ = slipping()
     _, found = resolved(struck(structure, np.ones(4), 60.0))
     assert all(mode.dependence is Dependence.NOT_DECIDED for mode in found)

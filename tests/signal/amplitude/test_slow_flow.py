@@ -48,9 +48,9 @@ def test_derivatives_are_those_of_differences() -> None:
     for number, size in enumerate(sizes):
         step = np.zeros(at.size)
         step[number] = size
-        ahead, behind = (
+        after, before = (
             signal(basis, (at + s)[:-2], *(at + s)[-2:])[0] for s in (step, -step)
         )
-        slope = (ahead - behind) / (2.0 * size)
+        slope = (after - before) / (2.0 * size)
         scale = np.abs(change[:, number]).max() + 1e-9
         assert np.abs(slope - change[:, number]).max() < 0.02 * scale
