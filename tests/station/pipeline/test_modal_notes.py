@@ -114,7 +114,7 @@ def test_levels_that_disagree_are_reported(
 def test_one_hit_says_that_its_level_is_compared_with_nothing(tmp_path: Path) -> None:
     """Neither a plan nor another hit."""
     found = modal(files(tmp_path, levels=(100.0,)), tmp_path)
-    assert "one hit alone" in found["warnings"][0]
+    assert "single hit" in found["warnings"][0]
     assert not found["linearity"]["checked"]
 
 
