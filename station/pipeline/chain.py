@@ -171,6 +171,23 @@ def modal_chain(
     return filled[0] if filled else whole
 
 
+def frf_chain(frf: Frf, settings: ChainSettings, run: StageRun) -> ModalChain:
+    """Find the modes of FRFs that come from files; there are no hits to judge.
+
+    Args:
+        frf: from `frf_of_functions`.
+        settings: of the chain; those of hits, windows and Kalman stage do not count.
+        run: store of the stages.
+
+    Raises:
+        NoModeFound: there is none; the message gives possible causes.
+    """
+    run.stages.keys["frf"] = run.stages.digest(frf)
+    with one_thread():
+        result = _modes_stage(frf, settings, run, "")
+    return ModalChain((), frf, result, result.model.provenance)
+
+
 def hits_stage(
     recordings: Sequence[Recording],
     criteria: HitCriteria,
