@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Spectra of hammer hits on one common block, and which hits serve which FRF."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,21 +82,74 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
         SamplingError: the sample rates differ.
         ChannelMissing: no response, or responses of different quantities or numbers.
     """
-    chosen = [(r, hit) for r in recordings for hit in accepted_hits(r)]
+    plan = plan_spectra(recordings)
+    lines = plan.frequency.size
+    rows = len(plan.labels[0])
+    force = np.empty((len(plan.chosen), lines), complex)
+    response = np.empty((len(plan.chosen), rows, lines), complex)
+    for number, (recording, hit) in enumerate(plan.chosen):
+        one, other = windowed_hit(recording, hit, window, plan.block)
+        force[number] = scipy.fft.rfft(one) / plan.rate
+        response[number] = scipy.fft.rfft(other, overwrite_x=True) / plan.rate
+    return HitSpectra(
+        frequency=plan.frequency,
+        force=force,
+        response=response,
+        labels=plan.labels,
+        points=tuple(hit.point for _, hit in plan.chosen),
+        quantity=plan.quantity,
+        block=plan.block,
+        block_reason=plan.block_reason,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpectraPlan:
+    """Which hits are transformed, and on which block.
+
+    Attributes:
+        chosen: accepted hits with their recordings.
+        labels: for each hit, the label of each of its responses.
+        rate: sample rate [Hz].
+        frequency: of the lines [Hz], shape (n_lines,).
+        quantity: what all responses measure.
+        block: samples of the common block.
+        block_reason: how it was chosen.
+    """
+
+    chosen: tuple[tuple[Recording, Hit], ...]
+    labels: tuple[tuple[str, ...], ...]
+    rate: float
+    frequency: FloatArray
+    quantity: Quantity
+    block: int
+    block_reason: str
+
+
+def plan_spectra(recordings: Sequence[Recording]) -> SpectraPlan:
+    """Choose the hits of recordings and their common block; nothing is transformed.
+
+    Args:
+        recordings: with hits found.
+
+    Raises:
+        NoHitFound: no hit was accepted.
+        SamplingError: the sample rates differ.
+        ChannelMissing: no response, or responses of different quantities or numbers.
+    """
+    chosen = tuple((r, hit) for r in recordings for hit in accepted_hits(r))
     if not chosen:
         raise NoHitFound(_why_none(recordings))
     rate = _common_rate(recordings)
     block, reason = choose_block([hit.stop - hit.start for _, hit in chosen])
-    windowed = [windowed_hit(r, hit, window, block) for r, hit in chosen]
-    responses = _same_number([w[1] for w in windowed])
-    channels = [c for r in recordings for c in r.channels]
-    return HitSpectra(
+    labels = tuple(_labels(r) for r, _ in chosen)
+    _require_same_number(labels)
+    return SpectraPlan(
+        chosen=chosen,
+        labels=labels,
+        rate=rate,
         frequency=scipy.fft.rfftfreq(block, 1.0 / rate),
-        force=scipy.fft.rfft([w[0] for w in windowed], block) / rate,
-        response=scipy.fft.rfft(responses, block) / rate,
-        labels=tuple(_labels(r) for r, _ in chosen),
-        points=tuple(hit.point for _, hit in chosen),
-        quantity=common_response(channels),
+        quantity=common_response([c for r in recordings for c in r.channels]),
         block=block,
         block_reason=reason,
     )
@@ -173,12 +226,28 @@ def _pair(spectra: HitSpectra, output: str, point: str) -> Pair:
         if struck == point and output in labels
     ]
     if not hits:
-        raise ChannelMissing(
-            f"response {output!r} was never measured with an accepted hit at point "
-            f"{point!r}; leave one of them out or add the missing hits"
-        )
+        raise _never_measured(output, point)
     rows = [spectra.labels[i].index(output) for i in hits]
     return Pair(np.array(hits), np.array(rows))
+
+
+def require_pairs(
+    outputs: Sequence[str],
+    inputs: Sequence[str],
+    measured: Container[tuple[str, str]],
+) -> None:
+    """Raise `ChannelMissing` where a pair was never measured together."""
+    for output in outputs:
+        for point in inputs:
+            if (output, point) not in measured:
+                raise _never_measured(output, point)
+
+
+def _never_measured(output: str, point: str) -> ChannelMissing:
+    return ChannelMissing(
+        f"response {output!r} was never measured with an accepted hit at point "
+        f"{point!r}; leave one of them out or add the missing hits"
+    )
 
 
 def windowed_hit(
@@ -216,15 +285,14 @@ def _label(channel: Channel) -> str:
     return f"{channel.name}@{channel.point}"
 
 
-def _same_number(responses: Sequence[FloatArray]) -> FloatArray:
-    """Return the responses as one array, shape (n_hits, n_responses, n)."""
-    numbers = {r.shape[0] for r in responses}
+def _require_same_number(labels: Sequence[Sequence[str]]) -> None:
+    """Raise `ChannelMissing` where hits have different numbers of responses."""
+    numbers = {len(row) for row in labels}
     if len(numbers) != 1:
         raise ChannelMissing(
             f"the recordings have {sorted(numbers)} response channels; "
             "give recordings with equally many"
         )
-    return np.array(responses)
 
 
 def _common_rate(recordings: Sequence[Recording]) -> float:
