@@ -26,7 +26,7 @@ from jointbench.signal.frf.spectral_sums import (
 )
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import accepted_hits, find_hits
-from jointbench.signal.hits.hit_spectra import HitSpectra, require_alive
+from jointbench.signal.hits.hit_spectra import ForcesOfHits, HitSpectra, require_alive
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 
@@ -228,7 +228,7 @@ def _average(
     )
 
 
-def excited_band(spectra: HitSpectra) -> tuple[float, float]:
+def excited_band(spectra: ForcesOfHits) -> tuple[float, float]:
     """Return where the hammer put force in: within 20 dB of its low end, unaliased.
 
     Args:

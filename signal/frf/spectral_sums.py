@@ -49,8 +49,8 @@ class PairSums:
     @classmethod
     def empty(cls, lines: int) -> "PairSums":
         """Return the sums of no hit."""
-        powers = (np.zeros(lines) for _ in range(3))
-        return cls(np.zeros(lines, complex), *powers)
+        force, response, scatter = np.zeros((3, lines))
+        return cls(np.zeros(lines, complex), force, response, scatter)
 
     def add(
         self, force: ComplexArray, power: FloatArray, response: ComplexArray

@@ -3,6 +3,7 @@
 
 from collections.abc import Container, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 import scipy.fft
@@ -52,6 +53,10 @@ class HitSpectra:
     quantity: Quantity
     block: int
     block_reason: str
+
+    def responses(self, pair: "Pair") -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
+        return np.asarray(self.response[pair.hits, pair.rows])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -155,6 +160,74 @@ def plan_spectra(recordings: Sequence[Recording]) -> SpectraPlan:
     )
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class HitForces:
+    """Force spectra of all accepted hits; responses are transformed when asked for.
+
+    Attributes:
+        frequency: [Hz], shape (n_lines,).
+        force: [N s], shape (n_hits, n_lines).
+        labels: for each hit, the label of each of its responses.
+        points: for each hit, where the hammer struck.
+        plan: hits and block.
+        window: applied to every hit alike.
+    """
+
+    frequency: FloatArray
+    force: ComplexArray
+    labels: tuple[tuple[str, ...], ...]
+    points: tuple[str, ...]
+    plan: SpectraPlan
+    window: HammerWindow
+
+    def responses(self, pair: Pair) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
+        found = np.empty((pair.hits.size, self.frequency.size), complex)
+        for place, (number, row) in enumerate(zip(pair.hits, pair.rows, strict=True)):
+            recording, hit = self.plan.chosen[number]
+            rows = response_rows(recording)[row : row + 1]
+            _, one = windowed_hit(recording, hit, self.window, self.plan.block, rows)
+            found[place] = scipy.fft.rfft(one[0], overwrite_x=True) / self.plan.rate
+        return found
+
+
+def hit_forces(recordings: Sequence[Recording], window: HammerWindow) -> HitForces:
+    """Transform the force of every accepted hit; see `hit_spectra`.
+
+    The memory is that of one channel in place of all.
+    """
+    plan = plan_spectra(recordings)
+    force = np.empty((len(plan.chosen), plan.frequency.size), complex)
+    for number, (recording, hit) in enumerate(plan.chosen):
+        one, _ = windowed_hit(recording, hit, window, plan.block, ())
+        force[number] = scipy.fft.rfft(one, overwrite_x=True) / plan.rate
+    points = tuple(hit.point for _, hit in plan.chosen)
+    return HitForces(plan.frequency, force, plan.labels, points, plan, window)
+
+
+class ForcesOfHits(Protocol):
+    """What hits with known force spectra have in common."""
+
+    @property
+    def frequency(self) -> FloatArray:
+        """[Hz], shape (n_lines,)."""
+
+    @property
+    def force(self) -> ComplexArray:
+        """[N s], shape (n_hits, n_lines)."""
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """For each hit, the label of each of its responses."""
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """For each hit, where the hammer struck."""
+
+    def responses(self, pair: Pair) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
+
+
 def join_spectra(parts: Sequence[HitSpectra]) -> HitSpectra:
     """Return the spectra of several measurements of the same channels as one.
 
@@ -198,7 +271,7 @@ def require_alive(recording: Recording, hit: Hit) -> None:
 
 
 def pair_up(
-    spectra: HitSpectra,
+    spectra: ForcesOfHits,
 ) -> tuple[tuple[str, ...], tuple[str, ...], tuple[Pair, ...]]:
     """Sort hits into pairs of output and input.
 
@@ -217,7 +290,7 @@ def pair_up(
     )
 
 
-def _pair(spectra: HitSpectra, output: str, point: str) -> Pair:
+def _pair(spectra: ForcesOfHits, output: str, point: str) -> Pair:
     hits = [
         i
         for i, (labels, struck) in enumerate(
@@ -251,7 +324,11 @@ def _never_measured(output: str, point: str) -> ChannelMissing:
 
 
 def windowed_hit(
-    recording: Recording, hit: Hit, window: HammerWindow, block: int
+    recording: Recording,
+    hit: Hit,
+    window: HammerWindow,
+    block: int,
+    rows: Sequence[int] | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Cut a hit out of its recording and window it.
 
@@ -260,6 +337,7 @@ def windowed_hit(
         hit: which.
         window: to apply.
         block: samples wanted; a shorter hit is padded with zeros.
+        rows: of the responses wanted, None for all.
 
     Returns:
         Force, shape (block,), and responses, shape (n_responses, block).
@@ -269,7 +347,7 @@ def windowed_hit(
     force, response = apply_window(
         window,
         samples[recording.row(Quantity.FORCE)],
-        samples[list(response_rows(recording))],
+        samples[list(response_rows(recording) if rows is None else rows)],
         trigger=hit.trigger - hit.start,
         sample_rate=recording.sample_rate,
     )
