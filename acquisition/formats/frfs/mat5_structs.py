@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Structs and arrays of MAT files up to version 7, as plain nested dictionaries.
 
-SciPy unfolds structs by recursion in compiled code, so that a file of a few kilobytes
-nested deep enough would end the process: depth and sizes are looked at before.
+SciPy's reader of structs is not used: on damaged bytes it reads beyond its buffers and
+ends the process. Here every size is compared with the bytes that are there.
 
 Source:
-    MathWorks, MAT-File Format (level 5), "Data Elements" and "Structures".
+    MathWorks, MAT-File Format (level 5), "Data Elements", "Structures", "Cell Arrays".
 """
 
+import math
 import struct
 import zlib
 from collections.abc import Iterator
@@ -15,19 +16,26 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.quoting import named, shown
-from jointbench.acquisition.formats.samples.mat_file import (
-    mat_damage,
-    require_sane_mat,
-)
+from jointbench.acquisition.formats.samples.mat_file import require_sane_mat
 
 _HEADER, _TAG = 128, 8
 _COMPRESSED, _MATRIX = 15, 14
-_CELL, _STRUCT = 1, 2
+_CELL, _STRUCT, _CHAR = 1, 2, 4
+_NUMERIC = range(6, 16)
+_COMPLEX_FLAG = 0x0800
+_KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8"} | {
+    12: "i8",
+    13: "u8",
+}
+_ENCODINGS = {16: "utf-8", 17: "utf-16", 4: "utf-16"}
 _DEEPEST = 12
-_MOST_ELEMENTS = 200_000
+_MOST_BYTES = 512 * 2**20
+_DAMAGE = (struct.error, ValueError, IndexError, KeyError, zlib.error)
+Element = tuple[int, int, int]
 
 
 def read_mat5(path: Path) -> dict[str, Any]:
@@ -38,107 +46,114 @@ def read_mat5(path: Path) -> dict[str, Any]:
 
     Returns:
         Arrays, strings, dictionaries for structs and lists for arrays of structs and
-        cells. Functions and objects are left out.
+        cells. Functions, objects and sparse matrices are left out.
 
     Raises:
         FormatError: it is damaged.
         HostileFile: it is nested deeper, or unfolds further, than any measurement.
     """
-    import scipy.io
-
     require_sane_mat(path)
-    _require_shallow(path)
+    found: dict[str, Any] = {}
     try:
-        content = scipy.io.loadmat(path, appendmat=False)
-        return {
-            name: _plain(value)
-            for name, value in content.items()
-            if not name.startswith("__")
-        }
-    except mat_damage() as error:
+        for body, order in _bodies(path):
+            name, value = _matrix(path, body, (0, len(body)), order, 0)
+            if value is not None:
+                found[name] = value
+    except _DAMAGE as error:
         raise FormatError(
             f"{named(path)} cannot be read as a MAT file ({shown(error)}); save it "
             "again with -v7"
         ) from error
+    return found
 
 
-def _plain(value: Any) -> Any:
-    """Return a value of SciPy's reader without its wrappers."""
-    array = np.asarray(value)
-    if array.dtype.names:
-        structs = [
-            {name: _plain(one[name]) for name in array.dtype.names}
-            for one in array.ravel()
-        ]
-        return structs[0] if len(structs) == 1 else structs
-    if array.dtype.kind == "U":
-        texts = [str(text) for text in array.ravel()]
-        return texts[0] if len(texts) == 1 else texts
-    if array.dtype.kind == "O":
-        items = [_plain(item) for item in array.ravel()]
-        return items[0] if len(items) == 1 else items
-    return array
-
-
-def _require_shallow(path: Path) -> None:
-    """Walk over all elements without recursion; none may be nested too deep."""
+def _bodies(path: Path) -> Iterator[tuple[bytes, str]]:
+    """Yield the bytes of each variable, unpacked, and the order of its bytes."""
     with path.open("rb") as file:
         order = {b"IM": "<", b"MI": ">"}.get(file.read(_HEADER)[126:128])
-        while order is not None and len(tag := file.read(_TAG)) == _TAG:
+        if order is None:
+            raise ValueError("its header names no order of bytes")
+        while len(tag := file.read(_TAG)) == _TAG:
             kind, size = struct.unpack(f"{order}II", tag)
             body = file.read(size)
             if kind == _COMPRESSED:
-                try:
-                    body = zlib.decompressobj().decompress(body)
-                except zlib.error:
-                    continue  # the reader will refuse it
-                kind, size = struct.unpack(f"{order}II", body[:_TAG].ljust(_TAG))
+                body = zlib.decompressobj().decompress(body, _MOST_BYTES)
+                kind, size = struct.unpack(f"{order}II", body[:_TAG])
                 body = body[_TAG : _TAG + size]
             if kind == _MATRIX:
-                _require_shallow_element(path, body, order)
+                yield body, order
 
 
-def _require_shallow_element(path: Path, body: bytes, order: str) -> None:
-    waiting, count = [(0, len(body), 0)], 0
-    while waiting:
-        begin, end, depth = waiting.pop()
-        count += 1
-        if depth > _DEEPEST or count > _MOST_ELEMENTS:
-            raise HostileFile(
-                f"{named(path)} is nested {depth} deep with {count} elements, at most "
-                f"{_DEEPEST} and {_MOST_ELEMENTS} are read; save the FRFs alone"
-            )
-        parts = list(_elements(body, begin, end, order, most=3))
-        kind = body[parts[0][1]] if parts and parts[0][2] > parts[0][1] else 0
-        if kind < 256 and order == ">" and parts and parts[0][2] - parts[0][1] >= 4:
-            kind = body[parts[0][1] + 3]
-        if kind in (_CELL, _STRUCT, 3):
-            after = parts[-1][2] if len(parts) == 3 else end
-            waiting += [
-                (first, last, depth + 1)
-                for number, first, last in _elements(
-                    body, _padded(begin, after), end, order
-                )
-                if number == _MATRIX
-            ]
+def _matrix(
+    path: Path, body: bytes, span: tuple[int, int], order: str, depth: int
+) -> tuple[str, Any]:
+    """Return name and value of a matrix element; None for what is not read."""
+    if depth > _DEEPEST:
+        raise HostileFile(
+            f"{named(path)} is nested more than {_DEEPEST} deep; save the FRFs alone"
+        )
+    if span[0] == span[1]:
+        return "", np.zeros(0)
+    parts = list(_elements(body, span, order))
+    flags = struct.unpack_from(f"{order}I", body, parts[0][1])[0]
+    shape = tuple(_numbers(body, parts[1], order).astype(int).tolist())
+    name = body[parts[2][1] : parts[2][2]].decode("latin-1")
+    kind, count = flags & 0xFF, math.prod(shape)
+    if kind in _NUMERIC:
+        values = _numbers(body, parts[3], order)
+        if flags & _COMPLEX_FLAG:
+            values = values + 1j * _numbers(body, parts[4], order)
+        return name, values.reshape(shape, order="F")
+    if kind == _CHAR:
+        return name, _text(body, parts[3], order)
+    if kind not in (_STRUCT, _CELL):
+        return name, None
+    fields = [""] if kind == _CELL else _fields(body, parts, order)
+    inner = [p for p in parts[3 if kind == _CELL else 5 :] if p[0] == _MATRIX]
+    if count * len(fields) != len(inner):
+        raise ValueError(f"{count} x {len(fields)} values claimed, {len(inner)} there")
+    values = [_matrix(path, body, p[1:], order, depth + 1)[1] for p in inner]
+    if kind == _CELL:
+        return name, values[0] if len(values) == 1 else values
+    width = len(fields)
+    rows = [values[i : i + width] for i in range(0, len(values), width)]
+    structs = [dict(zip(fields, row, strict=True)) for row in rows]
+    return name, structs[0] if len(structs) == 1 else structs
 
 
-def _padded(begin: int, end: int) -> int:
-    return begin + (end - begin + 7) // 8 * 8
+def _fields(body: bytes, parts: list[Element], order: str) -> list[str]:
+    """Return the names of the fields of a struct."""
+    width = int(_numbers(body, parts[3], order)[0])
+    names = body[parts[4][1] : parts[4][2]]
+    if width < 1:
+        raise ValueError("names of fields without length")
+    cut = [names[i : i + width] for i in range(0, len(names), width)]
+    return [one.split(b"\0")[0].decode("latin-1") for one in cut]
 
 
-def _elements(
-    body: bytes, begin: int, end: int, order: str, most: int = _MOST_ELEMENTS
-) -> Iterator[tuple[int, int, int]]:
+def _numbers(body: bytes, part: Element, order: str) -> NDArray[Any]:
+    kind, first, last = part
+    number = np.dtype(order + _KINDS[kind])
+    return np.frombuffer(body[first:last], number).astype(np.float64)
+
+
+def _text(body: bytes, part: Element, order: str) -> str:
+    kind, first, last = part
+    encoding = _ENCODINGS.get(kind, "latin-1")
+    if encoding == "utf-16":
+        encoding += "-le" if order == "<" else "-be"
+    return body[first:last].decode(encoding, "replace")
+
+
+def _elements(body: bytes, span: tuple[int, int], order: str) -> Iterator[Element]:
     """Yield kind, first and past byte of the data of each element in a row."""
-    place = begin
-    while place + _TAG <= end and most > 0:
+    place, end = span
+    while place + _TAG <= end:
         kind, size = struct.unpack_from(f"{order}II", body, place)
+        first = place + _TAG
         if kind >> 16:  # four bytes or fewer, in the tag itself
-            yield kind & 0xFFFF, place + 4, place + 4 + min(4, kind >> 16)
-            place += _TAG
-        else:
-            first = place + _TAG
-            yield kind, first, min(first + size, end)
-            place = _padded(place, first + size)
-        most -= 1
+            kind, size, first = kind & 0xFFFF, kind >> 16, place + 4
+        if first + size > end:
+            raise ValueError(f"an element claims {size} bytes, {end - first} are left")
+        yield kind, first, first + size
+        place = max(place + _TAG, (first + size + 7) // 8 * 8)

@@ -33,18 +33,18 @@ def read_mat73(path: Path) -> dict[str, Any]:
         FormatError: it is damaged.
         HostileFile: it points elsewhere, or asks for more than a measurement would.
     """
-    with open_guarded(path, limits=_LIMITS) as file:
-        reader = _Reader(path, file)
-        try:
+    try:
+        with open_guarded(path, limits=_LIMITS) as file:
+            reader = _Reader(path, file)
             return {
                 name: reader.value(file[name], 0)
                 for name in file
                 if not name.startswith("#")
             }
-        except _DAMAGE as error:
-            raise FormatError(
-                f"{named(path)} is damaged inside ({shown(error)}); save it again"
-            ) from error
+    except _DAMAGE as error:  # closing a damaged file may fail as well
+        raise FormatError(
+            f"{named(path)} is damaged inside ({shown(error)}); save it again"
+        ) from error
 
 
 class _Reader:

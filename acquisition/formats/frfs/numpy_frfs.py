@@ -8,6 +8,7 @@ made, and objects are refused.
 
 import io
 import math
+import tokenize
 import zipfile
 import zlib
 from pathlib import Path
@@ -40,7 +41,10 @@ _MOST_ARRAYS = 100
 _MOST_BYTES = 2**30
 _NEEDED = 4.0
 """Of each byte of an array: as it is stored, as it is read, and in its unit [-]."""
-_DAMAGE = (ValueError, EOFError, OSError, SyntaxError, OverflowError, TypeError)
+_DAMAGE = (
+    *(ValueError, EOFError, OSError, OverflowError, TypeError),
+    *(SyntaxError, tokenize.TokenError, RecursionError),  # of a header in Python
+)
 _ZIP_DAMAGE = (zipfile.BadZipFile, NotImplementedError, RuntimeError, zlib.error)
 
 

@@ -200,7 +200,7 @@ def mat_damage() -> tuple[type[Exception], ...]:
     from scipy.io.matlab import MatReadError
 
     plain = (ValueError, TypeError, KeyError, IndexError, OSError, EOFError)
-    rarer = (OverflowError, MemoryError, RuntimeError, NotImplementedError)
+    rarer = (OverflowError, MemoryError, RuntimeError, NameError)
     return (*plain, *rarer, struct.error, zlib.error, MatReadError)
 
 

@@ -295,7 +295,7 @@ def test_time_histories_of_testlab_are_no_frfs(tmp_path):
 
 
 def test_a_struct_nested_without_end_is_refused(tmp_path):
-    """SciPy unfolds structs by recursion, so the depth is looked at before."""
+    """Twelve levels are more than any export has."""
     nested: object = 1.0
     for _ in range(40):
         nested = {"a": nested}
