@@ -100,10 +100,10 @@ def _matrix(
     name = body[parts[2][1] : parts[2][2]].decode("latin-1")
     kind, count = flags & 0xFF, math.prod(shape)
     if kind in _NUMERIC:
-        values = _numbers(body, parts[3], order)
+        array = _numbers(body, parts[3], order)
         if flags & _COMPLEX_FLAG:
-            values = values + 1j * _numbers(body, parts[4], order)
-        return name, values.reshape(shape, order="F")
+            array = array + 1j * _numbers(body, parts[4], order)
+        return name, array.reshape(shape, order="F")
     if kind == _CHAR:
         return name, _text(body, parts[3], order)
     if kind not in (_STRUCT, _CELL):
