@@ -30,6 +30,9 @@ _DOUBLE, _TEXT = 8, 100  # size of a number, and overhead of a text
 _NUMBERS = {h5t.INTEGER, h5t.FLOAT, h5t.ENUM, h5t.STRING}
 # Attributes that link dimension scales; they are not read here.
 _SCALE_ATTRIBUTES = {b"DIMENSION_LIST", b"REFERENCE_LIST"}
+_USER_BLOCK = 512  # bytes that MATLAB writes before the signature
+_COMPLEX = (b"real", b"imag")
+_FIELD_NAMES = b"MATLAB_fields"
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,9 @@ class FileLimits:
             `always_bytes` [-]. Measured samples compress by 2 to 10.
         variable_texts: texts of variable length in one row that a dataset may hold;
             a caller that allows some must read them one by one and check their length.
+        matlab: whether the features of a MAT file of version 7.3 are allowed: 512 bytes
+            before the signature, complex numbers as pairs, references to objects of
+            the same file, and field names as attributes (which are not read).
     """
 
     objects: int = 20_000
@@ -67,6 +73,7 @@ class FileLimits:
     always_bytes: int = 64 * 2**20
     unpacked_ratio: float = 64.0
     variable_texts: int = 0
+    matlab: bool = False
 
 
 @dataclass(slots=True)
@@ -109,7 +116,8 @@ def open_guarded(
             the object and the rule.
     """
     path = Path(path)
-    _require_signature(path)
+    limits = limits or FileLimits()
+    _require_signature(path, _USER_BLOCK if limits.matlab else 0)
     try:
         file = _open(path)
     except (OSError, RuntimeError, ValueError) as error:
@@ -118,7 +126,7 @@ def open_guarded(
             "or was not closed: use another copy"
         ) from error
     with file:
-        _inspect(file, path, limits or FileLimits())
+        _inspect(file, path, limits)
         yield file
 
 
@@ -130,15 +138,15 @@ def _open(path: Path) -> h5py.File:
         return h5py.File(path, "r", libver="latest", swmr=True)
 
 
-def _require_signature(path: Path) -> None:
+def _require_signature(path: Path, user_block: int) -> None:
     if file_size(path) == 0:
         raise FormatError(f"{named(path)} is empty; nothing was written to it")
     try:
         with path.open("rb") as file:
-            head = file.read(len(_SIGNATURE))
+            head = file.read(user_block + len(_SIGNATURE))
     except OSError as error:
         raise BadData(f"{named(path)} cannot be read: {error.strerror}") from error
-    if head != _SIGNATURE:
+    if not head.startswith(_SIGNATURE) and head[user_block:] != _SIGNATURE:
         raise FormatError(
             f"{named(path)} is no HDF5 file; text and .npy are read with --columns"
         )
@@ -216,13 +224,29 @@ def _check_dataset(dataset: h5d.DatasetID, name: str, tally: _Tally) -> None:
     variable = isinstance(kind, h5t.TypeStringID) and kind.is_variable_str()
     if variable and len(dataset.shape) == 1:
         variable = dataset.shape[0] > tally.limits.variable_texts
-    if kind.get_class() not in _NUMBERS or variable:
+    allowed = kind.get_class() in _NUMBERS or (
+        tally.limits.matlab and (_is_complex(kind) or kind.equal(h5t.STD_REF_OBJ))
+    )
+    if not allowed or variable:
         raise tally.refuse(
             name, "holds neither numbers nor texts of fixed length (variable, compound)"
         )
     if dataset.get_space().get_simple_extent_type() == h5py.h5s.NULL:
         raise tally.refuse(name, "has no extent")
     _check_size(dataset, properties, name, tally)
+
+
+def _is_complex(kind: h5t.TypeID) -> bool:
+    """Return whether a type is a pair of numbers called "real" and "imag"."""
+    return (
+        isinstance(kind, h5t.TypeCompoundID)
+        and kind.get_nmembers() == len(_COMPLEX)
+        and tuple(map(kind.get_member_name, range(len(_COMPLEX)))) == _COMPLEX
+        and all(
+            kind.get_member_type(i).get_class() == h5t.FLOAT
+            for i in range(len(_COMPLEX))
+        )
+    )
 
 
 def _check_filters(properties: h5py.h5p.PropDCID, name: str, tally: _Tally) -> None:
@@ -283,7 +307,9 @@ def _check_attributes(
         raise tally.refuse(name, f"brings the file to {tally.attributes} attributes")
     for i in range(count):
         attribute = h5a.open(target, index=i)
-        if attribute.name in _SCALE_ATTRIBUTES:
+        if attribute.name in _SCALE_ATTRIBUTES or (
+            tally.limits.matlab and attribute.name == _FIELD_NAMES
+        ):
             continue
         kind = attribute.get_type()
         size = math.prod(attribute.shape or (1,)) * kind.get_size()

@@ -14,7 +14,7 @@ from scipy.signal import find_peaks
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import Frf
-from jointbench.signal.hits.hit_spectra import HitSpectra
+from jointbench.signal.hits.hit_spectra import ForcesOfHits
 
 _ALIAS_FREE = 2.0 / 2.56
 """Share of the lines that anti-alias filters of usual converters leave [-]."""
@@ -38,13 +38,13 @@ class Peak:
         frequency: [Hz].
         height: over the highest line of the band [-].
         coherence: mean over pairs there [-], or None for single hits.
-        force_drop: force spectrum below its highest [dB].
+        force_drop: force spectrum below its highest [dB], or None without one.
     """
 
     frequency: float
     height: float
     coherence: float | None
-    force_drop: float
+    force_drop: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,14 +54,15 @@ class Beyond:
     Attributes:
         begin: of the band [Hz].
         end: of the band [Hz].
-        force_drop: of the force as recorded, at the end of the band [dB].
+        force_drop: of the force as recorded, at the end of the band [dB], or None
+            without a force.
         reach: upper limit without aliasing [Hz].
         peaks: the highest ones, by ascending frequency.
     """
 
     begin: float
     end: float
-    force_drop: float
+    force_drop: float | None
     reach: float
     peaks: tuple[Peak, ...]
 
@@ -69,10 +70,7 @@ class Beyond:
         """Return one sentence on the peaks above the band; empty if it is complete."""
         if self.end >= self.reach:
             return ""
-        end = (
-            f"the band ends at {_hertz(self.end)}, where the force as recorded is "
-            f"{max(0.0, -self.force_drop):.0f} dB down; above it"
-        )
+        end = f"the band ends at {_hertz(self.end)}{self._force_words()}; above it"
         if not self.peaks:
             return f"{end} no peak stands out up to {_hertz(self.reach)}"
         highest = max(self.peaks, key=lambda p: p.height)
@@ -83,14 +81,24 @@ class Beyond:
             f"too: --band {self.begin:.3g}:{top:g}"
         )
 
+    def _force_words(self) -> str:
+        """State how far the force has fallen where the band ends."""
+        if self.force_drop is None:
+            return ""
+        down = max(0.0, -self.force_drop)
+        return f", where the force as recorded is {down:.0f} dB down"
 
-def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Beyond:
+
+def look_beyond(
+    frf: Frf, band: tuple[float, float], spectra: ForcesOfHits | None
+) -> Beyond:
     """Find peaks above a band.
 
     Args:
         frf: of all lines.
         band: lowest and highest line that was fitted [Hz].
-        spectra: of the accepted hits, as recorded.
+        spectra: of the accepted hits, as recorded; None for FRFs from files, which
+            may be fitted up to their last line.
 
     Returns:
         Up to five peaks, those three times as high as the adjacent minima, with a
@@ -98,9 +106,11 @@ def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Bey
     """
     frequency = frf.frequency
     level = np.sqrt(np.mean(np.abs(frf.response) ** 2, axis=(0, 1)))
-    reach = _ALIAS_FREE * float(frequency[-1])
+    reach = float(frequency[-1]) * (1.0 if spectra is None else _ALIAS_FREE)
     inside = (frequency >= band[0]) & (frequency <= band[1])
-    drop = np.interp(frequency, spectra.frequency, _force_drop(spectra))
+    drop = None
+    if spectra is not None:
+        drop = np.interp(frequency, spectra.frequency, _force_drop(spectra))
     coherence = None if frf.coherence is None else frf.coherence.mean(axis=(0, 1))
     highest = float(level[inside].max())
     peaks = [
@@ -108,7 +118,7 @@ def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Bey
             frequency=float(frequency[i]),
             height=float(level[i]) / highest,
             coherence=None if coherence is None else float(coherence[i]),
-            force_drop=float(drop[i]),
+            force_drop=None if drop is None else float(drop[i]),
         )
         for i in _standing_out(level)
         if band[1] < frequency[i] <= reach
@@ -119,13 +129,15 @@ def look_beyond(frf: Frf, band: tuple[float, float], spectra: HitSpectra) -> Bey
     return Beyond(
         begin=band[0],
         end=band[1],
-        force_drop=float(np.interp(band[1], frequency, drop)),
+        force_drop=(
+            None if drop is None else float(np.interp(band[1], frequency, drop))
+        ),
         reach=reach,
         peaks=tuple(sorted(tallest, key=lambda p: p.frequency)),
     )
 
 
-def _force_drop(spectra: HitSpectra) -> FloatArray:
+def _force_drop(spectra: ForcesOfHits) -> FloatArray:
     """Return the force spectrum over its highest [dB], smoothed, shape (n_lines,)."""
     power = np.mean(np.abs(spectra.force) ** 2, axis=0)
     smooth = uniform_filter1d(power, max(3, power.size // _AROUND), mode="nearest")

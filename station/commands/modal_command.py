@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""``jointbench modal``: FRFs and modes of sessions and hit files."""
+"""``jointbench modal``: FRFs and modes of sessions, hit files and files of FRFs."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from jointbench.acquisition.basics.errors import UnitError, UsageError
+from jointbench.acquisition.formats.frfs.frf_columns import TABLE_EXAMPLE
+from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.station.files.frf_files import read_frf
 from jointbench.station.files.input_files import is_session_name, read_recordings
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.universal_frf import write_universal
 from jointbench.station.pipeline.chain import (
     ChainSettings,
     ModalChain,
+    frf_chain,
     judge_hits,
     judged_modes,
 )
@@ -25,6 +31,44 @@ from jointbench.station.pipeline.stage_store import StageRun
 from jointbench.station.report.modal_table import show_modal
 from jointbench.station.results.results_file import results_path, write_results
 from jointbench.station.screen.terminal import console, progress_bar, write_json
+
+Targets = tuple[Path | None, Path | None, str | None]
+"""Results file, universal file, JSON."""
+
+
+def run_frfs(
+    files: Sequence[Path],
+    options: FrfOptions,
+    settings: ChainSettings,
+    targets: Targets,
+    run: StageRun | None = None,
+) -> ModalChain | None:
+    """Identify the modes of FRFs, show them and store them next to a single file.
+
+    Args:
+        files: any; FRFs are recognised by their content.
+        options: what the user states about them.
+        settings: of the chain; those of hits, windows and Kalman stage do not count.
+        targets: results file, universal file and JSON, each or None.
+        run: store of the stages; None to store none.
+
+    Returns:
+        The result, None where the files hold samples.
+    """
+    check_outputs(files, list(targets))
+    frf = read_frf(files, options)
+    if frf is None:
+        if options.averages:
+            raise UsageError("--averages is for files of FRFs; these hold samples")
+        return None
+    target = targets[0] or (results_path(files[0]) if len(files) == 1 else None)
+    check_outputs(files, [target, *targets[1:]])
+    with progress_bar("fitting modes") as progress:
+        own_run = replace(run or StageRun(), progress=progress)
+        chain = frf_chain(frf, settings, own_run)
+    content = _give_out(chain, files, (target, *targets[1:]))
+    write_json(targets[2], content | {"results": str(target or "")})
+    return chain
 
 
 def run_modal(
@@ -56,12 +100,11 @@ def run_modal(
     Returns:
         The result at the first preload.
     """
+    settings, run = settings or ChainSettings(), run or StageRun()
     target = out or _next_to_session(files)
     check_outputs(files, [target, universal, json_target])
-    settings = settings or ChainSettings()
-    stored = read_recordings(files, columns=columns, point=point)
+    stored = _recordings(files, columns, point)
     # Levels of hits are judged over the whole campaign, across preloads.
-    run = run or StageRun()
     groups = by_preload(judge_hits(stored, settings, run))
     chains, contents = [], []
     for preload, group in groups:
@@ -73,17 +116,37 @@ def run_modal(
             console(json_target).print(f"\nPreload {preload} N")
             own = None if target is None else of_preload(target, preload)
             shared = None if universal is None else of_preload(universal, preload)
-        if own is not None:
-            write_results(own, chain, files)
-        if shared is not None:
-            write_universal(shared, chain.frf, chain.result.model)
-        notes = modal_notes(chain)
-        show_modal(chain, notes, json_target)
+        contents.append(_give_out(chain, files, (own, shared, json_target)))
         chains.append(chain)
-        contents.append(modal_json(chain, notes))
     content = join_pages([preload for preload, _ in groups], contents)
     write_json(json_target, content | {"results": str(target or "")})
     return chains[0]
+
+
+def _recordings(
+    files: Sequence[Path], columns: str | None, point: str
+) -> tuple[Recording, ...]:
+    """Read recordings; where units are missing, the message names FRFs as well."""
+    try:
+        return read_recordings(files, columns=columns, point=point)
+    except UnitError as error:
+        if columns is not None:
+            raise
+        raise UnitError(f"{error}; for FRFs --columns '{TABLE_EXAMPLE}'") from error
+
+
+def _give_out(
+    chain: ModalChain, files: Sequence[Path], targets: Targets
+) -> dict[str, object]:
+    """Write the files of a chain, show it, and return its JSON."""
+    results, universal, json_target = targets
+    if results is not None:
+        write_results(results, chain, files)
+    if universal is not None:
+        write_universal(universal, chain.frf, chain.result.model)
+    notes = modal_notes(chain)
+    show_modal(chain, notes, json_target)
+    return modal_json(chain, notes)
 
 
 def _next_to_session(files: Sequence[Path]) -> Path | None:

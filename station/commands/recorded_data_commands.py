@@ -15,6 +15,7 @@ from jointbench.station.commands.shared_options.heights_options import (
     WaveRatio,
 )
 from jointbench.station.commands.shared_options.input_options import (
+    Averages,
     Columns,
     Files,
     FullScale,
@@ -89,18 +90,21 @@ def modal_command(
     drop: Drop = None,
     out: Results = None,
     uff: Universal = None,
+    averages: Averages = None,
     output_only: OutputOnly = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
-    """Estimate FRFs and modes from a session or from hit files.
+    """Estimate modes from a session, hit files or files of FRFs.
 
     Natural frequencies [Hz] and damping ratios [%] have standard deviations. Each
-    preload has its own modes.
+    preload has its own modes. FRFs are recognised by their content; --columns names
+    their units where the file does not.
 
     Examples:
         jointbench modal session.h5 --json modes.json
         jointbench modal session.h5 --band 50:5000 --keep 5031 --drop 3007
+        jointbench modal frf.txt --columns 'frequency:Hz,real:m/N,imaginary:m/N'
     """
     if output_only:
         from jointbench.station.commands.output_only_command import run_output_only
@@ -114,12 +118,17 @@ def modal_command(
             json_target=json,
         )
         return
-    from jointbench.station.commands.modal_command import run_modal
+    from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
+    from jointbench.station.commands.modal_command import run_frfs, run_modal
     from jointbench.station.pipeline.modal_options import modal_settings
 
+    settings = modal_settings(band, order, estimator, keep or (), drop or ())
+    options = FrfOptions(columns, point, averages or 0)
+    if run_frfs(files, options, settings, (out, uff, json)):
+        return
     run_modal(
         files,
-        modal_settings(band, order, estimator, keep or (), drop or ()),
+        settings,
         columns=columns,
         point=point,
         out=out,
@@ -163,7 +172,11 @@ def surface_command(
 
 def report_command(
     session: Annotated[
-        Path, typer.Argument(metavar="SESSION", help="Session file (.h5).")
+        Path,
+        typer.Argument(
+            metavar="SESSION",
+            help="Session file (.h5), file of FRFs, or results of FRFs.",
+        ),
     ],
     out: Annotated[
         Path | None,

@@ -20,7 +20,11 @@ from jointbench.station.files.output_paths import write_text
 _EDGE = "    -1"
 _WIDTH = 80
 _FRF = 4
-_COMPLEX_DOUBLE = 6
+_COMPLEX_DOUBLE, _REAL_DOUBLE = 6, 4
+_GENERAL, _COHERENCE = 0, 6
+_NOISE = {"coherence": _COHERENCE, "variance": _GENERAL, "innovation_noise": _GENERAL}
+"""Attributes of an FRF that state its noise, and their function types."""
+_ROW = 80
 _UNEVEN, _EVEN = 0, 1
 _FREQUENCY = 18
 _FORCE = 13
@@ -53,17 +57,16 @@ class Modes(Protocol):
 def write_universal_frf(path: Path, frf: Frf) -> None:
     """Write every FRF as a data set of its own; nodes are numbered from 1.
 
+    Coherence, variance and innovation noise follow each FRF as data sets of their own,
+    and the identification lines have what the six digits of the header round off, so
+    that `jointbench modal` finds the same modes in the file.
+
     Args:
         path: file to write.
         frf: any kind. The labels go into the identification lines; directions are not
             known here and are written as scalar.
     """
-    lines = [
-        line
-        for row, column in np.ndindex(frf.response.shape[:2])
-        for line in _data_set(frf, row, column)
-    ]
-    write_text(path, "\n".join(lines) + "\n")
+    write_text(path, "\n".join(_frf_lines(frf)) + "\n")
 
 
 def write_universal(path: Path, frf: Frf, model: Modes) -> None:
@@ -75,11 +78,7 @@ def write_universal(path: Path, frf: Frf, model: Modes) -> None:
         model: modes of the same outputs; node n is output n, as in the FRFs. Of the
             three translations only the third is used, for want of directions.
     """
-    lines = [
-        line
-        for row, column in np.ndindex(frf.response.shape[:2])
-        for line in _data_set(frf, row, column)
-    ]
+    lines = list(_frf_lines(frf))
     for number in range(model.natural_frequency.size):
         lines += _shape_set(model, number)
     write_text(path, "\n".join(lines) + "\n")
@@ -105,34 +104,81 @@ def _shape_set(model: Modes, number: int) -> Iterator[str]:
     yield _EDGE
 
 
-def _data_set(frf: Frf, row: int, column: int) -> Iterator[str]:
+def _frf_lines(frf: Frf) -> Iterator[str]:
+    """Yield every FRF, and after each what states its noise."""
     code, word, unit = _RESPONSE[frf.kind]
+    kind = frf.kind.value
+    for pair in np.ndindex(frf.response.shape[:2]):
+        axes = (axis_line(code, word, unit), axis_line(_FORCE, "Force", "N"))
+        yield from _data_set(frf, pair, _FRF, kind, axes, frf.response[pair])
+        for name, function in _NOISE.items():
+            values = getattr(frf, name)
+            if values is not None:
+                square = "NONE" if function == _COHERENCE else f"({unit}/N)^2"
+                axes = (axis_line(0, name, square), axis_line(0, "NONE", "NONE"))
+                title = f"{name} of {kind}"
+                yield from _data_set(frf, pair, function, title, axes, values[pair])
+
+
+def _data_set(
+    frf: Frf,
+    pair: tuple[int, ...],
+    function: int,
+    title: str,
+    axes: tuple[str, str],
+    values: ComplexArray | FloatArray,
+) -> Iterator[str]:
+    """Yield a data set 58 on the lines of an FRF; `axes` describe its ordinate."""
+    row, column = pair
     output, point = frf.outputs[row], frf.inputs[column]
     yield from (_EDGE, "    58")
-    for text in (f"{frf.kind.value} {output} / {point}", "jointbench", "", "", "NONE"):
+    for text in (f"{title} {output} / {point}", "jointbench", "", *_exact(frf)):
         yield printable(text)
     yield (
-        f"{_FRF:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{row + 1:10d}{0:4d}"
+        f"{function:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{row + 1:10d}{0:4d}"
         f" {'NONE':10s}{column + 1:10d}{0:4d}"
     )
     axis, step = frf.frequency, _step(frf.frequency)
+    kind = _COMPLEX_DOUBLE if np.iscomplexobj(values) else _REAL_DOUBLE
     spacing = _UNEVEN if step is None else _EVEN
     begin = 0.0 if step is None else axis[0]
     yield (
-        f"{_COMPLEX_DOUBLE:10d}{axis.size:10d}{spacing:10d}"
+        f"{kind:10d}{axis.size:10d}{spacing:10d}"
         f"{begin:13.5e}{step or 0.0:13.5e}{0.0:13.5e}"
     )
     yield axis_line(_FREQUENCY, "Frequency", "Hz")
-    yield axis_line(code, word, unit)
-    yield axis_line(_FORCE, "Force", "N")
+    yield from axes
     yield axis_line(0, "NONE", "NONE")
-    response: ComplexArray = frf.response[row, column]
-    values = [f"{value.real:20.11e}{value.imag:20.11e}" for value in response]
-    if step is None:
-        yield from (f"{f:13.5e}{v}" for f, v in zip(axis, values, strict=True))
-    else:
-        yield from ("".join(values[i : i + 2]) for i in range(0, len(values), 2))
+    yield from _value_lines(axis, step, values)
     yield _EDGE
+
+
+def _value_lines(
+    axis: FloatArray, step: float | None, values: ComplexArray | FloatArray
+) -> Iterator[str]:
+    """Yield the numbers: two complex or four real ones a line; uneven lines with x."""
+    if np.iscomplexobj(values):
+        cells = [f"{value.real:20.11e}{value.imag:20.11e}" for value in values]
+    else:
+        cells = [f"{value:20.11e}" for value in values]
+    width = _ROW // len(cells[0]) if cells else 1
+    if step is None:
+        yield from (f"{f:13.5e}{v}" for f, v in zip(axis, cells, strict=True))
+    else:
+        yield from ("".join(cells[i : i + width]) for i in range(0, len(cells), width))
+
+
+def _exact(frf: Frf) -> tuple[str, str]:
+    """Return two identification lines with what the header rounds off or lacks."""
+    step, band = _step(frf.frequency), frf.usable_band
+    lines = [] if step is None else [("begin", frf.frequency[0]), ("step", step)]
+    rest = [("decay", frf.added_decay_rate)]
+    rest += [] if band is None else [("from", band[0]), ("to", band[1])]
+    first, second = (
+        " ".join(f"{name}={float(value)!r}" for name, value in numbers)
+        for numbers in (lines, rest)
+    )
+    return f"{first} averages={frf.averages}".strip(), second
 
 
 def _step(axis: FloatArray) -> float | None:

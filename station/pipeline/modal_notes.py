@@ -7,9 +7,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.frf.beyond_band import Beyond, look_beyond
+from jointbench.signal.frf.frf_of_functions import noise_source
 from jointbench.signal.frf.linearity import Linearity, check_linearity
 from jointbench.signal.hits.find_hits import accepted_hits
-from jointbench.signal.hits.hit_spectra import hit_spectra
+from jointbench.signal.hits.hit_spectra import hit_forces
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.data_limits import (
     block_words,
@@ -29,19 +30,21 @@ class ModalNotes:
         linearity: whether the FRF depends on the level, None where it was not checked.
         unchecked: why linearity was not checked, or empty.
         limits: what cannot be in the data, a sentence each.
+        sources: what the noise of FRFs from files comes from, a sentence each.
     """
 
     beyond: Beyond
     linearity: Linearity | None
     unchecked: str
     limits: tuple[str, ...]
+    sources: tuple[str, ...] = ()
 
     def remarks(self) -> tuple[str, ...]:
         """Return what the modes should be read with, a sentence each."""
         words = []
         if self.linearity is not None and self.linearity.nonlinear:
             words.append(f"levels disagree: {self.linearity.words}")
-        return (*words, *filter(None, [self.beyond.words()]))
+        return (*self.sources, *words, *filter(None, [self.beyond.words()]))
 
 
 def modal_notes(chain: ModalChain) -> ModalNotes:
@@ -50,15 +53,30 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
     Args:
         chain: recordings with judged hits, FRF and modes.
     """
+    if not chain.recordings:
+        return _frf_notes(chain)
     judged = [r for r in chain.recordings if accepted_hits(r)]
     window = join_windows([choose_window(recording) for recording in judged])
-    spectra = hit_spectra(judged, window)
+    spectra = hit_forces(judged, window)
     try:
         linearity, unchecked = check_linearity(spectra), ""
     except BadData as error:
         linearity, unchecked = None, str(error)
     beyond = look_beyond(chain.frf, chain.result.band, spectra)
     return ModalNotes(beyond, linearity, unchecked, limit_words(chain))
+
+
+def _frf_notes(chain: ModalChain) -> ModalNotes:
+    """Return the notes on FRFs from files, which hold neither hits nor levels."""
+    source = noise_source(chain.provenance)
+    words = "" if source is None else source.sentence
+    return ModalNotes(
+        look_beyond(chain.frf, chain.result.band, None),
+        None,
+        "FRFs from files have no hits at different levels",
+        limit_words(chain),
+        (words,) if words else (),
+    )
 
 
 def limit_words(chain: ModalChain) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.frf.linearity import check_linearity
 from jointbench.signal.frf.mode_indicators import cmif
 from jointbench.signal.hits.find_hits import accepted_hits
-from jointbench.signal.hits.hit_spectra import hit_spectra
+from jointbench.signal.hits.hit_spectra import hit_forces
 from jointbench.signal.hits.leakage import estimate_leakage
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 from jointbench.signal.modal.mode_ranking import rate_modes
@@ -22,18 +22,18 @@ _MOST_POINTS = 3000
 
 def checks_section(chain: ModalChain) -> Section:
     """Return indicator functions, synthesis error by line, leakage and linearity."""
+    return Section("checks", "Checks", (_indicators(chain), *_hit_checks(chain)))
+
+
+def _hit_checks(chain: ModalChain) -> tuple[Text, ...]:
+    """Return the checks that need the samples of the hits."""
+    if not chain.recordings:
+        words = "Leakage and linearity: not checked, FRFs from files have no samples."
+        return (Text(words),)
     window = join_windows(
         [choose_window(r) for r in chain.recordings if accepted_hits(r)]
     )
-    return Section(
-        "checks",
-        "Checks",
-        (
-            _indicators(chain),
-            Text(_leakage(chain, window)),
-            Text(_linearity(chain, window)),
-        ),
-    )
+    return Text(_leakage(chain, window)), Text(_linearity(chain, window))
 
 
 def _indicators(chain: ModalChain) -> Plot:
@@ -83,7 +83,7 @@ def _leakage(chain: ModalChain, window: HammerWindow) -> str:
 def _linearity(chain: ModalChain, window: HammerWindow) -> str:
     judged = [r for r in chain.recordings if accepted_hits(r)]
     try:
-        text = check_linearity(hit_spectra(judged, window)).words
+        text = check_linearity(hit_forces(judged, window)).words
     except BadData as error:
         text = f"not checked: {error}"
     return f"Linearity: {text}."

@@ -5,6 +5,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.signal.frf.frf_of_functions import noise_source
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.modal_summary import (
     STAGE_COLUMNS,
@@ -80,16 +81,28 @@ def _frf_plot(chain: ModalChain) -> Plot:
         yaxis3=axis("coherence [-]", domain=[0.0, 0.18], range=[0, 1.05]),
     )
     caption = (
-        f"{frf.kind.value.capitalize()} from {frf.averages} accepted hits per point "
-        f"({_estimator(chain)}): magnitude, measured (solid) and synthesised from the "
-        "modes (dashed); phase; ordinary coherence."
+        f"{frf.kind.value.capitalize()} from {_source(chain)}: magnitude, measured "
+        "(solid) and synthesised from the modes (dashed); phase; ordinary coherence."
     )
     return Plot("frf-plot", caption, plot, 620)
 
 
-def _estimator(chain: ModalChain) -> str:
-    detail = next(dict(s.detail) for s in chain.provenance if s.name == "estimate_frf")
-    return f"{detail['estimator']}, {detail['bias']}"
+def _source(chain: ModalChain) -> str:
+    """Name what the FRFs come from: hits and the estimator, or files."""
+    detail = _estimate(chain)
+    if detail is None:
+        averages = chain.frf.averages
+        return "files" + (f", {averages} averages" if averages else "")
+    return (
+        f"{chain.frf.averages} accepted hits per point "
+        f"({detail['estimator']}, {detail['bias']})"
+    )
+
+
+def _estimate(chain: ModalChain) -> dict[str, str | float | int] | None:
+    """Return how FRFs were estimated from hits; None for FRFs from files."""
+    steps = (dict(s.detail) for s in chain.provenance if s.name == "estimate_frf")
+    return next(steps, None)
 
 
 def _one_frf(
@@ -229,9 +242,13 @@ def modes_table(chain: ModalChain) -> DataTable:
 
 
 def _window(chain: ModalChain) -> str:
-    detail = next(dict(s.detail) for s in chain.provenance if s.name == "estimate_frf")
+    detail, source = _estimate(chain), noise_source(chain.provenance)
     added = chain.frf.added_decay_rate
-    text = f"Windows: {detail['window_reason']}."
+    text = "Windows: not stated by the files."
+    if detail is not None:
+        text = f"Windows: {detail['window_reason']}."
+    elif source is not None and source.sentence:
+        text = f"{text} Noise: {source.sentence}."
     if added > 0:
         text += (
             f" The exponential window adds {added:.4g} 1/s to the decay rate of every "

@@ -8,6 +8,7 @@ from rich.text import Text
 from jointbench.acquisition.basics.arrays import BoolArray
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.amplitude.amplitude_curve import Dependence
+from jointbench.signal.frf.frf import Frf
 from jointbench.signal.modal.mode_ranking import (
     FEW_ORDERS,
     Grade,
@@ -42,6 +43,8 @@ def show_modal(chain: ModalChain, notes: ModalNotes, json_target: str | None) ->
     for recording in chain.recordings:
         for line in _hit_lines(recording):
             screen.print(line)
+    if not chain.recordings:
+        screen.print(Text(frf_words(chain.frf)))
     for words in notes.limits:
         screen.print(Text(f"warning: {words}"))
     model = chain.result.model
@@ -64,6 +67,16 @@ def show_modal(chain: ModalChain, notes: ModalNotes, json_target: str | None) ->
         screen.print(Text(line))
     _show_amplitude(screen, chain)
     _show_beyond(screen, notes)
+
+
+def frf_words(frf: Frf) -> str:
+    """Return one line on FRFs that come from files."""
+    outputs, inputs, lines = frf.response.shape
+    return (
+        f"FRFs from files: {frf.kind.value}, {outputs} output{'s' * (outputs > 1)} x "
+        f"{inputs} input{'s' * (inputs > 1)}, {lines} lines from "
+        f"{frf.frequency[0]:g} to {frf.frequency[-1]:g} Hz"
+    )
 
 
 def _show_modes(
@@ -128,7 +141,7 @@ def _show_beyond(screen: Console, notes: ModalNotes) -> None:
             f"{peak.frequency:.1f}",
             f"{peak.height:.2g}",
             "-" if peak.coherence is None else f"{peak.coherence:.3f}",
-            f"{peak.force_drop:.0f}",
+            "-" if peak.force_drop is None else f"{peak.force_drop:.0f}",
         )
         for peak in notes.beyond.peaks
     ]

@@ -15,6 +15,11 @@ from jointbench.station.files.toml_file import read_toml
 from jointbench.station.pipeline.chain import ModalChain
 from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
+from jointbench.station.report.frf_analysis import (
+    analyse_frfs,
+    is_frf_input,
+    report_path,
+)
 from jointbench.station.report.hits_section import hits_section
 from jointbench.station.report.joint_section import joint_section
 from jointbench.station.report.modal_section import modal_sections
@@ -53,17 +58,21 @@ def run_report(
     """Write the report of `session` next to it, or to `out`.
 
     Modes come from existing results, see `stored_results`; without results they are
-    extracted now, and `run` stores the stages.
+    extracted now, and `run` stores the stages. A file of FRFs, or results made of
+    some, is reported as well.
     """
-    target = out or session.with_suffix(".html")
+    target = out or report_path(session)
     given = (session, model, geometry, results)
     read = [path for path in given if path is not None]
     check_outputs(read, [target, json_target])
     points = None if geometry is None else read_toml(geometry, Geometry)
-    content = read_session(session)
     bench = None if model is None else read_toml(model, BenchModel)
-    stored = stored_results(session, content.recordings, results)
-    analysis = analyse_session(content, bench, stored, run)
+    if is_frf_input(session):
+        analysis = analyse_frfs(session, results, run)
+    else:
+        content = read_session(session)
+        stored = stored_results(session, content.recordings, results)
+        analysis = analyse_session(content, bench, stored, run)
     write_report(compose(analysis, bench, title=session.stem, geometry=points), target)
     console(json_target).print(f"report: {target}")
     runs = [
@@ -162,17 +171,22 @@ def joint_link(bench: BenchModel | None) -> str:
 
 def _lead(analysis: SessionAnalysis) -> str:
     session = analysis.session
-    parts = [session.notes, f"Recorded {session.created}", f"Source {session.source}"]
-    if session.operator:
-        parts.append(f"Operator {session.operator}")
-    parts.append(f"Session {session.uuid}")
+    parts = [session.notes]
+    for word, text in (
+        ("Recorded", session.created),
+        ("Source", session.source),
+        ("Operator", session.operator),
+        ("Session", session.uuid),
+    ):
+        parts += [f"{word} {text}"] if text or word == "Source" else []
     return ". ".join(part.rstrip(".") for part in parts if part) + "."
 
 
 def _tiles(analysis: SessionAnalysis, bench: BenchModel | None) -> tuple[Tile, ...]:
     tiles: list[Tile] = []
     if analysis.recordings:
-        tiles += [_hits_tile(analysis), *_mode_tiles(analysis)]
+        tiles.append(_hits_tile(analysis))
+    tiles += _mode_tiles(analysis)
     for chain in analysis.surfaces:
         scaling = chain.fit.scaling
         value = (

@@ -20,8 +20,9 @@ from jointbench.acquisition.file_access.netcdf_read import (
     read_flags,
     read_texts,
 )
-from jointbench.signal.frf.frf import Frf, FrfKind
+from jointbench.signal.frf.frf import Frf
 from jointbench.station.files.table_files import ExportColumn, ExportTable
+from jointbench.station.results.results_modes import stored_frf
 from jointbench.station.results.results_read import open_result
 
 JSON_GROUPS = ("recipe", "pages/contact", "pages/joint", "pages/gap")
@@ -74,7 +75,7 @@ def result_modes(path: Path) -> list[tuple[str, Frf, ModeTables]]:
     """
     with open_result(path) as file:
         return [
-            (_name(group), _frf(group["frf"]), _modes(group["modes"]))
+            (_name(group), stored_frf(group["frf"]), _modes(group["modes"]))
             for group in [file, *_groups_below(file)]
             if "frf" in group and "modes" in group
         ]
@@ -152,16 +153,6 @@ def shapes_of(residues: ComplexArray) -> ComplexArray:
         row, column = np.unravel_index(np.argmax(np.abs(residue)), residue.shape)
         found[number] = residue[:, column] / residue[row, column]
     return found
-
-
-def _frf(group: h5py.Group) -> Frf:
-    return Frf(
-        read_array(group["frequency"]),
-        read_complex(group, "frf"),
-        FrfKind(str(read_attribute(group, "kind"))),
-        outputs=read_texts(group["output_label"]),
-        inputs=read_texts(group["input_label"]),
-    )
 
 
 def _modes(group: h5py.Group) -> ModeTables:

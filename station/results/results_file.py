@@ -26,6 +26,7 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.modes import ModalResult
+from jointbench.station.files.input_files import is_session_name
 from jointbench.station.pipeline.chain import ModalChain
 
 SCHEMA = "jointbench-results/1"
@@ -38,8 +39,15 @@ PAIR = ("output", "input", "frequency")
 
 
 def results_path(session: Path) -> Path:
-    """Return where the results of a session file go."""
-    return session.with_suffix(".results.h5")
+    """Return where the results of a session go, or those of a file of FRFs.
+
+    The name of a file of FRFs keeps its ending, ``frf-uff.results.h5``: a session of
+    the same name may lie beside it.
+    """
+    if is_session_name(session):
+        return session.with_suffix(".results.h5")
+    kind = session.suffix.lstrip(".")
+    return session.with_name(f"{session.stem}{'-' if kind else ''}{kind}.results.h5")
 
 
 def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None:

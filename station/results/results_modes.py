@@ -127,7 +127,7 @@ def _asked(steps: Provenance) -> str:
 
 def _stored(group: h5py.Group) -> StoredModes:
     steps = tuple(_steps(group["provenance"]))
-    frf, synthesis = _frf(group["frf"], steps), _frf(group["synthesis"], steps)
+    frf, synthesis = (stored_frf(group[n], steps) for n in ("frf", "synthesis"))
     modes = group["modes"]
     model = _model(modes, frf, steps)
     lines = synthesis.frequency
@@ -146,7 +146,8 @@ def _stored(group: h5py.Group) -> StoredModes:
     return StoredModes(own, frf, result, steps)
 
 
-def _frf(group: h5py.Group, steps: Provenance) -> Frf:
+def stored_frf(group: h5py.Group, steps: Provenance = ()) -> Frf:
+    """Return the FRF of a group, with all that states its noise."""
     decay = read_attribute(group, "added_decay_rate_per_s")
     averages = read_attribute(group, "averages")
     return Frf(

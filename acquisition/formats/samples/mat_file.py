@@ -50,8 +50,7 @@ def read_mat_rows(path: Path | str, names: Sequence[str]) -> tuple[FloatArray, .
         HostileFile: it claims more than a measurement can hold.
     """
     path = Path(path)
-    _require_mat(path)
-    _require_sane_unpacked(path)
+    require_sane_mat(path)
     found = _contents(path)
     for name in names:
         _check(path, name, found)
@@ -69,9 +68,18 @@ def list_mat_variables(path: Path | str) -> tuple[str, ...]:
         BadData: see `read_mat_rows`.
     """
     path = Path(path)
+    require_sane_mat(path)
+    return tuple(_contents(path))
+
+
+def require_sane_mat(path: Path) -> None:
+    """Refuse a file that is no MAT file up to version 7, or unfolds into gigabytes.
+
+    Raises:
+        BadData: see `read_mat_rows`.
+    """
     _require_mat(path)
     _require_sane_unpacked(path)
-    return tuple(_contents(path))
 
 
 def _require_mat(path: Path) -> None:
@@ -138,7 +146,7 @@ def _contents(path: Path) -> dict[str, tuple[tuple[int, ...], str]]:
 
     try:
         listed = scipy.io.whosmat(path, appendmat=False)
-    except _damage() as error:
+    except mat_damage() as error:
         raise FormatError(
             f"{named(path)} cannot be read as a MAT file ({shown(error)}); save it "
             "again with -v7"
@@ -181,18 +189,18 @@ def _load(path: Path, names: Sequence[str]) -> list[object]:
     try:
         content = scipy.io.loadmat(path, variable_names=list(names), appendmat=False)
         return [content[name] for name in names]
-    except _damage() as error:
+    except mat_damage() as error:
         raise FormatError(
             f"{named(path)} is damaged ({shown(error)}); use another copy"
         ) from error
 
 
-def _damage() -> tuple[type[Exception], ...]:
+def mat_damage() -> tuple[type[Exception], ...]:
     """Return the exceptions of SciPy's reader for damaged content."""
     from scipy.io.matlab import MatReadError
 
     plain = (ValueError, TypeError, KeyError, IndexError, OSError, EOFError)
-    rarer = (OverflowError, MemoryError, RuntimeError, NotImplementedError)
+    rarer = (OverflowError, MemoryError, RuntimeError, NameError)
     return (*plain, *rarer, struct.error, zlib.error, MatReadError)
 
 

@@ -19,7 +19,12 @@ from typing import Any
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.basics.errors import FormatError, HostileFile, SamplingError
+from jointbench.acquisition.basics.errors import (
+    BadData,
+    FormatError,
+    HostileFile,
+    SamplingError,
+)
 from jointbench.acquisition.file_access.memory_room import require_room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import read_bytes
@@ -45,6 +50,8 @@ _DIGITS = 5e-6
 """Half a unit of the last printed digit of a step, relative, at the most."""
 _TIME_RESPONSE = 1
 _COUNT = slice(10, 20)
+_LONGEST_START, _LONGEST_HEADER = 200, 2000
+"""First characters of a file, and of a data set up to its number of values."""
 _QUANTITIES = {
     8: Quantity.DISPLACEMENT,
     11: Quantity.VELOCITY,
@@ -73,7 +80,8 @@ def read_universal(path: Path, *, columns: str | None, point: str) -> Recording:
     if not sets:
         raise FormatError(
             f"{named(path)} holds no time history (data set 58, function type 1); "
-            "export the samples, not FRFs; `jointbench export` shows what it has"
+            "FRFs (type 4) are read by `jointbench modal`; `jointbench export` shows "
+            "what it has"
         )
     intervals = {float(one["abscissa_inc"]) for one in sets}
     uneven = any(int(one["abscissa_spacing"]) != 1 for one in sets)
@@ -163,6 +171,32 @@ def _require_sane_set(path: Path, lines: Sequence[bytes]) -> None:
             f"{named(path)}: a header claims {claimed} values, its data set has {size} "
             "bytes; use another copy"
         )
+
+
+def function_types(path: Path) -> frozenset[int]:
+    """Return the function types of the data sets 58 of a file, by their headers.
+
+    Args:
+        path: of any file.
+
+    Returns:
+        1 is a time history, 4 an FRF, 6 coherence; nothing where the file is no
+        universal file, or too large for one.
+    """
+    try:
+        with path.open("rb") as file:
+            if _EDGE.match(file.read(_LONGEST_START).lstrip(b"\r\n")) is None:
+                return frozenset()
+        data = read_bytes(path, limit=_MOST_BYTES)
+    except (OSError, BadData):
+        return frozenset()
+    found = set()
+    for edge in _EDGE.finditer(data):
+        lines = data[edge.start() : edge.start() + _LONGEST_HEADER].split(b"\n", 8)
+        if len(lines) == 9 and lines[1].split()[:1] in ([b"58"], [b"58b"]):
+            number = lines[7][:5].strip()
+            found |= {int(number)} if number.isdigit() else set()
+    return frozenset(found)
 
 
 def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, Any]]:

@@ -18,7 +18,8 @@ HitFiles = Annotated[
     list[Path],
     typer.Argument(
         metavar="FILE",
-        help="Session (.h5), or files of hits (.csv, .npy, .mat, .uff, .tdms, .wav).",
+        help="Session (.h5), files of hits (.csv, .npy, .mat, .uff, .tdms, .wav), or "
+        "files of FRFs (.uff, .txt, .csv, .mat, .npz, .npy).",
         show_default=False,
     ),
 ]
@@ -32,6 +33,14 @@ SurfaceFiles = Annotated[
 ]
 Columns = Annotated[
     str | None, typer.Option("--columns", metavar="ROLE:UNIT,...", help=_COLUMNS_HELP)
+]
+Averages = Annotated[
+    int | None,
+    typer.Option(
+        min=2,
+        metavar="N",
+        help="Number of averages of FRFs, where their file gives none, for example 10.",
+    ),
 ]
 Point = Annotated[
     str,

@@ -124,10 +124,13 @@ def test_frfs_and_shapes_of_a_result_go_into_a_universal_file(result: Path) -> N
     path = exported(result, "uff")["uff"]
     _, frf, modes = result_modes(result)[0]
     file = pyuff.UFF(str(path))
-    assert file.get_set_types().tolist() == [58, *[55] * modes.poles.size]
+    noise = [frf.coherence, frf.variance]
+    assert file.get_set_types().tolist() == [58, 58, 58, *[55] * modes.poles.size]
     read = file.read_sets(0)
+    for number, values in enumerate(noise, 1):
+        assert np.allclose(file.read_sets(number)["data"], values[0, 0], rtol=1e-11)
     assert np.allclose(read["data"], frf.response[0, 0], rtol=1e-11)
-    eigenvalues = [file.read_sets(i + 1)["eig"] for i in range(modes.poles.size)]
+    eigenvalues = [file.read_sets(i + 3)["eig"] for i in range(modes.poles.size)]
     assert np.allclose(eigenvalues, modes.poles, rtol=1e-5)
     with pytest.raises(BadData, match="no time history"):
         read_universal(path, columns=None, point="1")
@@ -138,7 +141,8 @@ def test_a_universal_file_of_others_becomes_tables(result: Path) -> None:
     path = exported(result, "uff")["uff"]
     _, frf, modes = result_modes(result)[0]
     files = exported(path, "csv")
-    lines = rows(files["frf.csv"])
+    assert {"coherence-2.csv", "function_0-3.csv"} <= set(files)
+    lines = rows(files["frf-1.csv"])
     axis = [float(line["frequency [Hz]"]) for line in lines]
     assert axis == pytest.approx(frf.frequency, rel=1e-5)
     real = [float(line["1/1 re [m/s^2]"]) for line in lines]
