@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: MIT
 """What a person at the bench must know beside the table of modes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.beyond_band import Beyond, look_beyond
 from jointbench.signal.frf.frf_of_functions import noise_source
 from jointbench.signal.frf.linearity import Linearity, check_linearity
 from jointbench.signal.hits.find_hits import accepted_hits
+from jointbench.signal.hits.hit_pairs import point_of
 from jointbench.signal.hits.hit_spectra import hit_spectra
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.data_limits import (
@@ -30,7 +33,8 @@ class ModalNotes:
         linearity: whether the FRF depends on the level, None where it was not checked.
         unchecked: why linearity was not checked, or empty.
         limits: what cannot be in the data, a sentence each.
-        sources: what the noise of FRFs from files comes from, a sentence each.
+        sources: origin of the noise of FRFs from files, and FRFs by reciprocity, one
+            sentence each.
     """
 
     beyond: Beyond
@@ -63,7 +67,23 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
     except BadData as error:
         linearity, unchecked = None, str(error)
     beyond = look_beyond(chain.frf, chain.result.band, spectra)
-    return ModalNotes(beyond, linearity, unchecked, limit_words(chain))
+    turned = _reciprocal_words(chain, judged)
+    return ModalNotes(beyond, linearity, unchecked, limit_words(chain), turned)
+
+
+def _reciprocal_words(
+    chain: ModalChain, judged: Sequence[Recording]
+) -> tuple[str, ...]:
+    """Name the outputs that were hit and never measured."""
+    measured = {f"{c.name}@{c.point}" for r in judged for c in r.channels}
+    turned = [point_of(o) for o in chain.frf.outputs if o not in measured]
+    if not turned:
+        return ()
+    return (
+        f"points {', '.join(turned)} were hit, not measured: their FRFs are taken by "
+        f"reciprocity with point {', '.join(chain.frf.inputs)}, which holds where hits "
+        "and accelerometer act along the same direction",
+    )
 
 
 def _frf_notes(chain: ModalChain) -> ModalNotes:
