@@ -106,7 +106,7 @@ def test_a_cluster_that_is_lost_midway_is_one_line_and_gone_on_with(
                 (kill_scheduler if killed == "scheduler" else kill_worker)()
             yield outcome
 
-    with pytest.raises(InstrumentError, match="type the same command") as caught:
+    with pytest.raises(InstrumentError, match="repeat the same command") as caught:
         _run(tmp_path, dying)
     assert code_of(caught.value) == EXIT_INSTRUMENT
     assert "distributed" not in capfd.readouterr().err  # Dask's own account

@@ -415,7 +415,7 @@ FAULTY: Mapping[str, tuple[str, tuple[str, str], str, str]] = {
         "effects",
         ("own", "EFFECT"),
         EFFECT_TEXT.format(name="own", sites=("body",)),
-        "its hook law sits on link, not on body",
+        "its hook law acts on a link, not on a body",
     ),
     "probe": (
         "effects",

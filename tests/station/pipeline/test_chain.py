@@ -138,4 +138,4 @@ def test_hits_judged_again_are_compared_with_the_whole_session() -> None:
     hits = [own.hits for own in found]
     verdicts = [own[0].verdict for own in hits]
     assert verdicts == [Verdict.OK, Verdict.OK, Verdict.WEAK, Verdict.WEAK]
-    assert "the plan asks for, 80 N" in hits[3][0].reason
+    assert "the planned level, 80 N" in hits[3][0].reason
