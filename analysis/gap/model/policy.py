@@ -26,7 +26,7 @@ class Policy:
         "sd of chi2/dof with the noise estimate counted",
         "closed form of the sd (expected_residual.noise_sd); checked on the full null "
         "draws of docs/gap-null.md",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     null_chance: float = decision(
         0.005,
@@ -34,14 +34,14 @@ class Policy:
         "chance that noise alone exceeds the null limit of the directed tests",
         "quantile of 4,000 linearised draws; checked on the full draws of "
         "docs/gap-null.md",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     null_factor: float = decision(
         1.3,
         "-",
         "factor on the linearised null limit, for shapes between the grid points",
         "null draws of an earlier prototype",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     prior_limit: float = decision(
         4.0,
@@ -49,21 +49,21 @@ class Policy:
         "deviation of a base parameter from its nominal value, in sd of its prior, "
         "above which a fit is rejected",
         "closed form: one test in 16,000 by chance",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     amplitude_limit: float = decision(
         4.0,
         "sd",
         "distance of the weakest effect from zero below which a fit is rejected",
         "closed form: one test in 16,000 by chance",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     parts_chance: float = decision(
         3e-4,
         "-",
         "chance below which parts of the records differ, for a fit with effects",
         "closed form over 12 cuts; 22 right fits (seeds 80000 on), none below 1e-3",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     parts_chance_base: float = decision(
         3e-5,
@@ -71,7 +71,7 @@ class Policy:
         "chance below which parts of the records differ, for the base alone",
         "closed form over 12 cuts; 60 nulls (seeds 70000 on): the smallest chance "
         "was 1.3e-4",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 20; +30 %: 0 of 20",
     )
     model_error_factor: float = decision(
         1.0,
@@ -79,7 +79,7 @@ class Policy:
         "factor on the share of the base's excess chi2 that a correct law may leave",
         "1 by definition; the shares themselves were set on correct laws fitted alone "
         "in the development campaigns",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "-30 %: 0 of 17; +30 %: 0 of 16",
     )
     model_error_elsewhere: float = decision(
         2e-5,
@@ -87,7 +87,7 @@ class Policy:
         "largest share of the base's excess chi2 that the model error of a law may "
         "leave at sites other than its own",
         "development campaigns, correct laws fitted alone",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     shape_sd_share: float = decision(
         0.3,
@@ -95,7 +95,7 @@ class Policy:
         "sd of a shape parameter below which it counts as known when it is checked "
         "for a value at the end of its range",
         "hidden 92007: a Jenkins slider fitted by a Bouc-Wen element at its limit",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     shape_end_share: float = decision(
         1e-3,
@@ -103,7 +103,7 @@ class Policy:
         "distance from the end of its range below which a shape parameter is at "
         "its limit",
         "hidden 92007, as above",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     rival_score: float = decision(
         15.0,
@@ -118,7 +118,8 @@ class Policy:
         "chi2",
         "the same where one site carries two effects",
         "calibration campaigns (benchmarks/gap/calibrate.py)",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 1 of 20 (1 x unknown to ambiguous, truth in it); +30 %: 1 of 20 "
+        "(1 x unknown to unknown)",
     )
     most_rivals: int = decision(
         3,
@@ -140,7 +141,7 @@ class Policy:
         "chi2",
         "charge on the score for each phase that an effect fits",
         "a phase is bounded and costs less than a free parameter; no campaign set it",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 1 of 16 (1 x right to ambiguous, truth in it); +30 %: 0 of 16",
     )
     least_gain: float = decision(
         35.0,
@@ -155,7 +156,7 @@ class Policy:
         "share of the base's excess chi2 that a pair may leave for a third effect to "
         "be tried",
         "computing time: campaigns without an answer took up to 270 s",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     far_chi2: float = decision(
         30.0,
@@ -163,7 +164,7 @@ class Policy:
         "chi2/dof above which a fit is far from the records: pairs are searched under "
         "short windows, and noise and settling are not estimated there",
         "development case 01, pair 93000",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     least_scatter: float = decision(
         2e-5,
@@ -192,7 +193,7 @@ class Policy:
         "predicted samples after which no further effect is searched for",
         "75 to 87 s on a core of 2.3 GHz; 100 pairs (one right answer took more: "
         "97033)",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     one_level_ratio: float = decision(
         1.5,
@@ -200,14 +201,14 @@ class Policy:
         "ratio of the hardest hit to the softest below which the campaign has one "
         "level and the verdict is unknown",
         "a level effect cannot be separated within it; no campaign set it",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
     least_records: int = decision(
         4,
         "records",
         "number of records below which the verdict is unknown",
         "two levels, each repeated; no campaign set it",
-        "-30 %: not run; +30 %: not run",
+        "-30 %: 0 of 16; +30 %: 0 of 16",
     )
 
 
