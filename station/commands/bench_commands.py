@@ -33,7 +33,7 @@ def measure_command(
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Measure hammer hits by a plan of points, levels and torques.
+    """Measure hammer hits as planned: points, levels and torques.
 
     The command proposes trigger level and windows, judges each hit, and names the
     next point, level and torque. The session file survives a crash, a lost cable and
@@ -64,7 +64,7 @@ def record_command(
     json: Json = None,
     debug: Debug = False,
 ) -> int:
-    """Record a whole campaign of a bench into a session file.
+    """Record a whole campaign on a bench into a session file.
 
     All hits are judged after the recording.
 

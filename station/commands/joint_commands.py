@@ -81,7 +81,7 @@ def gap_command(
     json: Json = None,
     debug: Debug = False,
 ) -> None:
-    """Find the effect that a model lacks to explain the hits.
+    """Find the effect that is missing from a model.
 
     The verdict is 'named', 'none', 'ambiguous' with an experiment that separates the
     candidates, or 'unknown'.

@@ -95,7 +95,7 @@ def modal_command(
     json: Json = None,
     debug: Debug = False,
 ) -> None:
-    """Estimate modes from a session, hit files or files of FRFs.
+    """Estimate modes from a session, hit files or FRF files.
 
     Natural frequencies [Hz] and damping ratios [%] have standard deviations. Each
     preload has its own modes. FRFs are recognised by their content; --columns names

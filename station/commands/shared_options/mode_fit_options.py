@@ -28,14 +28,14 @@ Keep = Annotated[
     list[float] | None,
     typer.Option(
         metavar="FREQUENCY",
-        help="Keep the pole next to this frequency [Hz] as a mode, for example 5031.",
+        help="Keep the pole nearest this frequency [Hz] as a mode, for example 5031.",
     ),
 ]
 Drop = Annotated[
     list[float] | None,
     typer.Option(
         metavar="FREQUENCY",
-        help="Drop the mode next to this frequency [Hz], for example 3007.",
+        help="Drop the mode nearest this frequency [Hz], for example 3007.",
     ),
 ]
 EstimatorName = Annotated[
