@@ -5,7 +5,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    freeze,
+)
 from jointbench.acquisition.basics.errors import NoModeFound, UsageError
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.provenance import Step, step
@@ -42,7 +47,8 @@ class ModalSettings:
 
     Attributes:
         band: lowest and highest frequency [Hz], or None for the automatic choice.
-        highest_order: of the fit, 2 or more, or None for 100 over the number of inputs.
+        highest_order: of the fit, 2 or more, or None for 100 over the number of
+            references, the smaller of outputs and inputs.
         stability: when a pole counts as stable.
         refine: whether poles are refined by nonlinear least squares.
         choices: poles kept or dropped by hand.
@@ -154,11 +160,12 @@ def _stabilisation(
     frf: Frf, keep: BoolArray, settings: ModalSettings, progress: Progress | None
 ) -> tuple[Stabilisation, str]:
     """Return the poles of all orders, and what their lines were weighed by."""
-    orders = orders_to_try(settings, int(np.count_nonzero(keep)), len(frf.inputs))
+    response = references_last(frf.response[:, :, keep])
+    orders = orders_to_try(settings, response.shape[2], response.shape[1])
     weight, source = weights_of(frf, keep)
     poles = fit_poles(
         frf.frequency[keep],
-        frf.response[:, :, keep],
+        response,
         orders,
         weight=weight,
         # One pole a mode draws the clearer table; refinement knows mirror images.
@@ -169,6 +176,29 @@ def _stabilisation(
     return stabilise(poles, settings.stability), source
 
 
+def references_last(response: ComplexArray) -> ComplexArray:
+    """Return the FRF matrix with no more columns than rows.
+
+    Every input adds a pole to each order, so that twelve hit points and one
+    accelerometer would leave eight orders of twelve poles each. Maxwell's reciprocity
+    lets either side be the references: the smaller one is. Poles need no more; residues
+    are fitted to the matrix as measured, so that shapes and participation keep their
+    sides.
+
+    Args:
+        response: shape (n_outputs, n_inputs, n_lines).
+
+    Returns:
+        The same, or its transpose, shape (n_inputs, n_outputs, n_lines), where there
+        are more inputs than outputs.
+
+    Source:
+        Ewins, Modal Testing (2000), sec. 1.4 and 3.8.
+    """
+    swapped = response.shape[1] > response.shape[0]
+    return response.transpose(1, 0, 2) if swapped else response
+
+
 def orders_to_try(
     settings: ModalSettings, n_lines: int, n_inputs: int
 ) -> tuple[int, ...]:
@@ -177,7 +207,7 @@ def orders_to_try(
     Args:
         settings: `highest_order` is taken as it is where given.
         n_lines: lines in the band.
-        n_inputs: each order has as many poles as there are inputs.
+        n_inputs: references; each order has as many poles.
 
     Returns:
         Ascending orders.
