@@ -150,6 +150,8 @@ def score(case: Case) -> Row:
     pole, sd = bound
     width = -2.0 * pole.real
     shown = sd[:, 1] < _SHOWN * width
+    # At the edge of the band one flank is all that was measured.
+    shown &= pole.imag + width < 2.0 * np.pi * BAND[1]
     try:
         result = identify_modes(estimate_frf(case.measured.recordings))
     except BadData as error:
@@ -228,7 +230,7 @@ def _pairs(
             size = rest[np.searchsorted(outputs, o), np.searchsorted(inputs, k)]
             total += 2.0 * abs(size) ** 2 * float(np.sum((gain * weight)[1:]))
         frequency = float(abs(pole[i]) / (2.0 * np.pi))
-        found.append((frequency, total > 1000.0, int(hit[i]) + int(hit[i + 1])))
+        found.append((frequency, bool(total > 1e3), int(hit[i]) + int(hit[i + 1])))
     return found
 
 

@@ -21,10 +21,10 @@ from jointbench.signal.frf.estimators import Estimator, bias_bound, estimate_pai
 from jointbench.signal.frf.innovation_noise import innovation_noise
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import accepted_hits, find_hits
+from jointbench.signal.hits.hit_pairs import pair_up
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
     hit_spectra,
-    pair_up,
     require_alive,
 )
 from jointbench.signal.hits.hit_verdicts import HitLimits
@@ -148,7 +148,7 @@ def estimate_frf(
         NoHitFound: no accepted hit.
         SamplingError: the sample rates differ.
         ChannelMissing: a dead response, responses of different quantities, or a pair
-            of output and input that was never measured together.
+            of output and input that was never measured together, either way round.
 
     Source:
         Bendat and Piersol, Random Data (2010), sec. 6.1 and 9.2 (H1, its variance).

@@ -12,7 +12,8 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.provenance import Provenance
-from jointbench.signal.hits.hit_spectra import HitSpectra, Pair
+from jointbench.signal.hits.hit_pairs import Pair
+from jointbench.signal.hits.hit_spectra import HitSpectra
 from jointbench.signal.kalman.smoothing import stage_noise_of
 
 

@@ -21,7 +21,8 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.frf.frf import excited_band
-from jointbench.signal.hits.hit_spectra import HitSpectra, Pair, pair_up
+from jointbench.signal.hits.hit_pairs import Pair, pair_up
+from jointbench.signal.hits.hit_spectra import HitSpectra
 
 _LEAST_HITS = 3
 # Hits whose levels differ by less than this factor cannot show a dependence.

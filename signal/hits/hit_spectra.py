@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Spectra of hammer hits on one common block, and which hits serve which FRF."""
+"""Spectra of hammer hits on one common block."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import (
     ChannelMissing,
     NoHitFound,
@@ -52,19 +52,6 @@ class HitSpectra:
     quantity: Quantity
     block: int
     block_reason: str
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Pair:
-    """The hits that measured one output from one input.
-
-    Attributes:
-        hits: indices into the hits, shape (n,).
-        rows: the response row in each of them, shape (n,).
-    """
-
-    hits: IntArray
-    rows: IntArray
 
 
 def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpectra:
@@ -142,43 +129,6 @@ def require_alive(recording: Recording, hit: Hit) -> None:
             f"{hit.trigger / recording.sample_rate:.4g} s; check the cable and the "
             "sensor, or leave the channel out"
         )
-
-
-def pair_up(
-    spectra: HitSpectra,
-) -> tuple[tuple[str, ...], tuple[str, ...], tuple[Pair, ...]]:
-    """Sort hits into pairs of output and input.
-
-    Returns:
-        Output labels, input points, and the pairs, outputs outermost.
-
-    Raises:
-        ChannelMissing: a pair was never measured together.
-    """
-    outputs = tuple(dict.fromkeys(label for row in spectra.labels for label in row))
-    inputs = tuple(dict.fromkeys(spectra.points))
-    return (
-        outputs,
-        inputs,
-        tuple(_pair(spectra, output, point) for output in outputs for point in inputs),
-    )
-
-
-def _pair(spectra: HitSpectra, output: str, point: str) -> Pair:
-    hits = [
-        i
-        for i, (labels, struck) in enumerate(
-            zip(spectra.labels, spectra.points, strict=True)
-        )
-        if struck == point and output in labels
-    ]
-    if not hits:
-        raise ChannelMissing(
-            f"response {output!r} was never measured with an accepted hit at point "
-            f"{point!r}; leave one of them out or add the missing hits"
-        )
-    rows = [spectra.labels[i].index(output) for i in hits]
-    return Pair(np.array(hits), np.array(rows))
 
 
 def windowed_hit(
