@@ -9,6 +9,7 @@ second one and do not show it, that is stated.
 """
 
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 import scipy.stats
@@ -28,6 +29,7 @@ from jointbench.signal.modal.rank_one_fit import (
     covariance,
     fit_rank_one,
 )
+from jointbench.signal.modal.second_mode_words import second_mode_words
 
 # Lines around a mode: half-power half-widths, and lines at least, each side.
 _REACH_WIDTHS, _REACH_LINES = 6.0, 12
@@ -39,8 +41,6 @@ _LEASH = 1.0
 # less is gained by a residue above this share of the first's, it is only possible.
 _GAIN, _LEAST_SHARE = 2.0, 0.003
 _MOST_OTHERS = 2
-# A second singular value peaks where it exceeds that at the ends of the peak by this.
-_PEAKED = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,7 +116,8 @@ def separate_repeated(
         return model, ()
     order = np.argsort(np.abs(fitted.poles.pole))
     row_of = np.argsort(order)
-    left, pieces, hints = set(range(order.size)), [], []
+    left, pieces = set(range(order.size)), []
+    hints: list[float] = []
     for number, place in enumerate(order):
         if number not in left or not _second_rank(model, number):
             continue
@@ -131,15 +132,16 @@ def separate_repeated(
             # One split a cluster: what else may be hidden in it is only remarked on.
             frequency = np.abs(found.modes.pole[used][2:]) / (2.0 * np.pi)
             hints.extend(
-                f
+                float(f)
                 for f, n in zip(frequency, along, strict=True)
                 if _second_rank(model, n)
             )
         elif found.possible:
-            hints.append(model.natural_frequency[number])
+            hints.append(float(model.natural_frequency[number]))
     pieces.append(_rows(model, np.array(sorted(left), np.int64)))
     whole = _joined(model, pieces)
-    return whole, _words(whole, sides, hints)
+    matrices = sides.matrices(lines.response)
+    return whole, second_mode_words(whole, lines, matrices, hints)
 
 
 def _members(lines: FrfLines, pole: ComplexArray, place: int) -> IntArray:
@@ -290,7 +292,7 @@ def _rows_of(
 
 
 def _quadratic(row: FloatArray, matrix: FloatArray) -> FloatArray:
-    return np.maximum(np.einsum("mi,mij,mj->m", row, matrix, row), 0.0)
+    return np.asarray(np.maximum(np.einsum("mi,mij,mj->m", row, matrix, row), 0.0))
 
 
 def _shapes_sd(sd: FloatArray, participation: ComplexArray) -> ComplexArray:
@@ -304,47 +306,5 @@ def _shapes_sd(sd: FloatArray, participation: ComplexArray) -> ComplexArray:
 def _joined(model: ModalModel, pieces: list[_Piece]) -> ModalModel:
     whole = {k: np.concatenate([p[k] for p in pieces]) for k in pieces[0]}
     order = np.argsort(whole["natural_frequency"], kind="stable")
-    return replace(model, **{k: v[order] for k, v in whole.items()})
-
-
-def _words(
-    model: ModalModel, sides: _Sides, hints: list[np.floating]
-) -> tuple[str, ...]:
-    """State at which modes a second one is possible."""
-    curves = _singular_values(sides)
-    omega = sides.lines.laplace.imag
-    words = []
-    for number, pole in enumerate(model.poles):
-        frequency = model.natural_frequency[number]
-        width = float(measured_width(sides.lines, model.poles[number : number + 1])[0])
-        apart = np.abs(model.poles.imag - pole.imag)
-        paired = np.count_nonzero(apart < 2.0 * width) > 1
-        if frequency in hints or (
-            not paired and _peak_together(curves, omega, float(pole.imag), width)
-        ):
-            words.append(
-                f"mode {number + 1} at {frequency:.6g} Hz: second mode at the same "
-                "frequency possible (a second singular value of the FRF matrix rises "
-                "there too): add a reference"
-            )
-    return tuple(words)
-
-
-def _singular_values(sides: _Sides) -> FloatArray:
-    """Return the two largest singular values on each line, shape (2, n_lines)."""
-    matrices = sides.matrices(sides.lines.response).transpose(2, 0, 1)
-    return np.asarray(np.linalg.svd(matrices, compute_uv=False)[:, :2].T)
-
-
-def _peak_together(
-    curves: FloatArray, omega: FloatArray, at: float, width: float
-) -> bool:
-    """Return whether both curves peak within half a half-power width of a mode."""
-    inside = np.flatnonzero(np.abs(omega - at) < width)
-    around = np.flatnonzero(np.abs(omega - at) < 4.0 * width)
-    if inside.size < 2 or around.size < inside.size + 4:
-        return False
-    edges = around[[0, -1]]
-    return bool(
-        np.all(curves[:, inside].max(axis=1) > _PEAKED * curves[:, edges].max(axis=1))
-    )
+    ordered: dict[str, Any] = {k: v[order] for k, v in whole.items()}
+    return replace(model, **ordered)

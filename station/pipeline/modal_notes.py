@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
 """What a person at the bench must know beside the table of modes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.beyond_band import Beyond, look_beyond
 from jointbench.signal.frf.linearity import Linearity, check_linearity
 from jointbench.signal.hits.find_hits import accepted_hits
+from jointbench.signal.hits.hit_pairs import point_of
 from jointbench.signal.hits.hit_spectra import hit_spectra
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.data_limits import (
@@ -29,19 +32,22 @@ class ModalNotes:
         linearity: whether the FRF depends on the level, None where it was not checked.
         unchecked: why linearity was not checked, or empty.
         limits: what cannot be in the data, a sentence each.
+        possible: modes that the data hint at, and pairs taken by reciprocity, a
+            sentence each.
     """
 
     beyond: Beyond
     linearity: Linearity | None
     unchecked: str
     limits: tuple[str, ...]
+    possible: tuple[str, ...] = ()
 
     def remarks(self) -> tuple[str, ...]:
         """Return what the modes should be read with, a sentence each."""
         words = []
         if self.linearity is not None and self.linearity.nonlinear:
             words.append(f"levels disagree: {self.linearity.words}")
-        return (*words, *filter(None, [self.beyond.words()]))
+        return (*words, *self.possible, *filter(None, [self.beyond.words()]))
 
 
 def modal_notes(chain: ModalChain) -> ModalNotes:
@@ -58,7 +64,23 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
     except BadData as error:
         linearity, unchecked = None, str(error)
     beyond = look_beyond(chain.frf, chain.result.band, spectra)
-    return ModalNotes(beyond, linearity, unchecked, limit_words(chain))
+    possible = (*chain.result.remarks, *_reciprocal_words(chain, judged))
+    return ModalNotes(beyond, linearity, unchecked, limit_words(chain), possible)
+
+
+def _reciprocal_words(
+    chain: ModalChain, judged: Sequence[Recording]
+) -> tuple[str, ...]:
+    """State which outputs were hit and never measured."""
+    measured = {f"{c.name}@{c.point}" for r in judged for c in r.channels}
+    turned = [point_of(o) for o in chain.frf.outputs if o not in measured]
+    if not turned:
+        return ()
+    return (
+        f"points {', '.join(turned)} were hit, not measured: their FRFs are taken by "
+        f"reciprocity with point {', '.join(chain.frf.inputs)}, which holds where hits "
+        "and accelerometer act along the same direction",
+    )
 
 
 def limit_words(chain: ModalChain) -> tuple[str, ...]:
