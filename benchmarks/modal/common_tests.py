@@ -2,14 +2,16 @@
 """The common modal tests: roving hammer, repeated roots, dense sets, heavy damping.
 
 Usage: OMP_NUM_THREADS=1 python benchmarks/modal/common_tests.py FILE.jsonl
-    [--label after] [--kinds KIND,KIND] [--seeds 30] [--first 0] [--page PAGE.md]
+    [--label after] [--kinds KIND,KIND] [--seeds 30] [--first 0]
 
 Structures are integrated in time from their matrices (tests/judges), hit with aim
 scatter of 1 % and recorded with noise 40, 50 or 60 dB below each response. A mode can
 be shown by a measurement where the Cramer-Rao bound on its frequency is below a tenth
 of its half-power width. It counts as found where a mode was reported within half its
 half-power width, each reported mode for one true one only; what is left is false.
-Each line of the file is one structure; what the file holds is not run again.
+Each line of the file is one structure; what the file holds is not run again. Rows of
+an earlier version, run with --label before, stand beside those of this one on the page
+that common_tests_page.py writes.
 """
 
 import argparse
@@ -44,7 +46,6 @@ from jointbench.signal.modal.modes import identify_modes
 
 _FAR = 1e9
 _SHOWN = 0.1
-_NORMAL_95 = 1.959964
 Row = dict[str, object]
 Rng = np.random.Generator
 
@@ -146,8 +147,7 @@ KINDS: dict[str, Callable[[Rng], Case]] = {
 
 def score(case: Case) -> Row:
     """Return what was found of one structure."""
-    bound = pole_bound(case.structure, case.measured)
-    pole, sd = bound
+    pole, sd = pole_bound(case.structure, case.measured)
     width = -2.0 * pole.real
     shown = sd[:, 1] < _SHOWN * width
     # At the edge of the band one flank is all that was measured.
@@ -245,7 +245,7 @@ def run(kind: str, seed: int, label: str) -> Row:
 
 
 def main() -> None:
-    """Run what the file does not hold yet and write the page."""
+    """Run what the file does not hold yet."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("file", type=Path)
     parser.add_argument("--label", default="after")

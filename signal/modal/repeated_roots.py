@@ -41,6 +41,9 @@ _LEASH = 1.0
 # less is gained by a residue above this share of the first's, it is only possible.
 _GAIN, _LEAST_SHARE = 2.0, 0.003
 _MOST_OTHERS = 2
+# Chi-squared over the number of values up to which two modes explain the lines, and up
+# to which the modes around them are taken from the same fit.
+_EXPLAINED, _WELL = 5.0, 1.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -212,14 +215,16 @@ def _split(sides: _Sides, members: IntArray) -> _Split:
     moved = np.abs(double.pole - np.concatenate((pole[:1], pole))) / width
     stays = (moved < 2.0 * _LEASH) & (double.pole.real < 0.0)
     size = np.linalg.svd(residue[0], compute_uv=False)
+    left = double.cost / (2.0 * peak.response.size)
+    better = single.cost > _GAIN * double.cost and left < _EXPLAINED
     gained = single.cost - double.cost > limit
     return _Split(
         peak,
         double,
         single.cost - double.cost,
-        accepted=bool(gained and stays[:2].all() and single.cost > _GAIN * double.cost),
+        accepted=bool(gained and stays[:2].all() and better),
         possible=bool(gained and size[1] > _LEAST_SHARE * size[0]),
-        stayed=np.asarray(stays[2:]),
+        stayed=np.asarray(stays[2:] & (left < _WELL)),
     )
 
 

@@ -4,7 +4,7 @@
 Nothing is shared with the modal estimators: accelerations come from the equations of
 motion in physical coordinates, stepped by the matrix exponential with the force linear
 between steps; poles are eigenvalues of the state matrix. Every hit is aimed a little
-off its point. The Cramer-Rao bound of a measurement says which modes it can show.
+off its point. The Cramer-Rao bound of a measurement limits the modes that it can show.
 """
 
 from collections.abc import Sequence
