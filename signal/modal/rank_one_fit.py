@@ -21,7 +21,7 @@ _RIDGE = 1e-12
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Peak:
+class PeakLines:
     """The lines around a peak, without the modes that stand apart from it.
 
     Attributes:
@@ -60,7 +60,7 @@ class RankOneModes:
 
 
 def fit_rank_one(
-    peak: Peak, pole: ComplexArray, reference: ComplexArray
+    peak: PeakLines, pole: ComplexArray, reference: ComplexArray
 ) -> RankOneModes:
     """Fit poles and references by variable projection; shapes are linear.
 
@@ -92,7 +92,7 @@ def _packed(
 
 
 def _unpacked(
-    peak: Peak, values: FloatArray, pivot: np.ndarray
+    peak: PeakLines, values: FloatArray, pivot: np.ndarray
 ) -> tuple[ComplexArray, ComplexArray]:
     numbers = np.ascontiguousarray(values).view(np.complex128)
     n_modes, n_references = pivot.size, peak.response.shape[1]
@@ -104,7 +104,7 @@ def _unpacked(
 
 
 def _projected(
-    peak: Peak, pole: ComplexArray, reference: ComplexArray
+    peak: PeakLines, pole: ComplexArray, reference: ComplexArray
 ) -> tuple[ComplexArray, FloatArray]:
     """Solve for the shapes; return them and the whitened residual."""
     columns = _columns(peak, pole, reference)
@@ -121,7 +121,9 @@ def _projected(
     return np.asarray(shapes.T), left.ravel()
 
 
-def _columns(peak: Peak, pole: ComplexArray, reference: ComplexArray) -> ComplexArray:
+def _columns(
+    peak: PeakLines, pole: ComplexArray, reference: ComplexArray
+) -> ComplexArray:
     """Return responses to unit Re and Im of a shape, (n_refs n_lines, 2 n_modes)."""
     power = peak.laplace**peak.derivatives
     own = reference.T[:, None] * (power[:, None] / (peak.laplace[:, None] - pole))
@@ -131,7 +133,7 @@ def _columns(peak: Peak, pole: ComplexArray, reference: ComplexArray) -> Complex
     return np.asarray(columns.reshape(-1, 2 * pole.size))
 
 
-def covariance(peak: Peak, modes: RankOneModes) -> tuple[FloatArray, FloatArray]:
+def covariance(peak: PeakLines, modes: RankOneModes) -> tuple[FloatArray, FloatArray]:
     """Return the covariance of the poles, and the variance of all residues.
 
     Args:
@@ -176,7 +178,7 @@ def covariance(peak: Peak, modes: RankOneModes) -> tuple[FloatArray, FloatArray]
 
 
 def _whitened(
-    peak: Peak, pole: ComplexArray, shape: ComplexArray, reference: ComplexArray
+    peak: PeakLines, pole: ComplexArray, shape: ComplexArray, reference: ComplexArray
 ) -> FloatArray:
     columns = _columns(peak, pole, reference)
     numbers = np.ascontiguousarray(shape.T).view(np.float64)

@@ -24,7 +24,7 @@ from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.modal_model import ModalModel, split_residues
 from jointbench.signal.modal.mode_selection import FittedModes
 from jointbench.signal.modal.rank_one_fit import (
-    Peak,
+    PeakLines,
     RankOneModes,
     covariance,
     fit_rank_one,
@@ -92,7 +92,7 @@ class _Split:
         stayed: which of the modes around kept their places, shape (n_members - 1,).
     """
 
-    peak: Peak
+    peak: PeakLines
     modes: RankOneModes
     gain: float
     accepted: bool
@@ -169,7 +169,7 @@ def _second_rank(model: ModalModel, number: int, chance: float = _HINT) -> bool:
     return bool(power.sum() > scipy.stats.chi2.isf(chance, dof))
 
 
-def _peak(sides: _Sides, members: IntArray) -> Peak:
+def _peak(sides: _Sides, members: IntArray) -> PeakLines:
     """Return the lines around the first member, freed of all modes but the members."""
     lines, poles = sides.lines, sides.fitted.poles
     p = poles.pole[members]
@@ -185,7 +185,7 @@ def _peak(sides: _Sides, members: IntArray) -> Peak:
     left = lines.response[:, near] - sides.fitted.fit.synthesis[:, near] + own
     factor = max(1.0, float(poles.inflation[members[0]]))
     variance = sides.fitted.variance[:, near] * factor
-    return Peak(
+    return PeakLines(
         s,
         sides.matrices(left),
         sides.matrices(np.sqrt(0.5 * variance)),
@@ -229,7 +229,7 @@ def _split(sides: _Sides, members: IntArray) -> _Split:
 
 
 def _start(
-    peak: Peak, pole: complex, residue: ComplexArray
+    peak: PeakLines, pole: complex, residue: ComplexArray
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return two poles and their references from the residue and its slope.
 
