@@ -37,8 +37,8 @@ _REACH_WIDTHS, _REACH_LINES = 6.0, 12
 _CHANCE, _HINT = 1e-6, 1e-3
 # A second mode is one where its pole is no further off than half-power widths.
 _LEASH = 1.0
-# One mode in its place must leave this many times the chi-squared that two leave; where
-# less is gained by a residue above this share of the first's, it is only possible.
+# One mode in its place must leave this many times the chi-squared that two leave; else
+# a second singular value above this share of the first makes it possible.
 _GAIN, _LEAST_SHARE = 2.0, 0.003
 _MOST_OTHERS = 2
 # Chi-squared over the number of values up to which two modes explain the lines, and up
@@ -223,7 +223,7 @@ def _split(sides: _Sides, members: IntArray) -> _Split:
         double,
         single.cost - double.cost,
         accepted=bool(gained and stays[:2].all() and better),
-        possible=bool(gained and size[1] > _LEAST_SHARE * size[0]),
+        possible=bool(size[1] > _LEAST_SHARE * size[0]),
         stayed=np.asarray(stays[2:] & (left < _WELL)),
     )
 
