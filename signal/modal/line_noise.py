@@ -37,13 +37,19 @@ def line_noise(
 
     Returns:
         E|error|^2, same shape, positive everywhere.
+
+    Note:
+        The scatter between hits also holds what moves whole residues and no pole: the
+        aim of the hammer, its gain. It is smooth over the lines of a peak, so that the
+        roughness of the residual does not contain it; the smaller of the two counts.
     """
-    if scatter is not None:
-        noise = scatter
-    elif residual is None:
+    if residual is None:
         noise = roughness(response)
     else:
         noise = roughness(residual, alike=_RESIDUAL_LINES)
+    if scatter is not None:
+        usual = uniform_filter1d(scatter, _LEVEL_LINES, axis=1, mode="nearest")
+        noise = np.minimum(noise, usual)
     floor = (_BEST**2) * local_level(response)
     smallest = float(floor.max()) * 1e-12 or 1.0
     return np.asarray(np.maximum(noise, np.maximum(floor, smallest)))

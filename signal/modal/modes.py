@@ -24,6 +24,7 @@ from jointbench.signal.modal.lscf import Progress, fit_poles
 from jointbench.signal.modal.manual_selection import Choices, overrule
 from jointbench.signal.modal.modal_model import ModalModel, build_model
 from jointbench.signal.modal.mode_selection import FittedModes, fit_modes
+from jointbench.signal.modal.repeated_roots import separate_repeated
 from jointbench.signal.modal.stabilisation import (
     Stabilisation,
     StabilityLimits,
@@ -74,6 +75,7 @@ class ModalResult:
         settings: as requested.
         band: lowest and highest fitted line [Hz].
         stage_gain: gain of the Kalman stage at each mode, or None without one.
+        remarks: possible further modes that the data do not resolve, a sentence each.
     """
 
     model: ModalModel
@@ -83,6 +85,7 @@ class ModalResult:
     settings: ModalSettings
     band: tuple[float, float]
     stage_gain: StageGain | None = None
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Make the error read-only."""
@@ -145,6 +148,7 @@ def identify_modes(
         )
     done = _record(reason, weighed, table, start.size, fitted, settings.choices)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
+    model, remarks = separate_repeated(model, lines, fitted)
     return ModalResult(
         model=model,
         stabilisation=table,
@@ -153,6 +157,7 @@ def identify_modes(
         settings=settings,
         band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
         stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
+        remarks=remarks,
     )
 
 

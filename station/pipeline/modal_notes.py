@@ -33,7 +33,8 @@ class ModalNotes:
         linearity: whether the FRF depends on the level, None where it was not checked.
         unchecked: why linearity was not checked, or empty.
         limits: what cannot be in the data, a sentence each.
-        sources: origin of the noise of FRFs from files, and FRFs by reciprocity, one
+        sources: origin of the noise of FRFs from files, a sentence each.
+        possible: modes that the data hint at, and pairs taken by reciprocity, a
             sentence each.
     """
 
@@ -42,13 +43,19 @@ class ModalNotes:
     unchecked: str
     limits: tuple[str, ...]
     sources: tuple[str, ...] = ()
+    possible: tuple[str, ...] = ()
 
     def remarks(self) -> tuple[str, ...]:
         """Return what the modes should be read with, a sentence each."""
         words = []
         if self.linearity is not None and self.linearity.nonlinear:
             words.append(f"levels disagree: {self.linearity.words}")
-        return (*self.sources, *words, *filter(None, [self.beyond.words()]))
+        return (
+            *self.sources,
+            *words,
+            *self.possible,
+            *filter(None, [self.beyond.words()]),
+        )
 
 
 def modal_notes(chain: ModalChain) -> ModalNotes:
@@ -67,8 +74,8 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
     except BadData as error:
         linearity, unchecked = None, str(error)
     beyond = look_beyond(chain.frf, chain.result.band, spectra)
-    turned = _reciprocal_words(chain, judged)
-    return ModalNotes(beyond, linearity, unchecked, limit_words(chain), turned)
+    possible = (*chain.result.remarks, *_reciprocal_words(chain, judged))
+    return ModalNotes(beyond, linearity, unchecked, limit_words(chain), (), possible)
 
 
 def _reciprocal_words(

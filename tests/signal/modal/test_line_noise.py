@@ -25,10 +25,14 @@ def test_roughness_estimates_the_noise_of_a_resonant_frf(
     assert roughness(frf.response[0]).mean() == pytest.approx(variance, rel=0.1)
 
 
-def test_the_scatter_of_hits_is_preferred_to_roughness() -> None:
-    """What was measured is taken as it is."""
-    scatter = np.full((1, 100), 0.25)
-    assert np.all(line_noise(ONES, scatter) == 0.25)
+def test_the_smaller_of_scatter_and_roughness_is_the_noise() -> None:
+    """Aim moves residues alike on all lines: hits scatter, the FRF stays smooth."""
+    rng = np.random.default_rng(3)
+    noise = 0.1 * (rng.normal(size=(1, 4000)) + 1j * rng.normal(size=(1, 4000)))
+    aim = line_noise(1.0 + noise, np.full((1, 4000), 0.25))
+    assert aim.mean() == pytest.approx(0.02, rel=0.1)
+    small = line_noise(1.0 + noise, np.full((1, 4000), 1e-4))
+    assert small == pytest.approx(1e-4)
 
 
 def test_no_line_is_ever_exact() -> None:

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""Modes of rank one fitted to the lines around a peak.
+
+The residue matrix of one mode is the product of its shape and its participation. With
+that as a constraint two modes at one frequency are two, where residues fitted pair by
+pair leave one pole with a residue of rank two.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.signal.modal.normal_equations import inverses
+
+_EVALUATIONS = 20
+# Step of numerical slopes, as a share of each parameter's scale.
+_SLOPE_STEP = 1e-5
+_RIDGE = 1e-12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PeakLines:
+    """The lines around a peak, without the modes that stand apart from it.
+
+    Attributes:
+        laplace: s of each line [rad/s], shape (n_lines,).
+        response: shape (n_rows, n_references, n_lines).
+        sd: standard deviation of the error of real and of imaginary part, same shape.
+        derivatives: of the FRF's kind.
+        width: half the half-power width of the mode that is examined [rad/s].
+    """
+
+    laplace: ComplexArray
+    response: ComplexArray
+    sd: FloatArray
+    derivatives: int
+    width: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RankOneModes:
+    """Modes at the optimum.
+
+    Attributes:
+        pole: [rad/s], shape (n_modes,).
+        shape: of the rows, in the unit of a residue, shape (n_modes, n_rows).
+        reference: participation with largest component 1, shape (n_modes, n_refs).
+        cost: chi-squared of what is left [-].
+        parameters: Re and Im of each pole over the width, then of each reference but
+            its pivot.
+    """
+
+    pole: ComplexArray
+    shape: ComplexArray
+    reference: ComplexArray
+    cost: float
+    parameters: FloatArray
+
+
+def fit_rank_one(
+    peak: PeakLines, pole: ComplexArray, reference: ComplexArray
+) -> RankOneModes:
+    """Fit poles and references by variable projection; shapes are linear.
+
+    Args:
+        peak: the lines.
+        pole: where the search begins [rad/s], shape (n_modes,).
+        reference: likewise, shape (n_modes, n_references).
+    """
+    pivot = np.argmax(np.abs(reference), axis=1)
+    turned = reference / np.take_along_axis(reference, pivot[:, None], axis=1)
+    start = _packed(pole / peak.width, turned, pivot)
+
+    def left(values: FloatArray) -> FloatArray:
+        return _projected(peak, *_unpacked(peak, values, pivot))[1]
+
+    found = least_squares(left, start, method="lm", max_nfev=_EVALUATIONS * start.size)
+    poles, references = _unpacked(peak, found.x, pivot)
+    shape = _projected(peak, poles, references)[0]
+    return RankOneModes(poles, shape, references, 2.0 * float(found.cost), found.x)
+
+
+def _packed(
+    scaled: ComplexArray, reference: ComplexArray, pivot: np.ndarray
+) -> FloatArray:
+    free = np.ones(reference.shape, bool)
+    free[np.arange(pivot.size), pivot] = False
+    values = np.concatenate((scaled, reference[free]))
+    return np.asarray(values.astype(complex)).view(np.float64).copy()
+
+
+def _unpacked(
+    peak: PeakLines, values: FloatArray, pivot: np.ndarray
+) -> tuple[ComplexArray, ComplexArray]:
+    numbers = np.ascontiguousarray(values).view(np.complex128)
+    n_modes, n_references = pivot.size, peak.response.shape[1]
+    reference = np.ones((n_modes, n_references), complex)
+    free = np.ones(reference.shape, bool)
+    free[np.arange(n_modes), pivot] = False
+    reference[free] = numbers[n_modes:]
+    return numbers[:n_modes] * peak.width, reference
+
+
+def _projected(
+    peak: PeakLines, pole: ComplexArray, reference: ComplexArray
+) -> tuple[ComplexArray, FloatArray]:
+    """Solve for the shapes; return them and the whitened residual."""
+    columns = _columns(peak, pole, reference)
+    rows = np.concatenate((columns.real, columns.imag))
+    weight = np.tile((1.0 / peak.sd).reshape(peak.sd.shape[0], -1), 2)
+    flat = peak.response.reshape(weight.shape[0], -1)
+    data = np.concatenate((flat.real, flat.imag), axis=1) * weight
+    scaled = rows * weight[:, :, None]
+    gram = scaled.transpose(0, 2, 1) @ scaled
+    right = scaled.transpose(0, 2, 1) @ data[:, :, None]
+    found = (inverses(gram) @ right)[:, :, 0]
+    left = data - (scaled @ found[:, :, None])[:, :, 0]
+    shapes = np.ascontiguousarray(found).view(np.complex128)
+    return np.asarray(shapes.T), left.ravel()
+
+
+def _columns(
+    peak: PeakLines, pole: ComplexArray, reference: ComplexArray
+) -> ComplexArray:
+    """Return responses to unit Re and Im of a shape, (n_refs n_lines, 2 n_modes)."""
+    power = peak.laplace**peak.derivatives
+    own = reference.T[:, None] * (power[:, None] / (peak.laplace[:, None] - pole))
+    mirrored = power[:, None] / (peak.laplace[:, None] - pole.conj())
+    image = reference.conj().T[:, None] * mirrored
+    columns = np.stack((own + image, 1j * (own - image)), axis=-1)
+    return np.asarray(columns.reshape(-1, 2 * pole.size))
+
+
+def covariance(peak: PeakLines, modes: RankOneModes) -> tuple[FloatArray, FloatArray]:
+    """Return the covariance of the poles, and the variance of all residues.
+
+    Args:
+        peak: the lines.
+        modes: at the optimum.
+
+    Returns:
+        Covariance of (Re p, Im p) of each pole [rad^2/s^2], shape (n_modes, 2, 2), and
+        slopes-propagated variance of Re and Im of each residue, shape
+        (n_modes, n_rows, n_references, 2).
+    """
+    pivot = np.argmax(np.abs(modes.reference), axis=1)
+    linear = np.ascontiguousarray(modes.shape.ravel()).view(np.float64)
+    values = np.concatenate((modes.parameters, linear))
+    size = float(np.abs(linear).max())
+    scale = np.concatenate((np.ones(modes.parameters.size), np.full(linear.size, size)))
+
+    def both(at: FloatArray) -> tuple[FloatArray, FloatArray]:
+        pole, reference = _unpacked(peak, at[: modes.parameters.size], pivot)
+        shape = np.ascontiguousarray(at[modes.parameters.size :]).view(np.complex128)
+        shape = shape.reshape(modes.shape.shape)
+        return _whitened(peak, pole, shape, reference), _residues(shape, reference)
+
+    here = both(values)
+    slopes: list[list[FloatArray]] = [[], []]
+    for number in range(values.size):
+        moved = values.copy()
+        moved[number] += _SLOPE_STEP * scale[number]
+        for kept, now, before in zip(slopes, both(moved), here, strict=True):
+            kept.append((now - before) / _SLOPE_STEP)
+    gram = np.array(slopes[0]) @ np.array(slopes[0]).T
+    norm = np.sqrt(np.diag(gram))
+    ridge = _RIDGE * np.eye(norm.size)
+    joint = np.linalg.inv(gram / np.outer(norm, norm) + ridge) / np.outer(norm, norm)
+    n_modes = modes.pole.size
+    index = np.arange(2 * n_modes).reshape(-1, 2)
+    poles = joint[index[:, :, None], index[:, None, :]] * peak.width**2
+    through = np.array(slopes[1])
+    variance = np.einsum("pk,pq,qk->k", through, joint, through)
+    shape = (n_modes, modes.shape.shape[1], modes.reference.shape[1], 2)
+    return poles, np.maximum(variance, 0.0).reshape(shape)
+
+
+def _whitened(
+    peak: PeakLines, pole: ComplexArray, shape: ComplexArray, reference: ComplexArray
+) -> FloatArray:
+    columns = _columns(peak, pole, reference)
+    numbers = np.ascontiguousarray(shape.T).view(np.float64)
+    synthesis = (columns @ numbers.T).T.reshape(peak.response.shape) / peak.sd
+    return np.concatenate((synthesis.real.ravel(), synthesis.imag.ravel()))
+
+
+def _residues(shape: ComplexArray, reference: ComplexArray) -> FloatArray:
+    residue = np.ascontiguousarray(shape[:, :, None] * reference[:, None])
+    return residue.view(np.float64).ravel()

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""Two modes at one frequency: both reported, or the second remarked on."""
+
+import numpy as np
+import pytest
+from hammered_structures import Bench, Strike, Structure, square_membrane, strike
+
+from jointbench.signal.frf.frf import Frf, FrfKind, estimate_frf
+from jointbench.signal.modal.modes import ModalResult, ModalSettings, identify_modes
+
+SETTINGS = ModalSettings(band=(15.0, 150.0), highest_order=20)
+LINES = np.arange(0.0, 200.0, 0.25)
+POLE = 2.0 * np.pi * 100.0 * (-0.01 + 1j * np.sqrt(1.0 - 1e-4))
+
+
+def struck_membrane(seed: int) -> tuple[Structure, ModalResult]:
+    """Return a square net and its modes up to 150 Hz, from two references."""
+    rng = np.random.default_rng(seed)
+    net = square_membrane(5, 80.0, 0.006, 0.0, 8, rng)
+    strikes = [Strike(point, (6, 7), ("a1", "a2")) for point in range(6)]
+    measured = strike(net, strikes, Bench(hits=2), rng)
+    return net, identify_modes(estimate_frf(measured.recordings), SETTINGS)
+
+
+def pair_of(second: float, *, noise: float = 1e-3) -> Frf:
+    """Return the FRF of two modes at one pole, the second of a given size."""
+    rng = np.random.default_rng(4)
+    shapes = rng.normal(size=(2, 6))
+    residue = np.outer(shapes[0], (1.0, 0.4)) + second * np.outer(shapes[1], (-0.4, 1))
+    s = 2j * np.pi * LINES
+    own = 1.0 / (s - POLE) - 1.0 / (s - POLE.conjugate())
+    exact = residue[:, :, None] * own * s**2 / 2j
+    size = noise * np.abs(exact).max()
+    error = rng.normal(size=exact.shape) + 1j * rng.normal(size=exact.shape)
+    return Frf(LINES, exact + size * error, FrfKind.ACCELERANCE)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_both_modes_of_a_square_net_are_found(seed: int) -> None:
+    """(1, 2) and (2, 1) at one pole: both, within five standard deviations."""
+    net, result = struck_membrane(seed)
+    truth = net.poles()[0]
+    truth = truth[np.abs(truth) < 2.0 * np.pi * 140.0]
+    model = result.model
+    assert model.natural_frequency.size == truth.size == 3
+    error = model.natural_frequency - np.abs(truth) / (2.0 * np.pi)
+    assert np.all(np.abs(error) < 5.0 * model.frequency_sd + 1e-4)
+    error = model.damping_ratio + truth.real / np.abs(truth)
+    assert np.all(np.abs(error) < 5.0 * model.damping_ratio_sd + 1e-6)
+
+
+def test_shapes_of_a_pair_span_those_of_the_modes() -> None:
+    """One pole leaves the two shapes free within their plane, not outside it."""
+    model = identify_modes(pair_of(0.5), SETTINGS).model
+    assert model.natural_frequency == pytest.approx([100.0, 100.0], rel=1e-4)
+    shapes = np.random.default_rng(4).normal(size=(2, 6))
+    plane = np.linalg.qr(shapes.T)[0]
+    inside = np.linalg.norm(model.shapes @ plane, axis=1)
+    assert inside == pytest.approx(np.linalg.norm(model.shapes, axis=1), rel=1e-3)
+
+
+def test_a_single_mode_stays_one_without_a_remark() -> None:
+    """Rank one within noise: nothing is added, nothing is remarked on."""
+    result = identify_modes(pair_of(0.0), SETTINGS)
+    assert result.model.natural_frequency.size == 1
+    assert result.remarks == ()
+
+
+def test_a_weak_second_mode_is_reported_or_remarked_on() -> None:
+    """From a tenth of the first down to the noise, never passed over."""
+    for second in (0.1, 0.03, 0.015):
+        result = identify_modes(pair_of(second), SETTINGS)
+        found = result.model.natural_frequency.size
+        assert found == 2 or any("100" in words for words in result.remarks)
