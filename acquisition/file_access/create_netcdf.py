@@ -64,8 +64,11 @@ def new_file(
             yield file
             file.flush()
             image = file.id.get_file_image() if memory else None
+            size = int(file.id.get_filesize())
         if image is not None:
             part.write_bytes(image)
+        else:
+            os.truncate(part, size)  # HDF5 keeps the reserve of `DiskRoom`
         _sync(part)
         _require_free(path, overwrite)
         part.replace(path)

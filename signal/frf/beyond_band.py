@@ -14,7 +14,7 @@ from scipy.signal import find_peaks
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import Frf
-from jointbench.signal.hits.hit_spectra import HitSpectra
+from jointbench.signal.hits.hit_spectra import ForcesOfHits
 
 _ALIAS_FREE = 2.0 / 2.56
 """Share of the lines that anti-alias filters of usual converters leave [-]."""
@@ -90,7 +90,7 @@ class Beyond:
 
 
 def look_beyond(
-    frf: Frf, band: tuple[float, float], spectra: HitSpectra | None
+    frf: Frf, band: tuple[float, float], spectra: ForcesOfHits | None
 ) -> Beyond:
     """Find peaks above a band.
 
@@ -137,7 +137,7 @@ def look_beyond(
     )
 
 
-def _force_drop(spectra: HitSpectra) -> FloatArray:
+def _force_drop(spectra: ForcesOfHits) -> FloatArray:
     """Return the force spectrum over its highest [dB], smoothed, shape (n_lines,)."""
     power = np.mean(np.abs(spectra.force) ** 2, axis=0)
     smooth = uniform_filter1d(power, max(3, power.size // _AROUND), mode="nearest")

@@ -78,14 +78,34 @@ def estimate_pair(
         first order (Bendat and Piersol, table 9.6).
     """
     force_power = np.sum(np.abs(force) ** 2, axis=0)
-    force_power = np.maximum(force_power, _LEAST_POWER * force_power.max())
+    floored = np.maximum(force_power, _LEAST_POWER * force_power.max())
+    h1 = np.sum(response * force.conj(), axis=0) / floored
     response_power = np.sum(np.abs(response) ** 2, axis=0)
-    h1 = np.sum(response * force.conj(), axis=0) / force_power
     scatter = np.sum(np.abs(response - h1 * force) ** 2, axis=0)
+    powers = (force_power, response_power, scatter)
+    return pair_of_sums(h1, powers, force.shape[0], estimator)
+
+
+def pair_of_sums(
+    h1: ComplexArray,
+    powers: tuple[FloatArray, FloatArray, FloatArray],
+    hits: int,
+    estimator: Estimator = Estimator.H1,
+) -> EstimatedPair:
+    """Return the estimate that sums over hits give; see `estimate_pair`.
+
+    Args:
+        h1: response over force, shape (n_lines,).
+        powers: sums of |F|^2, |X|^2 and |X - H1 F|^2, same shape.
+        hits: number of hits.
+        estimator: which of the three.
+    """
+    force_power, response_power, scatter = powers
+    force_power = np.maximum(force_power, _LEAST_POWER * force_power.max())
     safe = np.where(response_power > 0.0, response_power, 1.0)
     coherence = np.clip(1.0 - scatter / safe, 0.0, 1.0)
-    freedom = max(1, force.shape[0] - 1)
-    noise = uniform_filter1d(scatter, _SCATTER_LINES, mode="nearest") / freedom
+    noise = uniform_filter1d(scatter, _SCATTER_LINES, mode="nearest")
+    noise = noise / max(1, hits - 1)
     gain = _over_h1(h1, force_power, response_power, estimator)
     return EstimatedPair(h1 * gain, coherence, noise / force_power * gain**2)
 

@@ -17,16 +17,16 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freez
 from jointbench.acquisition.basics.errors import ShapeError
 from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.recordings import Quantity, Recording
-from jointbench.signal.frf.estimators import Estimator, bias_bound, estimate_pair
+from jointbench.signal.frf.estimators import Estimator, bias_bound, pair_of_sums
 from jointbench.signal.frf.innovation_noise import innovation_noise
+from jointbench.signal.frf.spectral_sums import (
+    SpectralSums,
+    sum_hits,
+    sums_of_spectra,
+)
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import accepted_hits, find_hits
-from jointbench.signal.hits.hit_pairs import pair_up
-from jointbench.signal.hits.hit_spectra import (
-    HitSpectra,
-    hit_spectra,
-    require_alive,
-)
+from jointbench.signal.hits.hit_spectra import ForcesOfHits, HitSpectra, require_alive
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 
@@ -165,12 +165,7 @@ def estimate_frf(
             require_alive(recording, hit)
     if window is None:
         window = join_windows([choose_window(r) for r in judged if accepted_hits(r)])
-    return average_spectra(
-        hit_spectra(judged, window),
-        window,
-        estimator=estimator,
-        inherited=_inherited(judged),
-    )
+    return _average(sum_hits(judged, window), window, estimator, _inherited(judged))
 
 
 def average_spectra(
@@ -191,36 +186,48 @@ def average_spectra(
     Raises:
         ChannelMissing: a pair of output and input that was never measured together.
     """
-    outputs, inputs, pairs = pair_up(spectra)
+    return _average(sums_of_spectra(spectra), window, estimator, inherited)
+
+
+def _average(
+    sums: SpectralSums,
+    window: HammerWindow,
+    estimator: Estimator,
+    inherited: Provenance,
+) -> Frf:
+    """Return the FRF that sums over hits give."""
     averaged = [
-        estimate_pair(
-            spectra.force[pair.hits], spectra.response[pair.hits, pair.rows], estimator
+        pair_of_sums(
+            row.h1,
+            (row.force_power, row.response_power, row.scatter),
+            row.hits,
+            estimator,
         )
-        for pair in pairs
+        for row in sums.pairs
     ]
-    shape = (len(outputs), len(inputs), spectra.frequency.size)
-    averages = min(pair.hits.size for pair in pairs)
+    shape = (len(sums.outputs), len(sums.inputs), sums.frequency.size)
+    averages = min(row.hits for row in sums.pairs)
     coherence = _stack([a.coherence for a in averaged], shape, averages)
-    done = _record(spectra, window, averages, estimator, coherence)
+    done = _record(sums, window, averages, estimator, coherence)
     decay = window.decay_rate or 0.0
-    noise = innovation_noise(spectra, outputs, pairs, inherited, decay)
+    noise = innovation_noise(sums, inherited, decay)
     return Frf(
-        frequency=spectra.frequency,
+        frequency=sums.frequency,
         response=np.array([a.response for a in averaged]).reshape(shape),
-        kind=KIND_OF_RESPONSE[spectra.quantity],
+        kind=KIND_OF_RESPONSE[sums.quantity],
         coherence=coherence,
         variance=_stack([a.variance for a in averaged], shape, averages),
         added_decay_rate=decay,
-        outputs=outputs,
-        inputs=inputs,
+        outputs=sums.outputs,
+        inputs=sums.inputs,
         averages=averages,
         provenance=(*inherited, done),
-        usable_band=excited_band(spectra),
+        usable_band=excited_band_of(sums.power, sums.frequency),
         innovation_noise=None if noise is None else noise.reshape(shape),
     )
 
 
-def excited_band(spectra: HitSpectra) -> tuple[float, float]:
+def excited_band(spectra: ForcesOfHits) -> tuple[float, float]:
     """Return the band of the force spectrum within 20 dB of its low end, unaliased.
 
     Args:
@@ -264,7 +271,7 @@ def _inherited(recordings: Sequence[Recording]) -> Provenance:
 
 
 def _record(
-    spectra: HitSpectra,
+    sums: SpectralSums,
     window: HammerWindow,
     averages: int,
     estimator: Estimator,
@@ -272,16 +279,16 @@ def _record(
 ) -> Step:
     bound: dict[str, float] = {}
     if coherence is not None:
-        low, high = excited_band(spectra)
-        inside = (spectra.frequency >= low) & (spectra.frequency <= high)
+        low, high = excited_band_of(sums.power, sums.frequency)
+        inside = (sums.frequency >= low) & (sums.frequency <= high)
         apart = bias_bound(coherence[:, :, inside], averages)
         bound["h1_below_h2_median"] = float(np.median(apart))
     return step(
         "estimate_frf",
         estimator=estimator.value,
         bias=estimator.bias,
-        block=spectra.block,
-        block_reason=spectra.block_reason,
+        block=sums.block,
+        block_reason=sums.block_reason,
         averages=averages,
         force_width=window.force_width or 0.0,
         decay_rate=window.decay_rate or 0.0,

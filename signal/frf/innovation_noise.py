@@ -6,30 +6,23 @@ windowed block; over |F|^2 of all hits that is the variance of H1. The gain of t
 zero-phase stage cancels between force and response, and in this ratio too.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.provenance import Provenance
-from jointbench.signal.hits.hit_pairs import Pair
-from jointbench.signal.hits.hit_spectra import HitSpectra
+from jointbench.signal.frf.spectral_sums import SpectralSums
 from jointbench.signal.kalman.smoothing import stage_noise_of
 
 
 def innovation_noise(
-    spectra: HitSpectra,
-    outputs: Sequence[str],
-    pairs: Sequence[Pair],
+    sums: SpectralSums,
     provenance: Provenance,
     decay_rate: float,
 ) -> FloatArray | None:
     """Return the variance of each pair due to white noise of its channel.
 
     Args:
-        spectra: of the accepted hits.
-        outputs: labels ``"channel@point"``; pairs are sorted by them.
-        pairs: hits of each pair.
+        sums: over the accepted hits.
         provenance: of the recordings, with the Kalman stage.
         decay_rate: of the exponential window [1/s], 0 for none.
 
@@ -40,16 +33,16 @@ def innovation_noise(
         Bendat and Piersol, Random Data (2010), sec. 9.2 (variance of H1).
     """
     noise = stage_noise_of(provenance)
-    names = [output.rpartition("@")[0] for output in outputs]
+    names = [output.rpartition("@")[0] for output in sums.outputs]
     if any(name not in noise for name in names):
         return None
-    step = 1.0 / (spectra.block * float(spectra.frequency[1]))
-    length = spectra.block * step
+    step = 1.0 / (sums.block * float(sums.frequency[1]))
+    length = sums.block * step
     if decay_rate > 0.0:
         length = -np.expm1(-2.0 * decay_rate * length) / (2.0 * decay_rate)
     rows = []
-    for number, pair in enumerate(pairs):
-        sd = noise[names[number * len(names) // len(pairs)]]
-        power = np.sum(np.abs(spectra.force[pair.hits]) ** 2, axis=0)
-        rows.append(sd**2 * step * length / np.where(power > 0.0, power, np.inf))
+    for number, pair in enumerate(sums.pairs):
+        sd = noise[names[number // len(sums.inputs)]]
+        power = np.where(pair.force_power > 0.0, pair.force_power, np.inf)
+        rows.append(sd**2 * step * length / power)
     return np.array(rows)

@@ -22,7 +22,7 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.frf.frf import excited_band
 from jointbench.signal.hits.hit_pairs import Pair, pair_up
-from jointbench.signal.hits.hit_spectra import HitSpectra
+from jointbench.signal.hits.hit_spectra import ForcesOfHits
 
 _LEAST_HITS = 3
 # Hits whose levels differ by less than this factor cannot show a dependence.
@@ -84,7 +84,7 @@ class Linearity:
 
 
 def check_linearity(
-    spectra: HitSpectra, band: tuple[float, float] | None = None
+    spectra: ForcesOfHits, band: tuple[float, float] | None = None
 ) -> Linearity:
     """Test whether the FRF depends on the level of the hits.
 
@@ -142,20 +142,22 @@ class _Fit:
         slope_power: power of the slope |slope|^2, shape (n_lines,).
         noise_power: that expected from noise alone, shape (n_lines,).
         level: |mean FRF|^2, shape (n_lines,).
-        residual: shape (n_hits, n_lines).
+        hits: number of hits.
+        correlation: neighbouring lines that carry one independent error, 1 or more.
     """
 
     slope_power: FloatArray
     noise_power: FloatArray
     level: FloatArray
-    residual: ComplexArray
+    hits: int
+    correlation: float
 
 
 def _regress(
-    spectra: HitSpectra, pair: Pair, impulse: FloatArray, inside: BoolArray
+    spectra: ForcesOfHits, pair: Pair, impulse: FloatArray, inside: BoolArray
 ) -> _Fit:
     force = spectra.force[pair.hits][:, inside]
-    response = spectra.response[pair.hits, pair.rows][:, inside]
+    response = spectra.responses(pair)[:, inside]
     frf, weight = response / force, np.abs(force) ** 2
     # Weighted by |F|^2: the noise of a hit's FRF is response noise over force.
     total = weight.sum(axis=0)
@@ -166,16 +168,22 @@ def _regress(
     slope = (weight * centred * frf).sum(axis=0) / lever
     residual = (frf - mean - centred * slope) * np.sqrt(weight)
     noise = np.sum(np.abs(residual) ** 2, axis=0) / (pair.hits.size - 2)
-    return _Fit(np.abs(slope) ** 2, noise / lever, np.abs(mean) ** 2, residual)
+    return _Fit(
+        np.abs(slope) ** 2,
+        noise / lever,
+        np.abs(mean) ** 2,
+        pair.hits.size,
+        _correlation_length(residual),
+    )
 
 
 def _test(fits: Sequence[_Fit]) -> tuple[float, float]:
     """Return F and its p-value, pooled; neighbouring lines may share one error."""
     numerator = sum(float(np.sum(f.slope_power / _pooled(f))) for f in fits)
     lines = sum(f.level.size for f in fits)
-    length = max(_correlation_length(f.residual) for f in fits)
+    length = max(f.correlation for f in fits)
     freedom = 2.0 * lines / length
-    hits = sum(f.level.size * (f.residual.shape[0] - 2) for f in fits)
+    hits = sum(f.level.size * (f.hits - 2) for f in fits)
     f_value = numerator / lines
     chance = scipy.stats.f.sf(f_value, freedom, 2.0 * hits / length)
     return f_value, float(chance)
@@ -197,7 +205,7 @@ def _correlation_length(residual: ComplexArray) -> float:
     return (1.0 + share) / (1.0 - share)
 
 
-def _levels(spectra: HitSpectra, inside: BoolArray) -> FloatArray:
+def _levels(spectra: ForcesOfHits, inside: BoolArray) -> FloatArray:
     """Return the rms force spectrum of each hit over the band [N s]."""
     return np.asarray(np.sqrt(np.mean(np.abs(spectra.force[:, inside]) ** 2, axis=1)))
 

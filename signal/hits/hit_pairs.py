@@ -10,12 +10,24 @@ replaced.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import IntArray
 from jointbench.acquisition.basics.errors import ChannelMissing
-from jointbench.signal.hits.hit_spectra import HitSpectra
+
+
+class LabelledHits(Protocol):
+    """Hits of which it is known what they measured and where the hammer struck."""
+
+    @property
+    def labels(self) -> tuple[tuple[str, ...], ...]:
+        """For each hit, the label of each of its responses."""
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """For each hit, where the hammer struck."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +47,7 @@ Paired = tuple[tuple[str, ...], tuple[str, ...], tuple[Pair, ...]]
 """Output labels, input points, and their pairs, outputs outermost."""
 
 
-def pair_up(spectra: HitSpectra) -> Paired:
+def pair_up(measured: LabelledHits) -> Paired:
     """Sort hits into pairs of output and input.
 
     Returns:
@@ -49,19 +61,19 @@ def pair_up(spectra: HitSpectra) -> Paired:
     Source:
         Ewins, Modal Testing (2000), sec. 1.4 (reciprocity).
     """
-    outputs = tuple(dict.fromkeys(label for row in spectra.labels for label in row))
-    inputs = tuple(dict.fromkeys(spectra.points))
+    outputs = tuple(dict.fromkeys(label for row in measured.labels for label in row))
+    inputs = tuple(dict.fromkeys(measured.points))
     found = [
-        [_hits_of(spectra, output, point) for point in inputs] for output in outputs
+        [_hits_of(measured, output, point) for point in inputs] for output in outputs
     ]
     if all(row for rows in found for row in rows):
         pairs = [
-            _pair(spectra, o, r)
+            _pair(measured, o, r)
             for o, rows in zip(outputs, found, strict=True)
             for r in rows
         ]
         return outputs, inputs, tuple(pairs)
-    completed = _by_reciprocity(spectra, outputs, inputs)
+    completed = _by_reciprocity(measured, outputs, inputs)
     if completed is not None:
         return completed
     output, point = next(
@@ -77,23 +89,23 @@ def pair_up(spectra: HitSpectra) -> Paired:
     )
 
 
-def _hits_of(spectra: HitSpectra, output: str, point: str) -> list[int]:
+def _hits_of(measured: LabelledHits, output: str, point: str) -> list[int]:
     return [
         i
         for i, (labels, struck) in enumerate(
-            zip(spectra.labels, spectra.points, strict=True)
+            zip(measured.labels, measured.points, strict=True)
         )
         if struck == point and output in labels
     ]
 
 
-def _pair(spectra: HitSpectra, output: str, hits: Sequence[int]) -> Pair:
-    rows = [spectra.labels[i].index(output) for i in hits]
+def _pair(measured: LabelledHits, output: str, hits: Sequence[int]) -> Pair:
+    rows = [measured.labels[i].index(output) for i in hits]
     return Pair(np.array(hits), np.array(rows))
 
 
 def _by_reciprocity(
-    spectra: HitSpectra, outputs: Sequence[str], inputs: Sequence[str]
+    measured: LabelledHits, outputs: Sequence[str], inputs: Sequence[str]
 ) -> Paired | None:
     """Return the complete columns of all inputs that have one, or None."""
     places = [point_of(output) for output in outputs]
@@ -104,12 +116,12 @@ def _by_reciprocity(
         # Two directions at one point: a hit there names none of them.
         back = here[0] if len(here) == 1 else None
         column = [
-            _either(spectra, o, reference, back if places.count(p) == 1 else None)
+            _either(measured, o, reference, back if places.count(p) == 1 else None)
             for o, p in zip(outputs, places, strict=True)
         ]
         column += [
-            _pair(spectra, back, hits)
-            if back and (hits := _hits_of(spectra, back, point))
+            _pair(measured, back, hits)
+            if back and (hits := _hits_of(measured, back, point))
             else None
             for point in only_hit
         ]
@@ -125,14 +137,14 @@ def _by_reciprocity(
 
 
 def _either(
-    spectra: HitSpectra, output: str, reference: str, back: str | None
+    measured: LabelledHits, output: str, reference: str, back: str | None
 ) -> Pair | None:
     """Return the pair as measured, or the other way round, or None."""
-    direct = _hits_of(spectra, output, reference)
+    direct = _hits_of(measured, output, reference)
     if direct:
-        return _pair(spectra, output, direct)
-    turned = _hits_of(spectra, back, point_of(output)) if back else []
-    return _pair(spectra, back, turned) if back and turned else None
+        return _pair(measured, output, direct)
+    turned = _hits_of(measured, back, point_of(output)) if back else []
+    return _pair(measured, back, turned) if back and turned else None
 
 
 def point_of(output: str) -> str:

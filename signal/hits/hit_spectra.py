@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 import scipy.fft
@@ -23,6 +24,7 @@ from jointbench.acquisition.records.recordings import (
 )
 from jointbench.signal.hits.block_length import choose_block
 from jointbench.signal.hits.find_hits import accepted_hits
+from jointbench.signal.hits.hit_pairs import LabelledHits, Pair
 from jointbench.signal.hits.windows import HammerWindow, apply_window
 
 # A filtered constant still varies by this share of itself.
@@ -53,6 +55,10 @@ class HitSpectra:
     block: int
     block_reason: str
 
+    def responses(self, pair: Pair) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
+        return np.asarray(self.response[pair.hits, pair.rows])
+
 
 def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpectra:
     """Window every accepted hit and transform it on a common block.
@@ -69,24 +75,139 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
         SamplingError: the sample rates differ.
         ChannelMissing: no response, or responses of different quantities or numbers.
     """
-    chosen = [(r, hit) for r in recordings for hit in accepted_hits(r)]
+    plan = plan_spectra(recordings)
+    lines = plan.frequency.size
+    rows = len(plan.labels[0])
+    force = np.empty((len(plan.chosen), lines), complex)
+    response = np.empty((len(plan.chosen), rows, lines), complex)
+    for number, (recording, hit) in enumerate(plan.chosen):
+        one, other = windowed_hit(recording, hit, window, plan.block)
+        force[number] = scipy.fft.rfft(one) / plan.rate
+        response[number] = scipy.fft.rfft(other, overwrite_x=True) / plan.rate
+    return HitSpectra(
+        frequency=plan.frequency,
+        force=force,
+        response=response,
+        labels=plan.labels,
+        points=plan.points,
+        quantity=plan.quantity,
+        block=plan.block,
+        block_reason=plan.block_reason,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpectraPlan:
+    """Which hits are transformed, and on which block.
+
+    Attributes:
+        chosen: accepted hits with their recordings.
+        labels: for each hit, the label of each of its responses.
+        points: for each hit, where the hammer struck.
+        rate: sample rate [Hz].
+        frequency: of the lines [Hz], shape (n_lines,).
+        quantity: what all responses measure.
+        block: samples of the common block.
+        block_reason: how it was chosen.
+    """
+
+    chosen: tuple[tuple[Recording, Hit], ...]
+    labels: tuple[tuple[str, ...], ...]
+    points: tuple[str, ...]
+    rate: float
+    frequency: FloatArray
+    quantity: Quantity
+    block: int
+    block_reason: str
+
+
+def plan_spectra(recordings: Sequence[Recording]) -> SpectraPlan:
+    """Choose the hits of recordings and their common block; nothing is transformed.
+
+    Args:
+        recordings: with hits found.
+
+    Raises:
+        NoHitFound: no hit was accepted.
+        SamplingError: the sample rates differ.
+        ChannelMissing: no response, or responses of different quantities or numbers.
+    """
+    chosen = tuple((r, hit) for r in recordings for hit in accepted_hits(r))
     if not chosen:
         raise NoHitFound(_why_none(recordings))
     rate = _common_rate(recordings)
     block, reason = choose_block([hit.stop - hit.start for _, hit in chosen])
-    windowed = [windowed_hit(r, hit, window, block) for r, hit in chosen]
-    responses = _same_number([w[1] for w in windowed])
-    channels = [c for r in recordings for c in r.channels]
-    return HitSpectra(
-        frequency=scipy.fft.rfftfreq(block, 1.0 / rate),
-        force=scipy.fft.rfft([w[0] for w in windowed], block) / rate,
-        response=scipy.fft.rfft(responses, block) / rate,
-        labels=tuple(_labels(r) for r, _ in chosen),
+    labels = tuple(_labels(r) for r, _ in chosen)
+    _require_same_number(labels)
+    return SpectraPlan(
+        chosen=chosen,
+        labels=labels,
         points=tuple(hit.point for _, hit in chosen),
-        quantity=common_response(channels),
+        rate=rate,
+        frequency=scipy.fft.rfftfreq(block, 1.0 / rate),
+        quantity=common_response([c for r in recordings for c in r.channels]),
         block=block,
         block_reason=reason,
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HitForces:
+    """Force spectra of all accepted hits; responses are transformed when asked for.
+
+    Attributes:
+        frequency: [Hz], shape (n_lines,).
+        force: [N s], shape (n_hits, n_lines).
+        labels: for each hit, the label of each of its responses.
+        points: for each hit, where the hammer struck.
+        plan: hits and block.
+        window: applied to every hit alike.
+    """
+
+    frequency: FloatArray
+    force: ComplexArray
+    labels: tuple[tuple[str, ...], ...]
+    points: tuple[str, ...]
+    plan: SpectraPlan
+    window: HammerWindow
+
+    def responses(self, pair: Pair) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
+        found = np.empty((pair.hits.size, self.frequency.size), complex)
+        for place, (number, row) in enumerate(zip(pair.hits, pair.rows, strict=True)):
+            recording, hit = self.plan.chosen[number]
+            rows = response_rows(recording)[row : row + 1]
+            _, one = windowed_hit(recording, hit, self.window, self.plan.block, rows)
+            found[place] = scipy.fft.rfft(one[0], overwrite_x=True) / self.plan.rate
+        return found
+
+
+def hit_forces(recordings: Sequence[Recording], window: HammerWindow) -> HitForces:
+    """Transform the force of every accepted hit; see `hit_spectra`.
+
+    The memory is that of one channel in place of all.
+    """
+    plan = plan_spectra(recordings)
+    force = np.empty((len(plan.chosen), plan.frequency.size), complex)
+    for number, (recording, hit) in enumerate(plan.chosen):
+        one, _ = windowed_hit(recording, hit, window, plan.block, ())
+        force[number] = scipy.fft.rfft(one, overwrite_x=True) / plan.rate
+    return HitForces(plan.frequency, force, plan.labels, plan.points, plan, window)
+
+
+class ForcesOfHits(LabelledHits, Protocol):
+    """What hits with known force spectra have in common."""
+
+    @property
+    def frequency(self) -> FloatArray:
+        """[Hz], shape (n_lines,)."""
+
+    @property
+    def force(self) -> ComplexArray:
+        """[N s], shape (n_hits, n_lines)."""
+
+    def responses(self, pair: Pair) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
 
 
 def join_spectra(parts: Sequence[HitSpectra]) -> HitSpectra:
@@ -132,7 +253,11 @@ def require_alive(recording: Recording, hit: Hit) -> None:
 
 
 def windowed_hit(
-    recording: Recording, hit: Hit, window: HammerWindow, block: int
+    recording: Recording,
+    hit: Hit,
+    window: HammerWindow,
+    block: int,
+    rows: Sequence[int] | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Cut a hit out of its recording and window it.
 
@@ -141,6 +266,7 @@ def windowed_hit(
         hit: which.
         window: to apply.
         block: number of samples; a shorter hit is padded with zeros.
+        rows: of the responses to transform, None for all.
 
     Returns:
         Force, shape (block,), and responses, shape (n_responses, block).
@@ -150,7 +276,7 @@ def windowed_hit(
     force, response = apply_window(
         window,
         samples[recording.row(Quantity.FORCE)],
-        samples[list(response_rows(recording))],
+        samples[list(response_rows(recording) if rows is None else rows)],
         trigger=hit.trigger - hit.start,
         sample_rate=recording.sample_rate,
     )
@@ -166,15 +292,14 @@ def _label(channel: Channel) -> str:
     return f"{channel.name}@{channel.point}"
 
 
-def _same_number(responses: Sequence[FloatArray]) -> FloatArray:
-    """Return the responses as one array, shape (n_hits, n_responses, n)."""
-    numbers = {r.shape[0] for r in responses}
+def _require_same_number(labels: Sequence[Sequence[str]]) -> None:
+    """Raise `ChannelMissing` where hits have different numbers of responses."""
+    numbers = {len(row) for row in labels}
     if len(numbers) != 1:
         raise ChannelMissing(
             f"the recordings have {sorted(numbers)} response channels; "
             "give recordings with equally many"
         )
-    return np.array(responses)
 
 
 def _common_rate(recordings: Sequence[Recording]) -> float:

@@ -121,17 +121,26 @@ def longest_flat_top(samples: FloatArray) -> int:
     Returns:
         The length of the run, 1 where nothing is clipped.
     """
-    largest = float(np.abs(samples).max())
-    if largest == 0.0:
-        return 1
-    levels = np.unique(samples)
-    resolution = float(np.diff(levels).min()) if levels.size > 1 else 0.0
+    high, low = float(samples.max()), float(samples.min())
+    largest = max(high, -low)
     runs = [
-        _run_at(sign * samples, resolution)
-        for sign in (1.0, -1.0)
-        if float((sign * samples).max()) > 0.3 * largest
+        run
+        for sign, top in ((1.0, high), (-1.0, -low))
+        if top > 0.3 * largest
+        for run in _runs_at(samples, sign, top)
     ]
-    return max(runs, default=1)
+    if not runs:
+        return 1
+    # A step between neighbours is a difference of two levels: the resolution is no
+    # larger. Only a run that this leaves open needs all levels in order.
+    steps = np.abs(np.diff(samples))
+    nearest = float(np.min(steps, where=steps > 0.0, initial=np.inf))
+    clipped = [length for length, drop in runs if drop > 2.0 * nearest]
+    longer = [run for run in runs if run[0] > max(clipped, default=1)]
+    if longer:
+        resolution = float(np.diff(np.unique(samples)).min())
+        clipped += [length for length, drop in longer if drop > 2.0 * resolution]
+    return max(clipped, default=1)
 
 
 def noise_level(samples: FloatArray) -> float:
@@ -140,17 +149,27 @@ def noise_level(samples: FloatArray) -> float:
     return float(np.median(np.abs(centred))) / _MAD_OF_NORMAL
 
 
-def _run_at(samples: FloatArray, resolution: float) -> int:
-    """Return the length of the longest clipped run at the maximum."""
-    top = float(samples.max())
-    at_top = np.concatenate(([False], samples >= top - 1e-9 * abs(top), [False]))
-    edges = np.flatnonzero(np.diff(at_top.astype(np.int8)))
-    longest = 1
-    for first, past in zip(edges[::2], edges[1::2], strict=True):
-        sides = [samples[i] for i in (first - 1, past) if 0 <= i < samples.size]
-        if sides and top - min(sides) > 2.0 * resolution:
-            longest = max(longest, int(past - first))
-    return longest
+def _runs_at(samples: FloatArray, sign: float, top: float) -> list[tuple[int, float]]:
+    """Return the runs at an extreme that are left on a side, and how far there.
+
+    Args:
+        samples: one channel, shape (n,).
+        sign: 1 for the maximum, -1 for the minimum.
+        top: the extreme times `sign`.
+
+    Returns:
+        Length of two or more and the larger drop beside it, for each run.
+    """
+    edge = sign * (top - 1e-9 * abs(top))
+    at = np.flatnonzero(samples >= edge if sign > 0.0 else samples <= edge)
+    starts = np.flatnonzero(np.diff(at, prepend=-2) > 1)
+    found = []
+    for first, past in zip(starts, [*starts[1:], at.size], strict=True):
+        begin, end = int(at[first]), int(at[past - 1]) + 1
+        sides = [sign * samples[i] for i in (begin - 1, end) if 0 <= i < samples.size]
+        if end - begin > 1 and sides:
+            found.append((end - begin, float(top - min(sides))))
+    return found
 
 
 def _pulse_samples(force: FloatArray, main: int) -> int:

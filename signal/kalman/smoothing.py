@@ -24,7 +24,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import ChannelMissing
-from jointbench.acquisition.records.provenance import Provenance, step
+from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.kalman.process_models import (
     KalmanModel,
@@ -45,6 +45,7 @@ __all__ = [
     "StateModel",
     "filter_states",
     "measurement_noise",
+    "observe_noise",
     "smooth_recording",
     "smooth_states",
     "stage_gain",
@@ -95,12 +96,16 @@ def measurement_noise(model: StateModel, samples: FloatArray) -> FloatArray:
         Variance [sample unit squared], shape (n_channels,).
     """
     gain, _ = gains(*_parts(model), samples.shape[1])
-    innovations = _forward(model, samples, gain)[1]
     # With measurement noise 1 the innovation variance is 1 / (1 - observed gain).
     observed = gain @ model.observation
     scale = np.ones(samples.shape[1]) - observed[-1]
     scale[: observed.size] = 1.0 - observed
-    return np.asarray(np.median(innovations**2 * scale, axis=1) / _MEDIAN_CHI2)
+    found = []
+    for row in samples:  # one by one: states and innovations take three times a row
+        power = _forward(model, row[None], gain)[1][0] ** 2
+        power *= scale
+        found.append(np.median(power, overwrite_input=True))
+    return np.array(found) / _MEDIAN_CHI2
 
 
 def smooth_recording(
@@ -132,7 +137,39 @@ def smooth_recording(
     run = smooth_states if settings.smooth else filter_states
     noise = measurement_noise(model, samples[rows])
     samples[rows] = run(model, samples[rows]) @ model.observation
-    done = step(
+    done = _stage_step(settings, recording, [names[row] for row in rows], noise)
+    return replace(
+        recording, samples=samples, hits=(), provenance=(*recording.provenance, done)
+    )
+
+
+def observe_noise(recording: Recording, settings: KalmanSettings | None = None) -> Step:
+    """Run the Kalman stage for the noise that it sees; samples stay as they are.
+
+    Filtered alike on all channels, the stage multiplies force and response by one gain,
+    which cancels in the FRF.
+
+    Args:
+        recording: any channels.
+        settings: None for the default smoother.
+
+    Returns:
+        The step of provenance that `smooth_recording` would add.
+    """
+    settings = settings or KalmanSettings()
+    model = state_model(settings, recording.sample_rate)
+    noise = measurement_noise(model, recording.samples)
+    return _stage_step(settings, recording, [c.name for c in recording.channels], noise)
+
+
+def _stage_step(
+    settings: KalmanSettings,
+    recording: Recording,
+    names: Sequence[str],
+    noise: FloatArray,
+) -> Step:
+    """Return the step of the stage on some channels with their noise."""
+    return step(
         _STEP,
         model=settings.model.value,
         cutoff=stage_cutoff(settings, recording.sample_rate),
@@ -140,14 +177,11 @@ def smooth_recording(
         frequency=settings.frequency,
         damping_ratio=settings.damping_ratio,
         sample_rate=recording.sample_rate,
-        all_channels=len(rows) == len(names),
+        all_channels=len(names) == len(recording.channels),
         **{
-            f"{_NOISE}{names[row]}": float(np.sqrt(variance))
-            for row, variance in zip(rows, noise, strict=True)
+            f"{_NOISE}{name}": float(np.sqrt(variance))
+            for name, variance in zip(names, noise, strict=True)
         },
-    )
-    return replace(
-        recording, samples=samples, hits=(), provenance=(*recording.provenance, done)
     )
 
 

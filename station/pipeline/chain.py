@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 from jointbench.acquisition.basics.errors import NoModeFound
 from jointbench.acquisition.basics.one_thread import one_thread
-from jointbench.acquisition.records.provenance import Provenance
+from jointbench.acquisition.records.provenance import Provenance, Step
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
 from jointbench.signal.amplitude.amplitude_modes import amplitude_modes
@@ -28,7 +28,7 @@ from jointbench.signal.hits.windows import WindowRequest, requested_window
 from jointbench.signal.kalman.oscillator_bank import repair_dropouts
 from jointbench.signal.kalman.smoothing import (
     KalmanSettings,
-    smooth_recording,
+    observe_noise,
     stage_gain_of,
 )
 from jointbench.signal.modal.data_limits import block_words, time_scale_words
@@ -53,7 +53,8 @@ class ChainSettings:
 
     Attributes:
         hits: how hits are found and judged.
-        kalman: the smoother, run on all channels alike; None leaves it out.
+        kalman: the smoother, whose innovations state the noise of each channel and
+            whose gain cancels in the FRF; None leaves it out.
         modal: band, order and stability limits of the extraction.
         estimator: of the FRF.
         window: what is asked of the windows; by default nothing, the hits choose.
@@ -72,7 +73,7 @@ class ModalChain:
 
     Attributes:
         recordings: as recorded, with hits and verdicts.
-        frf: from the accepted hits, after the Kalman stage.
+        frf: from the accepted hits.
         result: modes, stabilisation and synthesis.
         provenance: every step from the recordings to the modes.
         amplitude: the modes over their amplitude; empty where that was not looked at.
@@ -236,19 +237,21 @@ def hits_stage(
 def _kalman_stage(
     recording: Recording, key: str, settings: ChainSettings, run: StageRun
 ) -> Recording:
-    """Put a recording through the Kalman stage, if there is one; hits are kept."""
+    """State what noise the Kalman stage sees in a recording, if there is a stage.
+
+    Its gain is that of all channels and cancels in the FRF, so that no sample is
+    filtered (record 0095).
+    """
     if settings.kalman is None:
         return recording
-    bare, kalman = replace(recording, hits=()), settings.kalman
-    kept = run.stages.run(
+    kalman = settings.kalman
+    seen = run.stages.run(
         f"kalman of {recording.name}",
         key,
-        Recording,
-        lambda: smooth_recording(bare, kalman),
+        tuple[Step, ...],
+        lambda: (observe_noise(recording, kalman),),
     )
-    # Samples depend on samples alone: how the hits were found is not of this stage.
-    steps = (*recording.provenance, kept.provenance[-1])
-    return replace(recording, samples=kept.samples, provenance=steps)
+    return replace(recording, provenance=(*recording.provenance, *seen))
 
 
 def _recorded(recording: Recording) -> tuple[object, ...]:
@@ -259,7 +262,7 @@ def _recorded(recording: Recording) -> tuple[object, ...]:
 def _frf_stage(
     judged: Sequence[Recording], settings: ChainSettings, run: StageRun, at: str
 ) -> Frf:
-    """Estimate the FRF of recordings with judged hits, after the Kalman stage."""
+    """Estimate the FRF of recordings with judged hits, and the noise in each."""
     stages = run.stages
     keys = [
         stages.key("kalman", settings.kalman, *run.source(r.name, _recorded(r)))
@@ -332,19 +335,20 @@ def _filled(
         )
         if all(new is old for new, old in zip(repaired, judged, strict=True)):
             return chain
-        frf = _chain_frf([_smoothed(r, settings) for r in repaired], settings)
+        frf = _chain_frf([_observed(r, settings) for r in repaired], settings)
         result = identify_modes(frf, settings.modal, progress=progress)
         chain = (ModalChain(repaired, frf, result, result.model.provenance),)
     return chain
 
 
-def _smoothed(recording: Recording, settings: ChainSettings) -> Recording:
+def _observed(recording: Recording, settings: ChainSettings) -> Recording:
     if settings.kalman is None:
         return recording
-    return replace(smooth_recording(recording, settings.kalman), hits=recording.hits)
+    seen = observe_noise(recording, settings.kalman)
+    return replace(recording, provenance=(*recording.provenance, seen))
 
 
 def _chain_frf(recordings: Sequence[Recording], settings: ChainSettings) -> Frf:
-    """Estimate the FRF of recordings that have been through the Kalman stage."""
+    """Estimate the FRF of recordings whose noise the Kalman stage has seen."""
     window = requested_window(recordings, settings.window)
     return estimate_frf(recordings, window=window, estimator=settings.estimator)

@@ -13,7 +13,7 @@ from jointbench.signal.frf.frf_of_functions import noise_source
 from jointbench.signal.frf.linearity import Linearity, check_linearity
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_pairs import point_of
-from jointbench.signal.hits.hit_spectra import hit_spectra
+from jointbench.signal.hits.hit_spectra import hit_forces
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.data_limits import (
     block_words,
@@ -68,7 +68,7 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
         return _frf_notes(chain)
     judged = [r for r in chain.recordings if accepted_hits(r)]
     window = join_windows([choose_window(recording) for recording in judged])
-    spectra = hit_spectra(judged, window)
+    spectra = hit_forces(judged, window)
     try:
         linearity, unchecked = check_linearity(spectra), ""
     except BadData as error:

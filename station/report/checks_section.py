@@ -7,7 +7,7 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.frf.linearity import check_linearity
 from jointbench.signal.frf.mode_indicators import cmif
 from jointbench.signal.hits.find_hits import accepted_hits
-from jointbench.signal.hits.hit_spectra import hit_spectra
+from jointbench.signal.hits.hit_spectra import hit_forces
 from jointbench.signal.hits.leakage import estimate_leakage
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
 from jointbench.signal.modal.mode_ranking import rate_modes
@@ -83,7 +83,7 @@ def _leakage(chain: ModalChain, window: HammerWindow) -> str:
 def _linearity(chain: ModalChain, window: HammerWindow) -> str:
     judged = [r for r in chain.recordings if accepted_hits(r)]
     try:
-        text = check_linearity(hit_spectra(judged, window)).words
+        text = check_linearity(hit_forces(judged, window)).words
     except BadData as error:
         text = f"not checked: {error}"
     return f"Linearity: {text}."

@@ -301,6 +301,9 @@ def test_a_session_finished_piece_by_piece_is_the_file_that_is_written_whole(
                 assert pieces[name].chunks == whole[name].chunks
                 np.testing.assert_array_equal(pieces[name][...], whole[name][...])
                 assert set(pieces[name].attrs) == set(whole[name].attrs)
+    # The room that was reserved while it was written is given back.
+    whole_size = (tmp_path / "whole.h5").stat().st_size
+    assert (tmp_path / "pieces.h5").stat().st_size < 1.1 * whole_size
 
 
 FINISH = """

@@ -142,3 +142,26 @@ def test_a_given_least_length_decides_what_is_late() -> None:
     (hit,) = judged(pulse(500, 100.0), criteria=HitCriteria(minimum_length=1.5))
     assert hit.verdict is Verdict.LATE
     assert "1.5 s" in hit.reason
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_clipping_is_found_as_by_the_steps_of_all_levels(seed: int) -> None:
+    """The resolution from neighbours decides as that from all levels in order does."""
+    rng = np.random.default_rng(seed)
+    samples = np.cumsum(rng.standard_normal(400))
+    step = float(rng.choice([1e-3, 0.2, 0.5, 1.0]))
+    samples = np.round(samples / step) * step
+    samples = np.clip(samples, -np.inf, np.quantile(samples, rng.choice([0.9, 1.0])))
+    levels = np.unique(samples)
+    resolution = float(np.diff(levels).min())
+    longest = 1
+    for sign in (1.0, -1.0):
+        turned = sign * samples
+        if turned.max() <= 0.3 * np.abs(samples).max():
+            continue
+        top = np.flatnonzero(turned >= turned.max() - 1e-9 * abs(turned.max()))
+        for run in np.split(top, np.flatnonzero(np.diff(top) > 1) + 1):
+            beside = [i for i in (run[0] - 1, run[-1] + 1) if 0 <= i < 400]
+            if turned.max() - min(turned[i] for i in beside) > 2.0 * resolution:
+                longest = max(longest, run.size)
+    assert longest_flat_top(samples) == longest
