@@ -15,6 +15,7 @@ Source:
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 import scipy.fft
@@ -32,6 +33,7 @@ from jointbench.analysis.gap.response.force_integration import (
     CURVES,
     LANES,
     QUADRATIC_DAMPING,
+    IntegrationLaws,
     integrate_link_force,
 )
 from jointbench.analysis.gap.response.link_modes import link_modes
@@ -68,8 +70,11 @@ def respond(
     """
     x = motion(model, theta, excitation, actions, oversampling=oversampling)
     s = excitation.s
-    power = s ** int(model.output) if model.output else np.ones_like(s)
-    spectra = np.stack([x[model.index(c.body)] * power for c in model.channels], axis=1)
+    power = s ** int(model.output)
+    seen = [model.index(c.body) for c in model.channels]
+    spectra = np.empty((len(x[0]), len(seen), s.size), dtype=np.complex128)
+    for i, body in enumerate(seen):
+        np.multiply(x[body], power, out=spectra[:, i])
     spectra = _channels(spectra, s, actions)
     response = undamped(spectra, excitation)
     for action in actions:
@@ -142,15 +147,18 @@ def _link_force(
     if first >= 0:
         x = x - linear[first]
     modes = link_modes(model, theta, excitation.conditions, link, actions)
-    fine = _between_samples(excitation, x, laws, oversampling)
-    force = _integrated(excitation, fine, modes, laws, oversampling)
+    motions = _between_samples(excitation, x, laws, oversampling)
+    packed = pack_laws(laws)
+    dt = 1 / (excitation.sample_rate * oversampling)
+    force = _integrated(motions, modes, packed, dt)
     if oversampling >= RESPONSE.extrapolated_steps and all(
         law.kind != COULOMB for law in laws
     ):
-        coarse = fine[:, ::2]
-        half = _integrated(excitation, coarse, modes, laws, oversampling // 2)
-        force = (4.0 * force - half) / 3.0
-    return np.asarray(force * excitation.taper)
+        # Zeros between the coarse steps leave their spectrum up to Nyquist as it is.
+        coarse = np.ascontiguousarray(motions[:, ::2])
+        force *= 4.0 / 3.0
+        force[::2] -= (2.0 / 3.0) * _integrated(coarse, modes, packed, 2 * dt)
+    return _spectrum(excitation, force, oversampling)
 
 
 def _between_samples(
@@ -164,45 +172,59 @@ def _between_samples(
     Only the motion is returned if no law depends on the speed. There is one column per
     record, and zero columns fill the lanes of the time integration.
     """
-    count = excitation.growth.size * oversampling
     moving = any(law.kind in _MOVING for law in laws)
     spectra = [x, x * excitation.s] if moving else [x]
     long = excitation.padded * oversampling
-    gain = oversampling * _growth(excitation, oversampling)
+    growth = _growth(excitation, oversampling)
+    gain = oversampling * growth[:, None]
     records = len(x)
     columns = -(-records // LANES) * LANES
-    motions = np.zeros((len(spectra), count, columns))
+    motions = np.empty((len(spectra), growth.size, columns))
+    motions[:, :, records:] = 0.0
     for motion_of, y in zip(motions, spectra, strict=True):
-        rows = scipy.fft.irfft(y, long, axis=1)[:, :count] * gain
-        motion_of[:, :records] = rows.T
+        rows = scipy.fft.irfft(y, long, axis=1)[:, : growth.size]
+        np.multiply(rows.T, gain, out=motion_of[:, :records])
     return motions
 
 
 def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
     """Return exp(a t) at `oversampling` steps per sample."""
     count = excitation.growth.size * oversampling
-    dt = 1 / (excitation.sample_rate * oversampling)
-    return np.asarray(np.exp(excitation.damping * dt * np.arange(count)))
+    rate = excitation.sample_rate * oversampling
+    return _exponential(count, excitation.damping / rate)
+
+
+@lru_cache(maxsize=8)
+def _exponential(count: int, exponent: float) -> FloatArray:
+    """Return exp(k exponent), k = 0, 1, ..., shape (count,), read-only."""
+    values = np.exp(exponent * np.arange(count))
+    values.flags.writeable = False
+    return np.asarray(values)
 
 
 def _integrated(
-    excitation: Excitation,
     motions: FloatArray,
     modes: tuple[ComplexArray, ComplexArray],
-    laws: Sequence[Law],
-    oversampling: int,
-) -> ComplexArray:
-    """Return the damped spectrum of the link force at one step size, up to Nyquist."""
-    motions = np.ascontiguousarray(motions)
-    dt = 1 / (excitation.sample_rate * oversampling)
-    packed = pack_laws(laws)
-    force = integrate_link_force(
-        motions[0], motions[-1], *modes, dt, packed, len(motions) > 1
+    laws: IntegrationLaws,
+    dt: float,
+) -> FloatArray:
+    """Return the link force at steps of `dt` [s], shape (n_steps, n_columns)."""
+    return integrate_link_force(
+        motions[0], motions[-1], *modes, dt, laws, len(motions) > 1
     )
+
+
+def _spectrum(
+    excitation: Excitation, force: FloatArray, oversampling: int
+) -> ComplexArray:
+    """Return the damped spectrum of a link force up to Nyquist, anti-aliased."""
     records = excitation.hit.size
-    damped = force.T[:records] / _growth(excitation, oversampling)
+    damped = np.multiply(
+        force.T[:records], 1.0 / _growth(excitation, oversampling), order="C"
+    )
     spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=1)
-    return np.asarray(spectrum[:, : excitation.taper.size] / oversampling)
+    lines = excitation.taper.size
+    return np.asarray(spectrum[:, :lines] * (excitation.taper / oversampling))
 
 
 def _channels(
