@@ -163,8 +163,12 @@ class LumpedResidual:
         """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
         r = difference / self.noise.sigma[:, :, None]
         self.mask(r)
-        rows = r.reshape(r.shape[0], -1, 1)
-        rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
+        rows = r.reshape(r.shape[0], -1)
+        # Record by record: the basis of one stays in the processor's cache.
+        for row, basis, shrink in zip(
+            rows, self.basis, self.shrink[..., 0], strict=True
+        ):
+            row -= (shrink * (basis @ row)) @ basis
         return rows.ravel()
 
     def mask(self, rows: FloatArray) -> None:

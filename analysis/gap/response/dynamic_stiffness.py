@@ -52,9 +52,9 @@ def dynamic_stiffness(
         [N/m], shape (n_bodies, n_bodies, 1 or n_records, n_lines).
     """
     n, links = len(model.bodies), len(model.links)
-    rows = [(i, (1.0,), (i,), theta[i] * s * s) for i in range(n)]
+    square = (s * s)[None, :]
     elements: list[tuple[tuple[int, ...], ComplexArray]] = [
-        ((i,), value[None, :]) for i, _, _, value in rows
+        ((i,), theta[i] * square) for i in range(n)
     ]
     for j, link in enumerate(model.links):
         ends = tuple(e for e in model.ends(j) if e >= 0)
@@ -73,12 +73,26 @@ def dynamic_stiffness(
         else:
             ends = tuple(e for e in model.ends(action.index) if e >= 0)
             elements.append((ends, added))
-    variants = max(value.shape[0] for _, value in elements)
-    z = np.zeros((n, n, variants, s.size), dtype=np.complex128)
-    for ends, value in elements:
-        for a in ends:
-            for b in ends:
-                z[a, b] += value if a == b else -value
+    return _assembled(n, elements)
+
+
+def _assembled(
+    n: int, elements: Sequence[tuple[tuple[int, ...], ComplexArray]]
+) -> ComplexArray:
+    """Add elements between bodies, or between a body and the ground.
+
+    Returns:
+        [N/m], shape (n, n, 1 or n_records, n_lines), symmetric in the bodies.
+    """
+    # Those common to all records first: their sums are short.
+    ordered = sorted(elements, key=lambda element: element[1].shape[0])
+    variants, lines = ordered[-1][1].shape[0], ordered[0][1].shape[1]
+    z = np.empty((n, n, variants, lines), dtype=np.complex128)
+    for a in range(n):
+        z[a, a] = sum(value for ends, value in ordered if a in ends)
+        for b in range(a):
+            z[a, b] = -sum(v for ends, v in ordered if a in ends and b in ends)
+            z[b, a] = z[a, b]
     return z
 
 
@@ -108,8 +122,11 @@ def invert(z: ComplexArray) -> ComplexArray:
     if z.shape[0] == 2:
         scale = 1.0 / (z[0, 0] * z[1, 1] - z[0, 1] * z[1, 0])
         out = np.empty_like(z)
-        out[0, 0], out[1, 1] = z[1, 1] * scale, z[0, 0] * scale
-        out[0, 1], out[1, 0] = -z[0, 1] * scale, -z[1, 0] * scale
+        np.multiply(z[1, 1], scale, out=out[0, 0])
+        np.multiply(z[0, 0], scale, out=out[1, 1])
+        np.negative(scale, out=scale)
+        np.multiply(z[0, 1], scale, out=out[0, 1])
+        np.multiply(z[1, 0], scale, out=out[1, 0])
         return out
     moved = np.moveaxis(z, (0, 1), (-2, -1))
     inverse: ComplexArray = np.linalg.inv(moved).astype(np.complex128)

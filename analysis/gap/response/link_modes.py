@@ -57,20 +57,20 @@ def link_modes(
         Poles, one of each conjugate pair, and rows of the ports.
     """
     linear = [a for a in actions if a.entry.stiffness is not None]
-    records = conditions.preload.size
-    parts = _base_parts(model, theta, conditions)
-    parts += [_part(model, theta, conditions, action) for action in linear]
+    rows = incidence(model)
+    parts = _base_parts(model, rows, theta, conditions)
+    parts += [_part(model, rows, theta, conditions, action) for action in linear]
     variants = max(p.polynomial.shape[0] for p in parts)
-    across = incidence(model)[list(links)]
+    across = rows[list(links)]
     n = across.shape[1]
-    poles, right = np.linalg.eig(_state_matrix(theta[:n], parts, variants))
+    inverse, matrix = _state_matrix(theta[:n], parts, variants)
+    poles, right = np.linalg.eig(matrix)
     push = np.zeros((variants, poles.shape[1], len(links)), dtype=np.complex128)
-    inertia = _inertia(theta[:n], parts, variants)
-    push[:, n : 2 * n] = np.linalg.solve(inertia, across.T[None])
+    push[:, n : 2 * n] = inverse @ across.T
     left = np.linalg.solve(right, push)
     shapes = np.einsum("pi,rij->rjp", across, right[:, :n])
     poles, inputs, shapes = _one_of_each_pair(poles, left, shapes)
-    repeat = records // variants
+    repeat = conditions.preload.size // variants
     poles, inputs, shapes = (
         np.ascontiguousarray(np.moveaxis(np.repeat(x, repeat, axis=0), 0, -1))
         for x in (poles, inputs, shapes)
@@ -99,33 +99,35 @@ def _one_of_each_pair(
 
 
 def _base_parts(
-    model: LumpedModel, theta: FloatArray, conditions: HitConditions
+    model: LumpedModel, rows: FloatArray, theta: FloatArray, conditions: HitConditions
 ) -> list[_Part]:
     n, links = len(model.bodies), len(model.links)
-    rows = incidence(model)
     nothing = np.zeros(0, dtype=np.complex128)
     parts = []
     for j, link in enumerate(model.links):
-        k, c = theta[n + j], theta[n + links + j]
         factor = np.ones(1)
         if link.joint and conditions.settling is not None:
             factor = np.exp(conditions.settling)
-        polynomial = np.stack(
-            [k * factor, np.full_like(factor, c), np.zeros_like(factor)], axis=1
-        )
+        polynomial = np.zeros((factor.size, 3))
+        polynomial[:, 0] = theta[n + j] * factor
+        polynomial[:, 1] = theta[n + links + j]
         none = np.zeros((factor.size, 0), dtype=np.complex128)
         parts.append(_Part(rows[j], polynomial, nothing, none))
     return parts
 
 
 def _part(
-    model: LumpedModel, theta: FloatArray, conditions: HitConditions, action: Action
+    model: LumpedModel,
+    rows: FloatArray,
+    theta: FloatArray,
+    conditions: HitConditions,
+    action: Action,
 ) -> _Part:
     """Decompose an effect's dynamic stiffness exactly into its rational parts."""
     if action.kind == "body":
         across = np.eye(len(model.bodies))[action.index]
     else:
-        across = incidence(model)[action.index]
+        across = rows[action.index]
     own = np.zeros(0, dtype=np.complex128)
     if action.entry.poles is not None:
         own = np.asarray(action.entry.poles(action.values), dtype=np.complex128)
@@ -144,33 +146,33 @@ def _part(
     return _Part(across, polynomial, own, strengths)
 
 
-def _inertia(masses: FloatArray, parts: Sequence[_Part], variants: int) -> FloatArray:
-    inertia = np.tile(np.diag(masses), (variants, 1, 1))
-    for p in parts:
-        inertia = inertia + p.polynomial[:, 2, None, None] * np.outer(
-            p.across, p.across
-        )
-    return inertia
-
-
 def _state_matrix(
     masses: FloatArray, parts: Sequence[_Part], variants: int
-) -> ComplexArray:
-    """Return the state matrix of displacements, velocities and internal states."""
+) -> tuple[FloatArray, ComplexArray]:
+    """Return the inverse of the inertia, shape (variants, n, n), and the state matrix.
+
+    The states are displacements, velocities and internal states of the parts.
+    """
     n = masses.size
-    inner = sum(p.poles.size for p in parts)
-    a = np.zeros((variants, 2 * n + inner, 2 * n + inner), dtype=np.complex128)
+    size = 2 * n + sum(p.poles.size for p in parts)
+    across = np.stack([p.across for p in parts])
+    polynomials = np.empty((variants, len(parts), 3))
+    for j, p in enumerate(parts):
+        polynomials[:, j] = p.polynomial
+    stiffness, damping, inertia = (
+        (across.T * polynomials[:, None, :, power]) @ across for power in range(3)
+    )
+    inverse = np.asarray(np.linalg.inv(inertia + np.diag(masses)), dtype=np.float64)
+    a = np.zeros((variants, size, size), dtype=np.complex128)
     a[:, :n, n : 2 * n] = np.eye(n)
-    forces = np.zeros((variants, n, 2 * n + inner), dtype=np.complex128)
+    a[:, n : 2 * n, :n] = -inverse @ stiffness
+    a[:, n : 2 * n, n : 2 * n] = -inverse @ damping
     at = 2 * n
     for p in parts:
-        pair = np.outer(p.across, p.across)
-        forces[:, :, :n] -= p.polynomial[:, 0, None, None] * pair
-        forces[:, :, n : 2 * n] -= p.polynomial[:, 1, None, None] * pair
         for j, q in enumerate(p.poles):
-            forces[:, :, at] -= p.strengths[:, j, None] * p.across
+            push = -p.strengths[:, j, None] * p.across
+            a[:, n : 2 * n, at] = (inverse @ push[..., None])[..., 0]
             a[:, at, :n] = p.across
             a[:, at, at] = q
             at += 1
-    a[:, n : 2 * n] = np.linalg.solve(_inertia(masses, parts, variants), forces)
-    return a
+    return inverse, a

@@ -15,6 +15,7 @@ Source:
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 import scipy.fft
@@ -62,8 +63,11 @@ def respond(
     """
     x = motion(model, theta, excitation, actions, oversampling=oversampling)
     s = excitation.s
-    power = s ** int(model.output) if model.output else np.ones_like(s)
-    spectra = np.stack([x[model.index(c.body)] * power for c in model.channels], axis=1)
+    power = s ** int(model.output)
+    seen = [model.index(c.body) for c in model.channels]
+    spectra = np.empty((len(x[0]), len(seen), s.size), dtype=np.complex128)
+    for i, body in enumerate(seen):
+        np.multiply(x[body], power, out=spectra[:, i])
     spectra = _channels(spectra, s, actions)
     response = undamped(spectra, excitation)
     for action in actions:
@@ -165,23 +169,32 @@ def _between_samples(
     """
     count = excitation.growth.size * oversampling
     long = excitation.padded * oversampling
-    gain = oversampling * _growth(excitation, oversampling)
+    gain = oversampling * _growth(excitation, oversampling)[:, None]
     records = excitation.hit.size
     powers = (0, 1) if need_velocity(laws) else (0,)
-    out = np.zeros((len(powers), len(motions), count, filled_lanes(records)))
+    out = np.empty((len(powers), len(motions), count, filled_lanes(records)))
+    out[..., records:] = 0.0
     for power in powers:
         for port, x in enumerate(motions):
             y = x * excitation.s if power else x
-            rows = scipy.fft.irfft(y, long, axis=1)[:, :count] * gain
-            out[power, port, :, :records] = rows.T
+            rows = scipy.fft.irfft(y, long, axis=1)[:, :count]
+            np.multiply(rows.T, gain, out=out[power, port, :, :records])
     return out
 
 
 def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
     """Return exp(a t) at `oversampling` steps per sample."""
     count = excitation.growth.size * oversampling
-    dt = 1 / (excitation.sample_rate * oversampling)
-    return np.asarray(np.exp(excitation.damping * dt * np.arange(count)))
+    rate = excitation.sample_rate * oversampling
+    return _exponential(count, excitation.damping / rate)
+
+
+@lru_cache(maxsize=8)
+def _exponential(count: int, exponent: float) -> FloatArray:
+    """Return exp(k exponent), k = 0, 1, ..., shape (count,), read-only."""
+    values = np.exp(exponent * np.arange(count))
+    values.flags.writeable = False
+    return np.asarray(values)
 
 
 def _spectra(
@@ -189,7 +202,11 @@ def _spectra(
 ) -> ComplexArray:
     """Return damped spectra of forces up to Nyquist, (n_ports, n_records, n_lines)."""
     records = excitation.hit.size
-    damped = np.moveaxis(force, 1, 2)[:, :records] / _growth(excitation, oversampling)
+    damped = np.multiply(
+        np.moveaxis(force, 1, 2)[:, :records],
+        1.0 / _growth(excitation, oversampling),
+        order="C",
+    )
     spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=2)
     return np.asarray(spectrum[..., : excitation.taper.size] / oversampling)
 
