@@ -78,12 +78,17 @@ def estimate_pair(
         first order (Bendat and Piersol, table 9.6).
     """
     force_power = np.sum(np.abs(force) ** 2, axis=0)
-    floored = np.maximum(force_power, _LEAST_POWER * force_power.max())
-    h1 = np.sum(response * force.conj(), axis=0) / floored
+    safe = np.where(force_power > 0.0, force_power, 1.0)
+    h1 = np.sum(response * force.conj(), axis=0) / safe
     response_power = np.sum(np.abs(response) ** 2, axis=0)
     scatter = np.sum(np.abs(response - h1 * force) ** 2, axis=0)
     powers = (force_power, response_power, scatter)
     return pair_of_sums(h1, powers, force.shape[0], estimator)
+
+
+def floored_power(force_power: FloatArray) -> FloatArray:
+    """Return the power of a force, at least a share of the largest that it has."""
+    return np.maximum(force_power, _LEAST_POWER * force_power.max())
 
 
 def pair_of_sums(
@@ -95,13 +100,18 @@ def pair_of_sums(
     """Return the estimate that sums over hits give; see `estimate_pair`.
 
     Args:
-        h1: response over force, shape (n_lines,).
+        h1: response over force, shape (n_lines,). On a line where the force has less
+            power than the floor it is reduced, and what that leaves is scatter.
         powers: sums of |F|^2, |X|^2 and |X - H1 F|^2, same shape.
         hits: number of hits.
         estimator: which of the three.
     """
-    force_power, response_power, scatter = powers
-    force_power = np.maximum(force_power, _LEAST_POWER * force_power.max())
+    own_power, response_power, scatter = powers
+    force_power = floored_power(own_power)
+    if force_power.max() > 0.0:
+        share = own_power / force_power
+        scatter = scatter + np.abs((1.0 - share) * h1) ** 2 * own_power
+        h1 = h1 * share
     safe = np.where(response_power > 0.0, response_power, 1.0)
     coherence = np.clip(1.0 - scatter / safe, 0.0, 1.0)
     noise = uniform_filter1d(scatter, _SCATTER_LINES, mode="nearest")

@@ -10,6 +10,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.provenance import Provenance
+from jointbench.signal.frf.estimators import floored_power
 from jointbench.signal.frf.spectral_sums import SpectralSums
 from jointbench.signal.kalman.smoothing import stage_noise_of
 
@@ -43,6 +44,6 @@ def innovation_noise(
     rows = []
     for number, pair in enumerate(sums.pairs):
         sd = noise[names[number // len(sums.inputs)]]
-        power = np.where(pair.force_power > 0.0, pair.force_power, np.inf)
-        rows.append(sd**2 * step * length / power)
+        power = floored_power(pair.force_power)
+        rows.append(sd**2 * step * length / np.where(power > 0.0, power, np.inf))
     return np.array(rows)

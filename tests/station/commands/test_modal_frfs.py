@@ -40,6 +40,8 @@ def hits(folder: Path) -> list[Path]:
         motion = RESIDUES @ decay
         response = np.array([np.convolve(force, row)[:SAMPLES] for row in motion])
         response += 1e-3 * np.abs(response).max() * rng.standard_normal(response.shape)
+        # Without it the spectrum of the force has zeros, where the FRF is infinite.
+        force += 1e-4 * force.max() * rng.standard_normal(SAMPLES)
         path = folder / f"hit{number}.npy"
         np.save(path, np.vstack([time, force, response]))
         files.append(path)
