@@ -11,12 +11,12 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
 from jointbench.signal.modal.lsfd import fit_residues
-from jointbench.signal.modal.refined_pole_covariance import refine_poles
+from jointbench.signal.modal.refined_pole_covariance import refine_poles, unresolved
 
 # Lines at an edge whose residual is tested for a pole beyond: share of the band.
 _EDGE = 0.1
-# Lines at an edge on which poles beyond are fitted, likewise.
-_REACH = 0.25
+# Modes up to which poles beyond are fitted on all lines; else on this share of them.
+_FEW_MODES, _REACH = 16, 0.4
 # Least residual power over noise that indicates one.
 _EDGE_RESIDUAL = 1.2
 # Start of the search: distance and decay rate as shares of the band.
@@ -48,7 +48,8 @@ def find_beyond(whole: WholeFit) -> ComplexArray:
             continue
         if _excess(whole.residual, whole.noise, edge) < _EDGE_RESIDUAL:
             continue
-        group = group_around(whole, high if above else low, _REACH * (high - low))
+        reach = (1.0 if whole.n_modes <= _FEW_MODES else _REACH) * (high - low)
+        group = group_around(whole, high if above else low, 1.01 * reach)
         # A group replaces the poles that it held.
         known = known[~np.isin(known, whole.pole[group.beyond])]
         known = np.append(known, _beyond_edge(whole, group, edge, above=above))
@@ -76,7 +77,8 @@ def _beyond_edge(
             steps=_STEPS,
         )
         after = _excess(trial.residual, group.noise, edge)
-        if after - 1.0 > _LEFT * (before - 1.0):
+        outside = unresolved(whole.lines, trial.beyond).all()
+        if not outside or after - 1.0 > _LEFT * (before - 1.0):
             break
         fitted, before = trial, after
     return fitted.beyond

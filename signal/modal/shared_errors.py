@@ -10,7 +10,6 @@ common is its autocovariance, free of the noise of single lines; and that is pro
 to the poles.
 """
 
-
 import numpy as np
 import scipy.fft
 
