@@ -3,98 +3,110 @@
 
 The residual terms are polynomials; they represent distant modes but not the flank of a
 mode just beyond the edge, and that error biases the modes within. So where the residual
-at an edge exceeds the noise, a pole beyond it is fitted too.
+at an edge exceeds the noise, poles beyond it are fitted too, one after the other.
 """
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.signal.modal.frf_lines import FrfLines
-from jointbench.signal.modal.refined_pole_covariance import refine_poles
+from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
+from jointbench.signal.modal.lsfd import fit_residues
+from jointbench.signal.modal.refined_pole_covariance import refine_poles, unresolved
 
 # Lines at an edge whose residual is tested for a pole beyond: share of the band.
 _EDGE = 0.1
+# Modes up to which poles beyond are fitted on all lines; else on this share of them.
+_FEW_MODES, _REACH = 16, 0.4
 # Least residual power over noise that indicates one.
 _EDGE_RESIDUAL = 1.2
 # Start of the search: distance and decay rate as shares of the band.
-_STARTS = ((0.03, 0.01), (0.1, 0.03), (0.3, 0.05))
+_STARTS = ((0.01, 0.005), (0.03, 0.01), (0.1, 0.03), (0.3, 0.05))
 # A computational mode is kept where it leaves less than this share of the excess.
 _LEFT = 0.5
+# Poles added beyond one edge, at most.
+_MOST = 4
+_STEPS = 12
 
 
-def find_beyond(
-    lines: FrfLines,
-    pole: ComplexArray,
-    known: ComplexArray,
-    residual: ComplexArray,
-    noise: FloatArray,
-    variance: FloatArray,
-) -> ComplexArray:
-    """Look for a pole beyond each edge at which the fit falls short.
+def find_beyond(whole: WholeFit) -> ComplexArray:
+    """Look for poles beyond each edge at which the fit falls short.
 
     Args:
-        lines: lines of the fit.
-        pole: modes so far [rad/s], shape (n_modes,).
-        known: poles beyond the band so far, shape (n,).
-        residual: residual of a fit with both, shape (n_frf, n_lines).
-        noise: noise variance of the lines, same shape.
-        variance: noise and model error, same shape.
+        whole: fit of all lines with modes and poles beyond the band so far.
 
     Returns:
-        `known` and at most one more pole at each edge.
+        The poles beyond the band so far, and up to four more at each edge.
     """
+    lines = whole.lines
+    low, high = lines.laplace.imag[[0, -1]]
+    width = max(10, int(_EDGE * lines.laplace.size))
+    known = whole.pole[whole.n_modes :]
     for above in (False, True):
-        if _has(lines, known, above=above):
+        edge = slice(-width, None) if above else slice(None, width)
+        # There are no modes below a band that begins next to zero.
+        if not above and low < _EDGE * high:
             continue
-        before = _edge_residual(lines, residual, noise, above=above)
-        if before < _EDGE_RESIDUAL:
+        if _excess(whole.residual, whole.noise, edge) < _EDGE_RESIDUAL:
             continue
-        more = np.append(known, _best_start(lines, pole, known, variance, above=above))
-        after = refine_poles(
-            lines, pole, variance, beyond=np.asarray(more, np.complex128), steps=12
-        )
-        gained = _edge_residual(lines, after.residual, noise, above=above)
-        if gained - 1.0 < _LEFT * (before - 1.0):
-            known, residual = after.beyond, after.residual
+        reach = (1.0 if whole.n_modes <= _FEW_MODES else _REACH) * (high - low)
+        group = group_around(whole, high if above else low, 1.01 * reach)
+        # A group replaces the poles that it held.
+        known = known[~np.isin(known, whole.pole[group.beyond])]
+        known = np.append(known, _beyond_edge(whole, group, edge, above=above))
     return known
 
 
-def _has(lines: FrfLines, known: ComplexArray, *, above: bool) -> bool:
-    """Return whether there is a pole at that edge already."""
-    middle = 0.5 * float(lines.laplace.imag[[0, -1]].sum())
-    return bool(np.any((known.imag > middle) == above))
+def _beyond_edge(
+    whole: WholeFit, group: Group, edge: slice, *, above: bool
+) -> ComplexArray:
+    """Add poles beyond an edge to those of a group while each explains the residual."""
+    pole, beyond = whole.pole[group.modes], whole.pole[group.beyond]
+    fitted = refine_poles(
+        group.lines, pole, group.variance, beyond=beyond, steps=_STEPS
+    )
+    before = _excess(fitted.residual, group.noise, edge)
+    for _ in range(_MOST):
+        if before < _EDGE_RESIDUAL:
+            break
+        start = _best_start(whole, group, fitted.pole, fitted.beyond, above=above)
+        trial = refine_poles(
+            group.lines,
+            fitted.pole,
+            group.variance,
+            beyond=np.append(fitted.beyond, start),
+            steps=_STEPS,
+        )
+        after = _excess(trial.residual, group.noise, edge)
+        outside = unresolved(whole.lines, trial.beyond).all()
+        if not outside or after - 1.0 > _LEFT * (before - 1.0):
+            break
+        fitted, before = trial, after
+    return fitted.beyond
 
 
-def _edge_residual(
-    lines: FrfLines, residual: ComplexArray, noise: FloatArray, *, above: bool
-) -> float:
+def _excess(residual: ComplexArray, noise: FloatArray, edge: slice) -> float:
     """Return the residual over the noise at an edge of the band [-]."""
-    low, high = lines.laplace.imag[[0, -1]]
-    if not above and low < _EDGE * high:
-        return 0.0
-    width = max(10, int(_EDGE * lines.laplace.size))
-    edge = slice(-width, None) if above else slice(None, width)
     return float(np.mean(np.abs(residual[:, edge]) ** 2 / noise[:, edge]))
 
 
 def _best_start(
-    lines: FrfLines,
+    whole: WholeFit,
+    group: Group,
     pole: ComplexArray,
     known: ComplexArray,
-    variance: FloatArray,
     *,
     above: bool,
 ) -> complex:
     """Return the start beyond an edge with the smallest residual."""
-    low, high = lines.laplace.imag[[0, -1]]
+    low, high = whole.lines.laplace.imag[[0, -1]]
     best, least = 0.0j, np.inf
     for distance, decay in _STARTS:
         away = distance * (high - low)
         omega = high + away if above else max(low - away, 0.5 * low)
         start = complex(-decay * (high - low), omega)
-        beyond = np.asarray(np.append(known, start), np.complex128)
-        found = refine_poles(lines, pole, variance, beyond=beyond, steps=0)
-        left = float(np.sum(np.abs(found.residual) ** 2 / variance))
-        if left < least:
-            best, least = start, left
+        everything = np.concatenate((pole, known, [start]))
+        fit = fit_residues(group.lines, everything, group.variance)
+        left = np.abs(group.lines.response - fit.synthesis) ** 2 / group.variance
+        if float(np.sum(left)) < least:
+            best, least = start, float(np.sum(left))
     return best

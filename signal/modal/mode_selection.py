@@ -6,10 +6,9 @@ stronger mode. So a candidate is kept only if leaving it out raises chi-squared 
 than noise and the local residual can explain.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
@@ -23,25 +22,28 @@ from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
     local_level,
-    local_residual,
     model_error,
 )
+from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lscf import Progress
 from jointbench.signal.modal.lsfd import LinearFit, fit_residues
+from jointbench.signal.modal.missing_modes import find_missing
+from jointbench.signal.modal.mode_significance import needed, significance
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
     unresolved,
 )
+from jointbench.signal.modal.shared_errors import shared_covariance
 
 # Relative model error assumed before a fit has estimated it [-].
 _FIRST_MODEL_ERROR = 0.02
-# Probability that noise anywhere in the band passes for a mode; every line is one test
-# (Bonferroni).
-_CHANCE = 1e-6
 # A mode whose damping has a relative sd above this is dropped.
 _VAGUE = 1.0 / 3.0
 _STEPS = 30
+_FEW_STEPS = 6
+# Passes over the residual in search of modes that were missed.
+_SEARCHES = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,6 +52,7 @@ class FittedModes:
 
     Attributes:
         chosen: indices of the accepted candidates, shape (n_modes,).
+        candidates: as given, then those that the residual showed [rad/s].
         poles: refined, with covariance and inflation.
         fit: residues on the same lines.
         variance: noise and model error of each line, shape (n_frf, n_lines).
@@ -57,15 +60,19 @@ class FittedModes:
             residual, shape (n_modes,).
         model_error: of the fit, as a share of the local level [-].
         residual_ratio: around each mode, rms residual over noise [-], shape (n_modes,).
+        shared: covariance of (Re p, Im p) from errors common to the FRFs of a
+            reference [rad^2/s^2], shape (n_modes, 2, 2).
     """
 
     chosen: IntArray
+    candidates: ComplexArray
     poles: RefinedPoles
     fit: LinearFit
     variance: FloatArray
     significance: FloatArray
     model_error: float
     residual_ratio: FloatArray
+    shared: FloatArray
 
 
 def fit_modes(
@@ -74,6 +81,8 @@ def fit_modes(
     scatter: FloatArray | None,
     *,
     held: BoolArray | None = None,
+    dropped: FloatArray | None = None,
+    n_inputs: int = 1,
     refine: bool = True,
     progress: Progress | None = None,
 ) -> FittedModes:
@@ -88,6 +97,8 @@ def fit_modes(
         candidates: poles [rad/s], shape (n_candidates,).
         scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
         held: True for candidates that are always kept, shape (n_candidates,), or None.
+        dropped: where the residual may show no mode: dropped by hand [rad/s].
+        n_inputs: references; inputs vary fastest over the rows of the lines.
         refine: False keeps the poles of LSCF.
         progress: called with the current step and its share; None for no reports.
 
@@ -104,47 +115,149 @@ def fit_modes(
     report("refining modes", 0.4)
     # The response itself is rough at resonances; the residual of a fit is not.
     noise = line_noise(lines.response, scatter, poles.residual)
-    beyond = poles.beyond
     if refine:
-        beyond = find_beyond(lines, poles.pole, beyond, poles.residual, noise, variance)
-    residual = (
-        poles.residual
-        if beyond.size == poles.beyond.size
-        else refine_poles(lines, poles.pole, variance, beyond=beyond, steps=0).residual
-    )
-    error = model_error(residual, noise, lines.response)
+        whole = _whole(lines, poles.pole, poles.beyond, noise, variance)
+        beyond = find_beyond(whole)
+        if beyond.size != poles.beyond.size:
+            poles = _again(lines, poles.pole, beyond, variance)
+            noise = line_noise(lines.response, scatter, poles.residual)
+    error = model_error(poles.residual, noise, lines.response)
     variance = noise + error**2 * level
-    kept = _needed(lines, poles.pole, held[chosen], noise, variance, beyond)
+    barred = np.empty(0) if dropped is None else dropped
+    start = _Start(candidates, held, noise, variance, barred, steps)
+    kept = needed(lines, poles.pole, held[chosen], noise, variance, poles.beyond)
     report("refining modes", 0.7)
+    done = _settled(lines, start, chosen, kept, poles)
+    for _ in range(_SEARCHES if refine else 0):
+        more = _completed(lines, start, done)
+        if more is None:
+            break
+        start, done = more
+    report("refining modes", 1.0)
+    return FittedModes(
+        done.chosen,
+        start.candidates,
+        done.poles,
+        done.fit.of_modes(done.chosen.size),
+        variance,
+        done.significance,
+        error,
+        residual_around(lines, done.poles.pole, done.poles.residual, noise),
+        shared_covariance(lines, done.poles, done.fit, variance, n_inputs),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Start:
+    """What a fit begins with.
+
+    Attributes:
+        candidates: poles [rad/s].
+        held: which of them are always kept.
+        noise: noise variance of the lines.
+        variance: noise and model error.
+        barred: frequencies at which no mode may be added [rad/s].
+        steps: most evaluations of a refinement.
+    """
+
+    candidates: ComplexArray
+    held: BoolArray
+    noise: FloatArray
+    variance: FloatArray
+    barred: FloatArray
+    steps: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Settled:
+    """A fit that holds no mode to drop."""
+
+    chosen: IntArray
+    poles: RefinedPoles
+    fit: LinearFit
+    significance: FloatArray
+
+
+def _settled(
+    lines: FrfLines,
+    start: _Start,
+    chosen: IntArray,
+    kept: IntArray,
+    poles: RefinedPoles,
+) -> _Settled:
+    """Refine, and drop vague modes and those beyond the band, until none is left."""
+    held, beyond = start.held, poles.beyond
     while True:
         chosen = chosen[kept]
         poles = refine_poles(
             lines,
-            candidates[chosen],
-            variance,
+            start.candidates[chosen],
+            start.variance,
             beyond=beyond,
             doubt=poles.inflation[kept],
             begin=poles.pole[kept],
-            steps=steps,
+            steps=start.steps,
         )
         beyond = poles.beyond
-        fit = fit_residues(lines, np.append(poles.pole, beyond), variance)
-        significance = _significance(lines, fit, poles.pole, noise, beyond)
+        fit = fit_residues(lines, np.append(poles.pole, beyond), start.variance)
+        found = significance(lines, fit, poles.pole, start.noise, beyond)
         aside = unresolved(lines, poles.pole) & ~held[chosen]
-        bad = (_vague(lines, poles, significance) & ~held[chosen]) | aside
+        bad = (_vague(lines, poles, found) & ~held[chosen]) | aside
         if not bad.any():
-            report("refining modes", 1.0)
-            return FittedModes(
-                chosen,
-                poles,
-                fit.of_modes(chosen.size),
-                variance,
-                significance,
-                error,
-                residual_around(lines, poles.pole, poles.residual, noise),
-            )
+            return _Settled(chosen, poles, fit, found)
         beyond = np.append(beyond, poles.pole[aside])
         kept = np.flatnonzero(~bad)
+
+
+def _completed(
+    lines: FrfLines, start: _Start, done: _Settled
+) -> tuple[_Start, _Settled] | None:
+    """Add what the residual shows; None where it shows nothing."""
+    poles = done.poles
+    whole = WholeFit(
+        lines,
+        np.append(poles.pole, poles.beyond),
+        poles.pole.size,
+        done.fit,
+        start.noise,
+        start.variance,
+    )
+    beyond, added = find_beyond(whole), find_missing(whole, start.barred)
+    if added.size == 0 and beyond.size == poles.beyond.size:
+        return None
+    everything = np.append(start.candidates, added)
+    held = np.append(start.held, np.zeros(added.size, bool))
+    place = np.arange(start.candidates.size, everything.size)
+    begun = _again(lines, np.append(poles.pole, added), beyond, start.variance, steps=0)
+    wider = replace(start, candidates=everything, held=held)
+    chosen = np.append(done.chosen, place)
+    left = needed(
+        lines, begun.pole, held[chosen], start.noise, start.variance, begun.beyond
+    )
+    return wider, _settled(lines, wider, chosen, left, begun)
+
+
+def _again(
+    lines: FrfLines,
+    pole: ComplexArray,
+    beyond: ComplexArray,
+    variance: FloatArray,
+    steps: int = _FEW_STEPS,
+) -> RefinedPoles:
+    """Refine modes and poles beyond the band for a few steps."""
+    return refine_poles(lines, pole, variance, beyond=beyond, steps=steps)
+
+
+def _whole(
+    lines: FrfLines,
+    pole: ComplexArray,
+    beyond: ComplexArray,
+    noise: FloatArray,
+    variance: FloatArray,
+) -> WholeFit:
+    everything = np.append(pole, beyond)
+    fit = fit_residues(lines, everything, variance)
+    return WholeFit(lines, everything, pole.size, fit, noise, variance)
 
 
 def _silent(what: str, share: float) -> None:
@@ -161,7 +274,7 @@ def _first_fit(
 ) -> tuple[IntArray, RefinedPoles]:
     """Refine what is needed; poles that end beyond the band become computational."""
     none = np.empty(0, complex)
-    chosen = _needed(lines, candidates, held, noise, variance, none)
+    chosen = needed(lines, candidates, held, noise, variance, none)
     poles = refine_poles(lines, candidates[chosen], variance, steps=steps)
     aside = unresolved(lines, poles.pole) & ~held[chosen]
     if not aside.any() or steps == 0:
@@ -193,60 +306,3 @@ def _vague(lines: FrfLines, poles: RefinedPoles, significance: FloatArray) -> Bo
     overlap = apart < 2.0 * (width[:, None] + width)
     rival = overlap & vague & (significance < significance[:, None])
     return np.asarray(vague & ~rival.any(axis=1))
-
-
-def _needed(
-    lines: FrfLines,
-    pole: ComplexArray,
-    held: BoolArray,
-    noise: FloatArray,
-    variance: FloatArray,
-    beyond: ComplexArray,
-) -> IntArray:
-    """Drop the least needed pole until all that are left are needed; return indices."""
-    left = np.arange(pole.size)
-    chance = _CHANCE / lines.laplace.size
-    limit = float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
-    while left.size:
-        fit = fit_residues(lines, np.append(pole[left], beyond), variance)
-        significance = _significance(lines, fit, pole[left], noise, beyond)
-        weak: BoolArray = (significance < limit) & ~held[left]
-        if not weak.any():
-            break
-        # Weak poles may replace each other: only the weakest is dropped, and those far
-        # below the limit.
-        weak &= significance <= max(0.1 * limit, float(significance[weak].min()))
-        left = left[~weak]
-    return left
-
-
-def _significance(
-    lines: FrfLines,
-    fit: LinearFit,
-    pole: ComplexArray,
-    noise: FloatArray,
-    beyond: ComplexArray,
-) -> FloatArray:
-    """Judge each mode by the noise or by the local residual, whichever is larger."""
-    local = local_residual(lines.response - fit.synthesis)
-    everything = np.append(pole, beyond)
-    judged = fit_residues(lines, everything, np.maximum(noise, local))
-    apparent = np.nan_to_num(judged.significance[: pole.size])
-    return np.asarray(apparent / _window_gain(lines, pole))
-
-
-def _window_gain(lines: FrfLines, pole: ComplexArray) -> FloatArray:
-    """Return the noise at a mode over that on its lines, 1 or more.
-
-    An exponential window exp(-a t) on a block T keeps the noise early in the block,
-    where the mode is too: its power there is 2 a T / (1 - exp(-2 a T)) times the mean.
-    Weighted with a decay exp(-(a + d) t), that is the factor below; 1 without a window.
-    In terms of lines: the window correlates the errors of neighbours.
-    """
-    added = float(lines.laplace.real[0])
-    if added <= 0.0:
-        return np.ones(pole.size)
-    exponent = 2.0 * added * 2.0 * np.pi / float(np.median(np.diff(lines.laplace.imag)))
-    early = exponent / -np.expm1(-exponent)
-    width = measured_width(lines, pole)
-    return np.asarray(np.maximum(1.0, early * width / (width + added)))

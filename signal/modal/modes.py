@@ -29,6 +29,7 @@ from jointbench.signal.modal.stabilisation import (
     Stabilisation,
     StabilityLimits,
     candidates,
+    from_residual,
     stabilise,
 )
 
@@ -137,6 +138,8 @@ def identify_modes(
         start,
         _scatter(frf, keep),
         held=np.array([c.by_hand for c in found], bool),
+        dropped=2.0 * np.pi * np.array(settings.choices.drop, float),
+        n_inputs=len(frf.inputs),
         refine=settings.refine,
         progress=progress,
     )
@@ -146,6 +149,8 @@ def identify_modes(
             f"{table.orders[0]} to {table.orders[-1]}, {reason}; give another band or "
             "more hits"
         )
+    more = fitted.candidates[start.size :]
+    found = (*found, *(from_residual(table, complex(pole)) for pole in more))
     done = _record(reason, weighed, table, start.size, fitted, settings.choices)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
     model, remarks = separate_repeated(model, lines, fitted)

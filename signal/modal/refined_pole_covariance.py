@@ -204,14 +204,14 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
     fixed columns.
     """
     n_linear, n_poles = modal_size(pole), 2 * pole.size
-    columns = np.hstack((modal_basis(lines, pole), _pole_slopes(lines, pole)))
+    columns = np.hstack((modal_basis(lines, pole), pole_slopes(lines, pole)))
     weight = 2.0 / variance
     products = gram_matrices(columns, weight)
     inverse = inverses(products[:, :n_linear, :n_linear])
     right = correlations(columns[:, :n_linear], weight * lines.response)
     solved = (inverse @ right[:, :, None])[:, :, 0]
     residual = lines.response - solved @ columns[:, :n_linear].T
-    turn = _turns(solved[:, :n_poles])
+    turn = slope_turns(solved[:, :n_poles])
     overlap = products[:, :n_linear, n_linear:] @ turn
     gram = _transposed(turn) @ products[:, n_linear:, n_linear:] @ turn
     gram -= _transposed(overlap) @ inverse @ overlap
@@ -231,7 +231,7 @@ def _transposed(matrices: FloatArray) -> FloatArray:
     return matrices.transpose(0, 2, 1)
 
 
-def _pole_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+def pole_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     """Return d/dp of the two columns of each pole, shape (n_lines, 2 n_modes)."""
     s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
     own, mirrored = power / (s - pole) ** 2, power / (s - pole.conj()) ** 2
@@ -241,7 +241,7 @@ def _pole_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     return slopes
 
 
-def _turns(residue: FloatArray) -> FloatArray:
+def slope_turns(residue: FloatArray) -> FloatArray:
     """Return for each FRF the block-diagonal matrix that makes slopes of (Re p, Im p).
 
     With R = a + j b: d/d Re p is a times the first column plus b times the second,

@@ -221,6 +221,21 @@ def candidates(
     return tuple(c for c in found if not any(_splinter(c, host) for host in found))
 
 
+def from_residual(table: Stabilisation, pole: complex) -> PoleCandidate:
+    """Return a candidate that the residual of a fit showed and no stable track did.
+
+    Args:
+        table: from `stabilise`.
+        pole: [rad/s].
+
+    Returns:
+        Its stable orders are those with a stable pole within its half-power width.
+    """
+    near = np.abs(table.pole.imag - pole.imag) < abs(pole.real)
+    orders = np.unique(table.order[near & table.stable])
+    return PoleCandidate(pole, (0.0, 0.0), int(orders.size), -1)
+
+
 def mac(one: ComplexArray, other: ComplexArray) -> float:
     """Return the modal assurance criterion of two shapes [-].
 

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+"""Modes that the residual shows and no stable pole did.
+
+Where a fit has all modes, its residual is white. A mode that was missed leaves a peak
+that every FRF shares; it biases its neighbours and makes their intervals too narrow. So
+the residual is compared with resonances of usual widths at every line. Where one stands
+out, a pole is tried together with the modes around it, and kept where the FRF needs it
+by the same rule as any candidate, and where it explains most of what the fit left.
+"""
+
+import numpy as np
+import scipy.fft
+
+from jointbench.acquisition.basics.arrays import (
+    ComplexArray,
+    FloatArray,
+    IntArray,
+)
+from jointbench.signal.modal.frf_lines import FrfLines, measured_width
+from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
+from jointbench.signal.modal.lsfd import fit_residues
+from jointbench.signal.modal.mode_significance import least_significance, significance
+from jointbench.signal.modal.refined_pole_covariance import (
+    RefinedPoles,
+    refine_poles,
+    unresolved,
+)
+
+# Decay rates of the resonances looked for, over the median of the modes found.
+_DECAYS = (0.5, 1.0, 2.0)
+# Lines on each side of a trial: half-power half-widths, and lines at least.
+_REACH_WIDTHS, _REACH_LINES = 8.0, 40
+# Trials in one pass over the residual.
+_TRIALS = 12
+_STEPS = 12
+# A mode must explain this share of the residual power above the noise around it.
+_EXPLAINED = 0.5
+# Residual power above the noise, over the noise, that indicates a mode.
+_LEAST_EXCESS = 0.2
+# Relative sd of the damping up to which a mode is known; highest damping ratio.
+_VAGUE, _HIGHEST_DAMPING = 1.0 / 3.0, 0.2
+# Half-power half-widths from the nearest mode, at least: nearer poles explain how one
+# peak differs from that of a single mode.
+_APART = 1.0
+# A decay rate in line distances below which a peak is a single line.
+_NARROWEST = 0.3
+
+
+def find_missing(whole: WholeFit, barred: FloatArray) -> ComplexArray:
+    """Return the poles of modes that the residual needs.
+
+    Args:
+        whole: fit of all lines with the modes found so far.
+        barred: frequencies within whose peaks no mode is looked for [rad/s].
+
+    Returns:
+        Refined together with their neighbours [rad/s], shape (n_missing,).
+    """
+    found: list[complex] = []
+    for start in _starts(whole):
+        pole = _tried(whole, start)
+        if pole is None or np.any(np.abs(pole.imag - barred) < 2.0 * abs(pole.real)):
+            continue
+        if _away(whole.lines, pole, np.array(found, complex)):
+            found.append(pole)
+    return np.array(found, complex)
+
+
+def _starts(whole: WholeFit) -> list[complex]:
+    """Return trial poles where the residual is most like a resonance."""
+    omega = whole.lines.laplace.imag
+    if whole.n_modes == 0 or omega.size < 3:
+        return []
+    usual = float(np.median(measured_width(whole.lines, whole.pole[: whole.n_modes])))
+    decays = [factor * usual for factor in _DECAYS]
+    likeness = np.array([_likeness(whole, decay) for decay in decays])
+    added = float(whole.lines.laplace.real[0])
+    limit = least_significance(whole.lines)
+    best, starts = likeness.max(axis=0), []
+    width = measured_width(whole.lines, whole.pole)
+    for pole, near in zip(whole.pole, _APART * width, strict=True):
+        best[np.abs(omega - pole.imag) < near] = 0.0
+    for _ in range(_TRIALS):
+        at = int(np.argmax(best))
+        if best[at] < limit:
+            break
+        decay = decays[int(np.argmax(likeness[:, at]))]
+        starts.append(complex(added - decay, omega[at]))
+        best = np.where(np.abs(omega - omega[at]) < 2.0 * decay, 0.0, best)
+    return starts
+
+
+def _likeness(whole: WholeFit, decay: float) -> FloatArray:
+    """Return the chi-squared that a resonance at each line would explain.
+
+    Both sums over the lines are convolutions with the resonance.
+    """
+    omega = whole.lines.laplace.imag
+    pitch = float(np.median(np.diff(omega)))
+    away = pitch * np.arange(-omega.size + 1, omega.size)
+    shape = 1.0 / (decay + 1j * away)
+    size = scipy.fft.next_fast_len(3 * omega.size)
+    turned = scipy.fft.fft(shape[::-1].conj(), size)
+    power = scipy.fft.fft(np.abs(shape) ** 2, size)
+    weighted = scipy.fft.fft(whole.residual / whole.noise, size, axis=1)
+    weight = scipy.fft.fft(1.0 / whole.noise, size, axis=1)
+    part = slice(omega.size - 1, 2 * omega.size - 1)
+    alike = scipy.fft.ifft(weighted * turned, axis=1)[:, part]
+    total = scipy.fft.ifft(weight * power, axis=1)[:, part].real
+    return np.asarray(np.sum(2.0 * np.abs(alike) ** 2 / total, axis=0))
+
+
+def _tried(whole: WholeFit, start: complex) -> complex | None:
+    """Return the refined pole where the lines around it need it."""
+    pitch = float(np.median(np.diff(whole.lines.laplace.imag)))
+    added = float(whole.lines.laplace.real[0])
+    width = added - start.real
+    group = group_around(
+        whole, start.imag, max(_REACH_WIDTHS * width, _REACH_LINES * pitch)
+    )
+    without = _refined(whole, group, group.modes)
+    fitted = _refined(whole, group, group.modes, start)
+    pole = complex(fitted.pole[-1])
+    if not _plausible(whole, fitted, pole, pitch):
+        return None
+    near = np.abs(group.lines.laplace.imag - pole.imag) < max(
+        2.0 * (added - pole.real), 5.0 * pitch
+    )
+    before, after = (_excess(f.residual, group, near) for f in (without, fitted))
+    if before < _LEAST_EXCESS or after > (1.0 - _EXPLAINED) * before:
+        return None
+    everything = np.append(fitted.pole, fitted.beyond)
+    fit = fit_residues(group.lines, everything, group.variance)
+    need = significance(group.lines, fit, fitted.pole, group.noise, fitted.beyond)
+    return pole if need[-1] > least_significance(whole.lines) else None
+
+
+def _refined(
+    whole: WholeFit, group: Group, modes: IntArray, more: complex | None = None
+) -> RefinedPoles:
+    start = whole.pole[modes]
+    return refine_poles(
+        group.lines,
+        start if more is None else np.append(start, more),
+        group.variance,
+        beyond=whole.pole[group.beyond],
+        steps=_STEPS,
+    )
+
+
+def _plausible(
+    whole: WholeFit, fitted: RefinedPoles, pole: complex, pitch: float
+) -> bool:
+    """Return whether a pole is within the band, known, and apart from the others."""
+    one = np.array([pole])
+    narrow = float(measured_width(whole.lines, one)[0]) < _NARROWEST * pitch
+    sd = float(np.sqrt(fitted.covariance[-1, 0, 0] * fitted.inflation[-1]))
+    return (
+        bool(fitted.converged[-1])
+        and not narrow
+        and pole.real < 0.0
+        and -pole.real < _HIGHEST_DAMPING * abs(pole)
+        and sd < _VAGUE * abs(pole.real)
+        and not bool(unresolved(whole.lines, one)[0])
+        and _away(whole.lines, pole, fitted.pole[:-1])
+    )
+
+
+def _away(lines: FrfLines, pole: complex, others: ComplexArray) -> bool:
+    """Return whether a pole keeps its distance from others."""
+    width = measured_width(lines, np.append(others, pole))
+    apart = np.abs(others.imag - pole.imag)
+    return bool(np.all(apart > _APART * np.maximum(width[:-1], width[-1])))
+
+
+def _excess(residual: ComplexArray, group: Group, near: np.ndarray) -> float:
+    """Return the residual power over the noise above 1 on some lines [-]."""
+    ratio = np.abs(residual[:, near]) ** 2 / group.noise[:, near]
+    return max(float(np.mean(ratio)) - 1.0, 0.0)
