@@ -13,7 +13,7 @@ import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.amplitude.band_lines import BandLines
-from jointbench.signal.amplitude.linearised import Linearised, linearised
+from jointbench.signal.amplitude.linearised import LinearBand, linearised
 from jointbench.signal.amplitude.mode_state import JointFit, ModeState, moved
 from jointbench.signal.amplitude.smoothness import (
     inverse,
@@ -86,10 +86,10 @@ def _step(
     lines: BandLines,
     state: tuple[ModeState, ...],
     power: int,
-    now: Linearised,
+    now: LinearBand,
     prior: tuple[FloatArray, FloatArray, float],
     damping: float,
-) -> tuple[tuple[ModeState, ...], Linearised | None, float]:
+) -> tuple[tuple[ModeState, ...], LinearBand | None, float]:
     """Try steps with more and more damping until one gains."""
     matrix = now.normal + prior[0]
     _, prior_gradient, cost = prior
@@ -120,7 +120,7 @@ def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
 
 
 def _finished(
-    lines: BandLines, modes: tuple[ModeState, ...], now: Linearised
+    lines: BandLines, modes: tuple[ModeState, ...], now: LinearBand
 ) -> JointFit:
     covariance = inverse(now.normal + penalty(modes, now.gradient.size)[0])
     used = float(np.sum(covariance * now.normal))

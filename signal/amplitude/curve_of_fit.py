@@ -92,7 +92,7 @@ def _energy_share(relative: FloatArray, zeta: FloatArray) -> float:
     does. To first order in the softening the rate is zeta omega / (1 + q d ln omega /
     dL), with q = 1/2 where the joint is elastic (the action is lost) and q = 2 where it
     is friction after Masing (energy changes with the tangent of the backbone). What
-    the joint adds to damping tells the two apart.
+    the joint adds to damping distinguishes the two.
     """
     change = relative[-1] - relative[0]
     if change == 0.0:

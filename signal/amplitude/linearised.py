@@ -18,7 +18,7 @@ from jointbench.signal.amplitude.slow_flow import decays
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Linearised:
+class LinearBand:
     """The model near given modes.
 
     Attributes:
@@ -34,7 +34,7 @@ class Linearised:
     chi2: float
 
 
-def linearised(lines: BandLines, modes: Sequence[ModeState], power: int) -> Linearised:
+def linearised(lines: BandLines, modes: Sequence[ModeState], power: int) -> LinearBand:
     """Return residual, J'J and J'r; an infinite chi-squared where signals overflow.
 
     Args:
@@ -46,7 +46,7 @@ def linearised(lines: BandLines, modes: Sequence[ModeState], power: int) -> Line
     total = mode_slices(modes)[-1].hits.stop
     normal, gradient = np.zeros((total, total)), np.zeros(total)
     if not all(np.isfinite(row).all() for row in rows):
-        return Linearised(lines.data, normal, gradient, np.inf)
+        return LinearBand(lines.data, normal, gradient, np.inf)
     residual = lines.data.copy()
     for mode, row in zip(modes, rows, strict=True):
         for number, shape in enumerate((mode.shape, mode.turn)[: mode.signals]):
@@ -55,7 +55,7 @@ def linearised(lines: BandLines, modes: Sequence[ModeState], power: int) -> Line
     _add_products(modes, rows, places, normal)
     _add_gradient(modes, rows, places, residual, gradient)
     chi2 = float(np.sum(residual.real**2) + np.sum(residual.imag**2))
-    return Linearised(residual, normal, gradient, chi2)
+    return LinearBand(residual, normal, gradient, chi2)
 
 
 def _rows(lines: BandLines, mode: ModeState, power: int) -> ComplexArray:
