@@ -5,8 +5,7 @@ Each group of close poles is fitted without and with dependence on amplitude; th
 curves that explain the decays better than all linear modes of the group are kept.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -16,12 +15,6 @@ from jointbench.signal.amplitude.amplitude_curve import (
     AmplitudeMode,
     Dependence,
     SoftLimit,
-)
-from jointbench.signal.amplitude.band_fit import (
-    BandFit,
-    curved_residual,
-    fit_band,
-    linear_residual,
 )
 from jointbench.signal.amplitude.curve_laws import (
     family_by_law,
@@ -42,40 +35,20 @@ from jointbench.signal.amplitude.dependence_test import (
     decide,
     score_chance,
 )
+from jointbench.signal.amplitude.group_fits import GroupFit, fit_groups
 from jointbench.signal.amplitude.level_comparison import compare_levels
-from jointbench.signal.amplitude.mode_groups import (
-    ModeGroup,
-    mode_groups,
-    without_companions,
-)
+from jointbench.signal.amplitude.mode_groups import ModeGroup, mode_groups
 from jointbench.signal.amplitude.ring_downs import RingDowns, ring_downs
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_spectra import HitSpectra, hit_spectra
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.modal_model import ModalModel
 
-# A finding must stay when the decays start later by this [s], or by this share of the
-# mode's time constant where that is less.
-_DELAY, _DELAY_SHARE = 0.05, 0.7
 # Above this residual ratio no curve is given.
 _NO_CURVE = 3.0
-# Above this residual ratio the fit is repeated from a later start.
-_UNEASY = 2.0
-# Fewer curves may leave this much more power than all of them.
-_FEWER = 2.0
-# Records must be this many delays long.
-_LEAST_DELAYS = 4
 
 Talk = Callable[[str, float], None]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Fitted:
-    """Fits of one group, from two starts, and which poles began its curves."""
-
-    main: BandFit
-    later: BandFit | None
-    members: tuple[int, ...]
+_Levels = Mapping[int, tuple[float | None, str]]
 
 
 @one_thread()
@@ -102,28 +75,33 @@ def amplitude_modes(
     judged = [r for r in recordings if accepted_hits(r)]
     decays = ring_downs(judged)
     spectra = hit_spectra(judged, join_windows([choose_window(r) for r in judged]))
-    groups = mode_groups(model)
-    found: list[AmplitudeMode] = []
-    for number, group in enumerate(groups):
-        if progress is not None:
-            progress("amplitude dependence", number / len(groups))
-        found += _resolved(decays, spectra, model, group)
+    levels = {
+        i: _levels_at(spectra, model, i) for i in range(model.natural_frequency.size)
+    }
+    asked, found = [], []
+    for group in mode_groups(model):
+        head = levels[group.members[0]][0]
+        if head is None or head > CHANCE:
+            found += [_not_fitted(model, i, *levels[i]) for i in group.members]
+        else:
+            asked.append(group)
+    for group, fitted in fit_groups(decays, model, asked, progress).items():
+        if fitted is None:
+            words = "the joint fit is singular"
+            found += [_undecided(model, i, words) for i in group.members]
+        else:
+            found += _resolved(decays, model, group, fitted, levels)
     return tuple(sorted(found, key=lambda mode: mode.replaces[0]))
 
 
 def _resolved(
-    decays: RingDowns, spectra: HitSpectra, model: ModalModel, group: ModeGroup
+    decays: RingDowns,
+    model: ModalModel,
+    group: ModeGroup,
+    fitted: GroupFit,
+    levels: _Levels,
 ) -> list[AmplitudeMode]:
     """Return the modes of one group, merged where curves explain more than poles."""
-    levels = {i: _levels_at(spectra, model, i) for i in group.members}
-    head = levels[group.members[0]][0]
-    if head is None or head > CHANCE:
-        return [_not_fitted(model, i, *levels[i]) for i in group.members]
-    try:
-        fitted = _fit_group(decays, model, group)
-    except np.linalg.LinAlgError:
-        words = "the joint fit is singular"
-        return [_undecided(model, i, words) for i in group.members]
     modes = []
     for number, member in enumerate(fitted.members):
         others = [i for i in group.members if i not in fitted.members]
@@ -139,43 +117,10 @@ def _levels_at(
     return compare_levels(spectra, float(frequency), float(ratio))
 
 
-def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> _Fitted:
-    """Fit the fewest curves that explain more than all linear modes do."""
-    whole = group.band(model, len(group.members))
-    kept = without_companions(model, group)
-    count, main = len(kept.members), None
-    if count > 1:
-        best = fit_band(decays, kept.band(model, count))
-        # Twice the power that all curves leave: two modes taken for one leave far more.
-        apart = max(
-            linear_residual(decays, whole),
-            _FEWER * curved_residual(best, decays, whole),
-        )
-        main = best
-        for fewer in range(1, count):
-            tried = fit_band(decays, kept.band(model, fewer))
-            if curved_residual(tried, decays, whole) < apart:
-                count, main = fewer, tried
-                break
-    band = kept.band(model, count)
-    main = main or fit_band(decays, band)
-    members = tuple(sorted(kept.members[:count]))
-    delay = min(_DELAY, _DELAY_SHARE / band.slowest)
-    if decays.samples.shape[2] < _LEAST_DELAYS * delay * decays.sample_rate:
-        return _Fitted(main, None, members)
-    later = fit_band(decays.later(delay), band)
-    if (
-        main.curved.residual_ratio > _UNEASY
-        and later.curved.residual_ratio < main.curved.residual_ratio
-    ):
-        return _Fitted(later, fit_band(decays.later(2 * delay), band), members)
-    return _Fitted(main, later, members)
-
-
 def _judged(
     decays: RingDowns,
     model: ModalModel,
-    fitted: _Fitted,
+    fitted: GroupFit,
     number: int,
     members: tuple[int, ...],
     levels: tuple[float | None, str],

@@ -1,21 +1,36 @@
 # SPDX-License-Identifier: MIT
 """All modes of one band, without and with dependence on amplitude."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray
 from jointbench.signal.amplitude.band_lines import BandLines, band_lines
-from jointbench.signal.amplitude.curve_fit import JointFit, fit_jointly
+from jointbench.signal.amplitude.curve_fit import fit_jointly
+from jointbench.signal.amplitude.mode_state import JointFit, ModeState, curve_slices
 from jointbench.signal.amplitude.noise_of_band import rewhitened
+from jointbench.signal.amplitude.other_starts import (
+    begun_later,
+    carried_over,
+    with_knots,
+)
 from jointbench.signal.amplitude.ring_downs import RingDowns
-from jointbench.signal.amplitude.start_values import curved_modes, fit_linear
+from jointbench.signal.amplitude.start_values import (
+    curved_modes,
+    fit_linear,
+    refresh_range,
+)
 
 # Decays are taken this many time constants long: e^-12 is below any noise.
 _TIME_CONSTANTS = 12.0
 # Knots in ln a that are tried; the better by N ln chi2 + 2 edf is kept.
 _PITCHES = (0.5, 0.25)
+# Finer knots are tried where a curve uses this share of its functions.
+_STIFF = 0.5
+# First curves: the last step gains this share; above this residual ratio a second
+# start is tried.
+_NEAR, _POOR = 1e-3, 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +86,57 @@ def fit_band(decays: RingDowns, band: Band) -> BandFit:
     """
     lines, poles = _prepared(decays, band)
     power = decays.derivatives
-    first = _curves(lines, fit_linear(lines, poles, power), _PITCHES[0], power)
-    lines = rewhitened(lines, first.residual)
     linear = fit_linear(lines, poles, power)
-    tried = [_curves(lines, linear, pitch, power) for pitch in _PITCHES]
-    return BandFit(lines, linear, min(tried, key=_criterion), power)
+    curved = _curves(lines, linear, power)
+    quiet = rewhitened(lines, curved.residual)
+    linear = _again(quiet, carried_over(linear.modes, lines, quiet), power)
+    refreshed = tuple(refresh_range(quiet, mode) for mode in linear.modes)
+    linear = replace(linear, modes=refreshed)
+    start = carried_over(curved.modes, lines, quiet)
+    start = tuple(
+        with_knots(mode, own.basis, _PITCHES[0])
+        for mode, own in zip(start, linear.modes, strict=True)
+    )
+    curved = fit_jointly(quiet, start, power)
+    if _is_stiff(curved):
+        finer = tuple(
+            with_knots(mode, own.basis, _PITCHES[1])
+            for mode, own in zip(curved.modes, linear.modes, strict=True)
+        )
+        tried = fit_jointly(quiet, finer, power)
+        curved = min((curved, tried), key=criterion)
+    return BandFit(quiet, linear, curved, power)
+
+
+def fit_later(decays: RingDowns, band: Band, first: BandFit, delay: float) -> BandFit:
+    """Fit the same modes to the same decays from a later start.
+
+    Args:
+        decays: of all hits, as `first` had them.
+        band: the same.
+        first: the fit from the earlier start, where this one begins.
+        delay: by which the decays start later [s].
+    """
+    lines = _prepared(decays.later(delay), band, like=first.lines)[0]
+    power = decays.derivatives
+    skipped = round(delay * decays.sample_rate) / decays.sample_rate
+    linear, curved = (
+        _again(
+            lines,
+            carried_over(
+                tuple(begun_later(m, first.lines, lines, skipped) for m in fit.modes),
+                first.lines,
+                lines,
+            ),
+            power,
+        )
+        for fit in (first.linear, first.curved)
+    )
+    return BandFit(lines, linear, curved, power)
+
+
+def _again(lines: BandLines, modes: tuple[ModeState, ...], power: int) -> JointFit:
+    return fit_jointly(lines, modes, power)
 
 
 def linear_residual(decays: RingDowns, band: Band) -> float:
@@ -93,11 +154,13 @@ def curved_residual(fit: BandFit, decays: RingDowns, band: Band) -> float:
     """Return chi-squared of the curves of a fit, weighed as `linear_residual` does."""
     lines, _ = _prepared(decays, band)
     channels = np.einsum("cv,hvm->hcm", fit.lines.mixing, fit.curved.residual)
-    weighed = np.linalg.pinv(lines.mixing) @ channels
+    weighed = lines.reduction @ channels
     return float(np.sum(np.abs(weighed) ** 2))
 
 
-def _prepared(decays: RingDowns, band: Band) -> tuple[BandLines, ComplexArray]:
+def _prepared(
+    decays: RingDowns, band: Band, like: BandLines | None = None
+) -> tuple[BandLines, ComplexArray]:
     poles = np.array(band.poles, complex)
     lines = band_lines(
         decays,
@@ -105,23 +168,44 @@ def _prepared(decays: RingDowns, band: Band) -> tuple[BandLines, ComplexArray]:
         duration=_TIME_CONSTANTS / band.slowest,
         beside=np.array(band.beside, complex),
         modes=poles.size,
+        like=like,
     )
     return lines, poles
 
 
-def _curves(lines: BandLines, linear: JointFit, pitch: float, power: int) -> JointFit:
+def _curves(lines: BandLines, linear: JointFit, power: int) -> JointFit:
+    """Return first curves: from the ridges, from straight lines where these diverge."""
     every = range(len(linear.modes))
-    start = curved_modes(lines, linear, every, pitch, power)
-    fit = fit_jointly(lines, start, power)
-    if fit.chi2 <= linear.chi2:
-        return fit
-    # The ridges diverged: start from the straight lines of the linear fit.
-    flat = curved_modes(lines, linear, every, pitch, power, ridges=False)
-    again = fit_jointly(lines, flat, power)
-    return min((fit, again), key=lambda one: one.chi2)
+    flat, ridges = (
+        curved_modes(lines, linear, every, _PITCHES[0], power, ridges=ridges)
+        for ridges in (False, True)
+    )
+    starts = [flat]
+    try:
+        first = fit_jointly(lines, ridges, power, steps=0)
+    except np.linalg.LinAlgError:
+        first = None
+    if first is not None:
+        starts.insert(0 if first.chi2 < linear.chi2 else 1, ridges)
+    fit = fit_jointly(lines, starts[0], power, enough=_NEAR)
+    if fit.residual_ratio > _POOR and len(starts) > 1:
+        other = fit_jointly(lines, starts[1], power, enough=_NEAR)
+        fit = min((fit, other), key=lambda one: one.chi2)
+    return fit
 
 
-def _criterion(fit: JointFit) -> float:
+def _is_stiff(fit: JointFit) -> bool:
+    """Return whether a curve uses so many functions that finer knots may help."""
+    used = np.diag(fit.covariance @ fit.normal)
+    for mode, own in zip(fit.modes, curve_slices(fit.modes), strict=True):
+        size = mode.basis.size
+        for part in (used[own][:size], used[own][size:]):
+            if part.sum() > _STIFF * size:
+                return True
+    return False
+
+
+def criterion(fit: JointFit) -> float:
     """Return N ln chi2 + 2 edf."""
     size = 2.0 * fit.residual.size
     used = float(np.sum(fit.covariance * fit.normal))

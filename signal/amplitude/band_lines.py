@@ -15,12 +15,11 @@ import numpy as np
 import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
+from jointbench.signal.amplitude.panels import Panels, panels
 from jointbench.signal.amplitude.ring_downs import RingDowns
 
 # Degree of the polynomial that stands for far modes.
 _DEGREE = 2
-# Nodes of the quadrature in each panel, and carrier cycles that a panel may hold.
-_NODES, _CYCLES = 8, 1.5
 # Hits whose tail is quietest: this quantile over hits is the noise.
 _QUIET = 0.2
 
@@ -34,7 +33,9 @@ class BandLines:
         data: shape (n_hits, n_virtual, n_lines), smooth background projected out.
         mixing: channel = mixing @ virtual channel [unit], shape (n_channels,
             n_virtual).
-        time: nodes of the quadrature [s], shape (n_nodes,).
+        reduction: virtual channel = reduction @ channel [1/unit], shape (n_virtual,
+            n_channels).
+        panels: nodes of the quadrature over time.
         centre: carrier that the model signals leave out [rad/s].
         transform: model signal on the nodes to lines, background projected out, shape
             (n_lines, n_nodes).
@@ -45,7 +46,8 @@ class BandLines:
     omega: FloatArray
     data: ComplexArray
     mixing: ComplexArray
-    time: FloatArray
+    reduction: ComplexArray
+    panels: Panels
     centre: float
     transform: ComplexArray
     background: ComplexArray
@@ -58,10 +60,15 @@ class BandLines:
             "omega",
             "data",
             "mixing",
-            "time",
+            "reduction",
             "transform",
             "background",
         )
+
+    @property
+    def time(self) -> FloatArray:
+        """Nodes of the quadrature [s], shape (n_nodes,)."""
+        return self.panels.time
 
     @property
     def freedom(self) -> int:
@@ -77,6 +84,7 @@ def band_lines(
     duration: float,
     beside: ComplexArray,
     modes: int,
+    like: "BandLines | None" = None,
 ) -> BandLines:
     """Transform the ring-downs and keep one band.
 
@@ -86,23 +94,34 @@ def band_lines(
         duration: wanted of the decays [s]; less where the records are shorter.
         beside: poles of modes outside the band whose flanks reach into it [rad/s].
         modes: that will be fitted; channels are reduced to two more than these.
+        like: lines of the same decays from another start, whose carrier, virtual
+            channels and noise are taken over; None derives them from the decays.
     """
     available = decays.samples.shape[2]
-    size = min(available, max(64, round(duration * decays.sample_rate)))
+    # A multiple of 64 has a fast transform.
+    size = min(available, max(64, round(duration * decays.sample_rate))) // 64 * 64
     omega, lines = _lines(decays.samples[:, :, :size], decays.sample_rate, band)
-    noise = _tail_noise(decays, size, band)
-    white, mixing = _reduced(lines / noise[:, None], noise, modes + 2)
     length = size / decays.sample_rate
-    time, weight = _nodes(length, (omega[-1] - omega[0]) / 2 / np.pi)
-    centre = float(omega.mean())
-    kernel = np.exp(1j * np.outer(centre - omega, time)) * weight
+    if like is None:
+        noise = _tail_noise(decays, size, band)
+        left = _strongest(lines / noise[:, None], modes + 2)
+        mixing, reduction = noise[:, None] * left, left.conj().T / noise
+        centre = float(omega.mean())
+    else:
+        louder = np.sqrt(length / like.duration)
+        mixing, reduction = like.mixing * louder, like.reduction / louder
+        centre = like.centre
+    virtual = np.einsum("vc,hcm->hvm", reduction, lines)
+    nodes = panels(length, (omega[-1] - omega[0]) / 2 / np.pi)
+    kernel = np.exp(1j * np.outer(centre - omega, nodes.time)) * nodes.weight
     transform = 0.5 * decays.sample_rate * kernel
-    background = _background(omega, transform, time, beside - 1j * centre)
+    background = _background(omega, transform, nodes.time, beside - 1j * centre)
     return BandLines(
         omega=omega,
-        data=_without(white, background),
+        data=_without(virtual, background),
         mixing=mixing,
-        time=time,
+        reduction=reduction,
+        panels=nodes,
         centre=centre,
         transform=np.asarray(_without(transform.T, background).T),
         background=background,
@@ -140,25 +159,11 @@ def _tail_noise(decays: RingDowns, size: int, band: tuple[float, float]) -> Floa
     return np.asarray(np.maximum(noise, floor))
 
 
-def _reduced(
-    white: ComplexArray, noise: FloatArray, most: int
-) -> tuple[ComplexArray, ComplexArray]:
-    """Combine whitened channels into the few that hold the signal."""
+def _strongest(white: ComplexArray, most: int) -> ComplexArray:
+    """Return the combinations of whitened channels that hold the signal, as columns."""
     hits, channels, lines = white.shape
     flat = white.transpose(1, 0, 2).reshape(channels, hits * lines)
-    left = np.linalg.svd(flat @ flat.conj().T)[0][:, :most]
-    virtual = np.einsum("cv,hcm->hvm", left.conj(), white)
-    return np.asarray(virtual), np.asarray(noise[:, None] * left)
-
-
-def _nodes(length: float, width: float) -> tuple[FloatArray, FloatArray]:
-    """Return Gauss nodes and weights on panels short beside one over the width."""
-    panels = max(4, int(np.ceil(length * width / 2 / _CYCLES)))
-    point, weight = np.polynomial.legendre.leggauss(_NODES)
-    edges = length * np.arange(panels) / panels
-    half = 0.5 * length / panels
-    time = (edges[:, None] + half * (1.0 + point)).ravel()
-    return np.asarray(time), np.asarray(np.tile(half * weight, panels))
+    return np.asarray(np.linalg.svd(flat @ flat.conj().T)[0][:, :most])
 
 
 def _background(

@@ -40,6 +40,13 @@ class CurveBasis:
         freeze(self, "grid", "values", "penalty", "knots")
 
     @property
+    def pitch(self) -> float:
+        """Distance of the knots in L; that of the range for polynomials."""
+        if self.knots.size:
+            return float(self.knots[1] - self.knots[0])
+        return self.high - self.low
+
+    @property
     def size(self) -> int:
         """Number of functions."""
         return int(self.values.shape[1])

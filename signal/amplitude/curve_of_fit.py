@@ -5,20 +5,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.signal.amplitude.amplitude_curve import (
     DAMPING_FLOOR,
     FREQUENCY_FLOOR,
     AmplitudeCurve,
 )
 from jointbench.signal.amplitude.band_fit import BandFit
-from jointbench.signal.amplitude.curve_fit import curve_slices
+from jointbench.signal.amplitude.mode_state import ModeState, curve_slices
 from jointbench.signal.amplitude.ring_downs import RingDowns
 
 _POINTS = 40
 # A point of the curve is shown where its frequency is known to this share of half the
 # half-power width.
 _KNOWN = 0.5
+# Rate of a decay over that of the pole, see `_energy_share`: elastic, friction, least
+# ratio of the changes of damping and frequency in friction, and what q may be off.
+_ELASTIC, _MASING, _FRICTION_RATIO, _ENERGY_SD = 0.5, 2.0, 0.27, 0.4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,18 +68,54 @@ def level_curve(fit: BandFit, number: int, points: int = _POINTS) -> LevelCurve:
     inflation = max(1.0, fit.curved.residual_ratio) ** 2
     covariance = fit.curved.covariance[own, own] * inflation
     size = basis.size
-    physical = np.abs(fit.lines.mixing @ mode.shape)
-    channel = int(np.argmax(physical))
-    relative = values @ mode.log_omega
+    relative, log_zeta = values @ mode.log_omega, values @ mode.log_zeta
+    shapes, turned = _shapes(fit, mode, relative, np.exp(log_zeta))
+    slope = np.gradient(relative, level)
+    stored = _energy_share(relative, np.exp(log_zeta)) * slope
+    unknown = np.diag((_ENERGY_SD * slope) ** 2)
+    channel = int(np.argmax(np.abs(shapes[0])))
     return LevelCurve(
-        level=level + np.log(physical[channel]) + fit.power * relative,
+        level=level + np.log(np.abs(shapes[:, channel])) + fit.power * relative,
         log_omega=relative + np.log(fit.lines.centre),
-        log_zeta=values @ mode.log_zeta,
+        log_zeta=log_zeta + np.log1p(np.gradient(turned, level) + stored),
         omega_covariance=values @ covariance[:size, :size] @ values.T,
-        zeta_covariance=values @ covariance[size:, size:] @ values.T,
+        zeta_covariance=values @ covariance[size:, size:] @ values.T + unknown,
         cross_covariance=values @ covariance[:size, size:] @ values.T,
         channel=channel,
     )
+
+
+def _energy_share(relative: FloatArray, zeta: FloatArray) -> float:
+    """Return q: amplitude times omega^q falls at the rate of the pole.
+
+    A decay is not a steady vibration: amplitude falls as the energy that is stored
+    does. To first order in the softening the rate is zeta omega / (1 + q d ln omega /
+    dL), with q = 1/2 where the joint is elastic (the action is lost) and q = 2 where it
+    is friction after Masing (energy changes with the tangent of the backbone). What
+    the joint adds to damping distinguishes the two.
+    """
+    change = relative[-1] - relative[0]
+    if change == 0.0:
+        return _ELASTIC
+    ratio = -(zeta[-1] - zeta[0]) / change
+    friction = float(np.clip(ratio / _FRICTION_RATIO, 0.0, 1.0))
+    return _ELASTIC + friction * (_MASING - _ELASTIC)
+
+
+def _shapes(
+    fit: BandFit, mode: ModeState, relative: FloatArray, zeta: FloatArray
+) -> tuple[ComplexArray, FloatArray]:
+    """Return the shape over L, and ln of its part along the softest shape.
+
+    Damping is that of the modal amplitude, to whose shape at one amplitude the change
+    is orthogonal (masses at the channels taken as equal). The amplitude of one channel
+    falls faster or slower as the shape turns.
+    """
+    pole = relative - relative[0] + 1j * (zeta - zeta[0])
+    turn = mode.turn if mode.turn.size else np.zeros_like(mode.shape)
+    shapes = (mode.shape + pole[:, None] * turn) @ fit.lines.mixing.T
+    along = np.abs(shapes @ shapes[0].conj())
+    return np.asarray(shapes), np.asarray(np.log(along / along[0]))
 
 
 def known_part(curve: LevelCurve) -> slice:

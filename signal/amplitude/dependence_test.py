@@ -18,12 +18,9 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.amplitude.amplitude_curve import Dependence
 from jointbench.signal.amplitude.band_fit import BandFit
 from jointbench.signal.amplitude.curve_basis import slope_basis
-from jointbench.signal.amplitude.curve_fit import (
-    ModeState,
-    curve_slices,
-    fit_jointly,
-)
+from jointbench.signal.amplitude.curve_fit import fit_jointly
 from jointbench.signal.amplitude.curve_of_fit import LevelCurve, known_part
+from jointbench.signal.amplitude.mode_state import ModeState, curve_slices
 
 CHANCE = 0.01
 """A linear mode in white noise is taken for a dependent one this often."""

@@ -53,4 +53,5 @@ def rewhitened(lines: BandLines, residual: ComplexArray) -> BandLines:
         lines,
         data=np.asarray(data.reshape(shape).transpose(1, 0, 2)),
         mixing=np.asarray(lines.mixing @ root),
+        reduction=np.asarray(np.linalg.solve(root, lines.reduction)),
     )

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Decays of one mode whose frequency and damping depend on its amplitude.
+"""Decays of one mode whose frequency and damping depend on amplitude.
 
-With L = ln a: dL/dt = -zeta(L) omega(L) and dtheta/dt = omega(L). Time and phase are
-integrals over L, the same for all hits: a hit is a place to start on one master decay.
-Here ln omega and ln zeta are sums of basis functions; the derivatives of the signal
-with respect to their coefficients are integrals of the same kind.
+With L = ln a: dL/dt = -zeta omega and dtheta/dt = omega, where ln omega and ln zeta are
+sums of basis functions of S. S is L for a mode alone on its joint. Where other modes
+work the same joint, 2 S = ln(exp(2 L) + sum of weight x square of their amplitudes),
+with weights of their own for omega and for zeta.
+
+A hit is a start and a phase; derivatives with respect to all parameters are integrals
+along the decay (the equation for a change of L is linear and of first order).
 """
 
 from dataclasses import dataclass
@@ -13,160 +16,174 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.compiled import compiled
-from jointbench.signal.amplitude.curve_basis import CurveBasis
+from jointbench.signal.amplitude.mode_state import ModeState
+from jointbench.signal.amplitude.panels import Panels
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class MasterDecay:
-    """One mode's decay from the top of the grid down, tabulated over L.
+class Flow:
+    """One mode's decay in each hit.
 
     Attributes:
-        grid: of L, shape (n,).
-        omega: [rad/s], shape (n,).
-        zeta: decay rate over omega [-], shape (n,).
-        slope: d ln omega / dL [-], shape (n,).
-        tau: time from the top [s], shape (n,).
-        phase: beyond that of the centre frequency, from the top [rad], shape (n,).
-        values: basis functions, shape (n, n_functions).
-        inner_time: integrals of B / (zeta omega) from the top [s], same shape.
-        inner_phase: integrals of B / zeta from the top [-], same shape.
-        centre: frequency at which exp(L) is the amplitude of the response [rad/s].
+        level: L, shape (n_hits, n_nodes).
+        signal: at the centre frequency, shape (n_hits, n_nodes).
+        pole: change of ln omega + i zeta from the softest amplitude, same shape.
+        change: derivatives of ln signal with respect to the shared parameters, to the
+            start and to the phase, shape (n_hits, n_nodes, n_shared + 2).
+    """
+
+    level: FloatArray
+    signal: ComplexArray
+    pole: ComplexArray
+    change: ComplexArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Looked:
+    """One curve looked up along the decays.
+
+    Attributes:
+        value: of the curve, shape (n_hits, n_nodes).
+        slope: of the curve over L at constant squares, same shape.
+        functions: of the basis, shape (n_hits, n_nodes, n_functions).
+        by_weights: change of the curve with each ln weight, shape (n_hits, n_nodes,
+            n_others).
+    """
+
+    value: FloatArray
+    slope: FloatArray
+    functions: FloatArray
+    by_weights: FloatArray
+
+
+def decays(mode: ModeState, panels: Panels, centre: float, power: int) -> Flow:
+    """Follow a mode through all hits.
+
+    Args:
+        mode: its curves, starts and phases.
+        panels: of time.
+        centre: frequency whose phase is left out, at which exp(L) is the amplitude of
+            the response [rad/s].
         power: derivatives of the response (2 for acceleration).
     """
+    curves = (mode.basis.values @ mode.log_omega, mode.basis.values @ mode.log_zeta)
+    level = np.empty((mode.start.size, panels.time.size))
+    weights = np.exp(mode.log_weights)
+    squares = np.broadcast_to(mode.squares, (*level.shape, mode.squares.shape[2]))
+    grid = mode.basis.grid
+    _follow(  # type: ignore[no-untyped-call]
+        (grid[0], grid[1] - grid[0], centre),
+        curves,
+        mode.start,
+        panels.time,
+        (squares @ weights[0], squares @ weights[1]),
+        level,
+    )
+    omega, zeta = (
+        _looked_up(mode, curve, level, squares * weight)
+        for curve, weight in zip(curves, weights, strict=True)
+    )
+    turn = panels.integral((centre * np.expm1(omega.value))[..., None])[..., 0]
+    angle = mode.phase[:, None] + turn
+    signal = np.exp(level + power * omega.value + 1j * angle)
+    change = _changes(omega, zeta, panels, centre, power)
+    soft = mode.basis.at(np.array([mode.basis.low]))[0]
+    pole = omega.value - soft @ mode.log_omega
+    turn = np.exp(zeta.value) - np.exp(soft @ mode.log_zeta)
+    return Flow(level, signal, pole + 1j * turn, change)
 
-    grid: FloatArray
-    omega: FloatArray
-    zeta: FloatArray
-    slope: FloatArray
-    tau: FloatArray
-    phase: FloatArray
-    values: FloatArray
-    inner_time: FloatArray
-    inner_phase: FloatArray
-    centre: float
-    power: int
 
-
-def master_decay(
-    basis: CurveBasis,
-    log_omega: FloatArray,
-    log_zeta: FloatArray,
-    centre: float,
-    power: int,
-) -> MasterDecay:
-    """Tabulate the decay of a mode.
-
-    Args:
-        basis: functions of L.
-        log_omega: coefficients of ln(omega / centre), shape (n_functions,).
-        log_zeta: coefficients of ln zeta, shape (n_functions,).
-        centre: frequency whose phase is left out [rad/s].
-        power: derivatives of the response.
-    """
-    relative = basis.values @ log_omega
-    omega = centre * np.exp(relative)
-    zeta = np.exp(basis.values @ log_zeta)
-    step = float(basis.grid[1] - basis.grid[0])
-    rate = 1.0 / (zeta * omega)
-    return MasterDecay(
-        grid=basis.grid,
-        omega=omega,
-        zeta=zeta,
-        slope=np.gradient(relative, step),
-        tau=_from_top(rate, step),
-        phase=_from_top(rate * (omega - centre), step),
-        values=basis.values,
-        inner_time=_from_top(basis.values * rate[:, None], step),
-        inner_phase=_from_top(basis.values / zeta[:, None], step),
-        centre=centre,
-        power=power,
+def _looked_up(
+    mode: ModeState, curve: FloatArray, level: FloatArray, squares: FloatArray
+) -> _Looked:
+    grid = mode.basis.grid
+    step = grid[1] - grid[0]
+    # Below the grid curves are constant.
+    alone = np.exp(2.0 * np.maximum(level, grid[0]))
+    total = alone + squares.sum(axis=2)
+    # The share of the mode itself in the amplitude that counts: dS/dL.
+    own = alone / total
+    place = np.clip((0.5 * np.log(total) - grid[0]) / step, 0.0, grid.size - 1.000001)
+    low = place.astype(int)
+    part = place - low
+    slopes = np.gradient(curve, step)
+    slope = slopes[low] * (1.0 - part) + slopes[low + 1] * part
+    below, above = mode.basis.values[low], mode.basis.values[low + 1]
+    return _Looked(
+        value=curve[low] * (1.0 - part) + curve[low + 1] * part,
+        slope=slope * own,
+        functions=below + part[..., None] * (above - below),
+        by_weights=(0.5 * slope / total)[..., None] * squares,
     )
 
 
-def _from_top(integrand: FloatArray, step: float) -> FloatArray:
-    """Integrate from the top of the grid down to each point (trapezoidal rule)."""
-    panel = 0.5 * step * (integrand[1:] + integrand[:-1])
-    total = np.zeros_like(integrand)
-    total[:-1] = np.cumsum(panel[::-1], axis=0)[::-1]
-    return total
-
-
-def decay_signal(
-    decay: MasterDecay, start: float, phase: float, time: FloatArray
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return one hit's signal at the centre frequency and its derivatives.
-
-    Args:
-        decay: of the mode.
-        start: L at time 0.
-        phase: at time 0 [rad].
-        time: [s], ascending, shape (n,).
-
-    Returns:
-        Signal, shape (n,), and derivatives with respect to the coefficients of
-        ln omega, of ln zeta, to `start` and to `phase`, shape (n, 2 n_functions + 2).
-    """
-    signal = np.empty(time.size, complex)
-    change = np.empty((time.size, 2 * decay.values.shape[1] + 2), complex)
-    _trace(  # type: ignore[no-untyped-call]
-        (decay.grid, decay.omega, decay.zeta, decay.slope, decay.tau, decay.phase),
-        (decay.values, decay.inner_time, decay.inner_phase),
-        (float(decay.power), decay.centre, start, phase),
-        time,
-        signal,
-        change,
+def _changes(
+    omega: _Looked, zeta: _Looked, panels: Panels, centre: float, power: int
+) -> ComplexArray:
+    """Return the derivatives of ln signal, see `Flow`."""
+    size, others = omega.functions.shape[2], omega.by_weights.shape[2]
+    shared = 2 * (size + others)
+    by_omega, by_zeta = (
+        (slice(0, size), slice(2 * size, 2 * size + others)),
+        (
+            slice(size, 2 * size),
+            slice(2 * size + others, shared),
+        ),
     )
-    return signal, change
+    # Changes of ln omega and of ln(zeta omega) at constant L.
+    direct = np.zeros((*omega.value.shape, shared + 2))
+    direct[..., by_omega[0]] = omega.functions
+    direct[..., by_omega[1]] = omega.by_weights
+    rate = centre * np.exp(omega.value + zeta.value)
+    both = direct.copy()
+    both[..., by_zeta[0]] = zeta.functions
+    both[..., by_zeta[1]] = zeta.by_weights
+    stiff = panels.integral((rate * (omega.slope + zeta.slope))[..., None])
+    level = -np.exp(-stiff) * panels.integral(both * (rate[..., None] * np.exp(stiff)))
+    level[..., shared] = np.exp(-stiff[..., 0])
+    level[..., shared + 1] = 0.0
+    relative = direct + omega.slope[..., None] * level
+    turn = panels.integral((centre * np.exp(omega.value))[..., None] * relative)
+    turn[..., shared + 1] = 1.0
+    return np.asarray(level + power * relative + 1j * turn)
 
 
 @compiled(nogil=True, error_model="numpy")
-def _trace(  # type: ignore[no-untyped-def]
-    curves,
-    tables,
-    numbers,
-    time,
-    signal,
-    change,
+def _follow(  # type: ignore[no-untyped-def]
+    numbers, curves, start, time, squares, level
 ):
-    """Follow one decay; see `decay_signal`."""
-    grid, omega, zeta, slope, tau, theta = curves
-    values, inner_time, inner_phase = tables
-    power, centre, start, phase = numbers
-    last, size = grid.size - 1, values.shape[1]
-    step = grid[1] - grid[0]
-    place = min(max((start - grid[0]) / step, 0.0), last - 1e-9)
-    i = int(place)
-    u = place - i
-    tau0 = tau[i] + u * (tau[i + 1] - tau[i])
-    theta0 = theta[i] + u * (theta[i + 1] - theta[i])
-    zeta0 = zeta[i] + u * (zeta[i + 1] - zeta[i])
-    rate0 = zeta0 * (omega[i] + u * (omega[i + 1] - omega[i]))
-    time0 = inner_time[i] + u * (inner_time[i + 1] - inner_time[i])
-    phase0 = inner_phase[i] + u * (inner_phase[i + 1] - inner_phase[i])
-    for n in range(time.size):
-        wanted = tau0 + time[n]
-        while i > 0 and tau[i] < wanted:
-            i -= 1
-        u = min(max((tau[i] - wanted) / (tau[i] - tau[i + 1]), 0.0), 1.0)
-        level = grid[i] + u * step
-        w = omega[i] + u * (omega[i + 1] - omega[i])
-        z = zeta[i] + u * (zeta[i + 1] - zeta[i])
-        s = slope[i] + u * (slope[i + 1] - slope[i])
-        angle = theta[i] + u * (theta[i + 1] - theta[i]) - theta0 + phase
-        size_now = np.exp(level + power * np.log(w / centre))
-        value = size_now * np.exp(1j * angle)
-        signal[n] = value
-        by_level = value * (1.0 + power * s)
-        rate = z * w
-        for j in range(size):
-            b = values[i, j] + u * (values[i + 1, j] - values[i, j])
-            t = inner_time[i, j] + u * (inner_time[i + 1, j] - inner_time[i, j])
-            p = inner_phase[i, j] + u * (inner_phase[i + 1, j] - inner_phase[i, j])
-            dl = -rate * (t - time0[j])
-            change[n, j] = by_level * dl - 1j * value * dl / z + value * power * b
-            turn = -dl / z - (p - phase0[j])
-            change[n, size + j] = by_level * dl + 1j * value * turn
-        by_start = rate / rate0
-        turn = 1.0 / zeta0 - by_start / z
-        change[n, 2 * size] = by_level * by_start + 1j * value * turn
-        change[n, 2 * size + 1] = 1j * value
+    """Integrate L over time, all hits, by the classical Runge-Kutta method."""
+    both = (numbers, curves)
+    for hit in range(start.size):
+        now, before = start[hit], 0.0
+        for n in range(time.size):
+            step = time[n] - before
+            last = max(n - 1, 0)
+            w0, w2 = squares[0][hit, last], squares[0][hit, n]
+            z0, z2 = squares[1][hit, last], squares[1][hit, n]
+            w1, z1 = np.sqrt(w0 * w2), np.sqrt(z0 * z2)
+            k1 = _rate(now, w0, z0, both)  # type: ignore[no-untyped-call]
+            k2 = _rate(now + 0.5 * step * k1, w1, z1, both)  # type: ignore[no-untyped-call]
+            k3 = _rate(now + 0.5 * step * k2, w1, z1, both)  # type: ignore[no-untyped-call]
+            k4 = _rate(now + step * k3, w2, z2, both)  # type: ignore[no-untyped-call]
+            now += step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+            level[hit, n] = now
+            before = time[n]
+
+
+@compiled(nogil=True, error_model="numpy")
+def _rate(level, omega_square, zeta_square, both):  # type: ignore[no-untyped-def]
+    """Return dL/dt."""
+    numbers, curves = both
+    bottom, step, centre = numbers
+    total = 0.0
+    for which in range(2):
+        square = zeta_square if which else omega_square
+        at = level
+        if square > 0.0:
+            at = level + 0.5 * np.log1p(square * np.exp(-2.0 * level))
+        curve = curves[which]
+        place = min(max((at - bottom) / step, 0.0), curve.size - 1.000001)
+        low = int(place)
+        total += curve[low] + (place - low) * (curve[low + 1] - curve[low])
+    return -centre * np.exp(total)

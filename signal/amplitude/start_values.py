@@ -13,7 +13,8 @@ from jointbench.signal.amplitude.curve_basis import (
     constant_basis,
     spline_basis,
 )
-from jointbench.signal.amplitude.curve_fit import JointFit, ModeState, fit_jointly
+from jointbench.signal.amplitude.curve_fit import fit_jointly
+from jointbench.signal.amplitude.mode_state import JointFit, ModeState
 
 # Least ratio of a decay to its noise over one e-fold of amplitude.
 _LEAST_SNR = 3.0
@@ -32,6 +33,8 @@ _RIDGE_SNR = 5.0
 # Smoothness of the first curves.
 _FIRST_WEIGHT = 3.0
 _POINTS = 240
+# Share of chi-squared that the last step of a linear fit gains: curves follow.
+_ROUGH = 1e-3
 
 
 def linear_modes(
@@ -163,6 +166,7 @@ def _curved(
     mode = linear.modes[number]
     basis = mode.basis
     splines = spline_basis(float(basis.grid[0]), basis.low, basis.high, pitch)
+    mode = replace(mode, turn=np.zeros_like(mode.shape))
     weights = (_FIRST_WEIGHT / 1e-8, _FIRST_WEIGHT / 1e-3)
     if power is None:
         flat = np.ones(splines.size)
@@ -300,7 +304,9 @@ def _slopes(
     )
 
 
-def fit_linear(lines: BandLines, poles: ComplexArray, power: int) -> JointFit:
-    """Fit modes that do not depend on amplitude."""
-    fit = fit_jointly(lines, linear_modes(lines, poles, power), power)
+def fit_linear(
+    lines: BandLines, poles: ComplexArray, power: int, enough: float = _ROUGH
+) -> JointFit:
+    """Fit modes that do not depend on amplitude, by default roughly."""
+    fit = fit_jointly(lines, linear_modes(lines, poles, power), power, enough=enough)
     return replace(fit, modes=tuple(refresh_range(lines, m) for m in fit.modes))

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: MIT
+"""Fits of all groups of close modes: each alone, then with the others on its joint."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.signal.amplitude.band_fit import (
+    BandFit,
+    curved_residual,
+    fit_band,
+    fit_later,
+    linear_residual,
+)
+from jointbench.signal.amplitude.mode_groups import ModeGroup, without_companions
+from jointbench.signal.amplitude.ring_downs import RingDowns
+from jointbench.signal.amplitude.shared_joint import with_others
+from jointbench.signal.modal.modal_model import ModalModel
+
+# A finding must stay when the decays start later by this [s], or by this share of the
+# mode's time constant where that is less.
+_DELAY, _DELAY_SHARE = 0.05, 0.7
+# Records must be this many delays long.
+_LEAST_DELAYS = 4
+# Above this residual ratio the fit from a later start is taken, where it is better.
+_UNEASY = 2.0
+# Fewer curves may leave this much more power than all of them.
+_FEWER = 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroupFit:
+    """Fits of one group, from two starts.
+
+    Attributes:
+        main: what is reported.
+        later: the same modes from a later start; None where records are too short.
+        members: poles that began the curves, indices into the modes.
+    """
+
+    main: BandFit
+    later: BandFit | None
+    members: tuple[int, ...]
+
+
+def fit_groups(
+    decays: RingDowns,
+    model: ModalModel,
+    groups: Sequence[ModeGroup],
+    progress: Callable[[str, float], None] | None = None,
+) -> dict[ModeGroup, GroupFit | None]:
+    """Fit the modes of groups to all ring-downs.
+
+    Args:
+        decays: of all hits.
+        model: of the linear fit.
+        groups: to be fitted, strongest first.
+        progress: called with what is done and the share of it.
+
+    Returns:
+        A fit for each group, None where it is singular.
+    """
+    alone: dict[ModeGroup, GroupFit | None] = {}
+    for number, group in enumerate(groups):
+        if progress is not None:
+            progress("amplitude dependence", number / len(groups))
+        try:
+            alone[group] = _fit_group(decays, model, group)
+        except np.linalg.LinAlgError:
+            alone[group] = None
+    return {
+        group: None if fit is None else _together(decays, model, group, fit, alone)
+        for group, fit in alone.items()
+    }
+
+
+def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> GroupFit:
+    """Fit the fewest curves that explain more than all linear modes do."""
+    whole = group.band(model, len(group.members))
+    kept = without_companions(model, group)
+    count, main = len(kept.members), None
+    # Two modes taken for one leave far more than all curves, or than all poles.
+    limit = linear_residual(decays, whole) if count > 1 else 0.0
+    best: BandFit | None = None
+    for fewer in range(1, count):
+        tried = fit_band(decays, kept.band(model, fewer))
+        left = curved_residual(tried, decays, whole)
+        if left >= limit and best is None:
+            best = fit_band(decays, kept.band(model, count))
+            limit = max(limit, _FEWER * curved_residual(best, decays, whole))
+        if left < limit:
+            count, main = fewer, tried
+            break
+    main = main or best or fit_band(decays, kept.band(model, count))
+    return GroupFit(main, None, tuple(sorted(kept.members[:count])))
+
+
+def _together(
+    decays: RingDowns,
+    model: ModalModel,
+    group: ModeGroup,
+    fit: GroupFit,
+    every: Mapping[ModeGroup, GroupFit | None],
+) -> GroupFit:
+    """Return the fit of a group with the modes of other groups on its joint."""
+    others = [
+        (one.main, number)
+        for other, one in every.items()
+        if other is not group and one is not None
+        for number in range(len(one.members))
+    ]
+    band = group.band(model, len(fit.members))
+    delay = min(_DELAY, _DELAY_SHARE / band.slowest)
+    try:
+        main = with_others(fit.main, others)
+        if decays.samples.shape[2] < _LEAST_DELAYS * delay * decays.sample_rate:
+            return GroupFit(main, None, fit.members)
+        later = fit_later(decays, band, main, delay)
+        if (
+            main.curved.residual_ratio > _UNEASY
+            and later.curved.residual_ratio < main.curved.residual_ratio
+        ):
+            last = fit_later(decays, band, main, 2 * delay)
+            return GroupFit(later, last, fit.members)
+    except np.linalg.LinAlgError:
+        return fit
+    return GroupFit(main, later, fit.members)
