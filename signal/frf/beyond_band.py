@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
-from scipy.signal import find_peaks
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.prominent_peaks import prominent_peaks
 from jointbench.signal.hits.hit_spectra import HitSpectra
 
 _ALIAS_FREE = 2.0 / 2.56
@@ -154,14 +154,14 @@ def _standing_out(level: FloatArray) -> Sequence[int]:
     """
     smooth = median_filter(level, _SMOOTH, mode="nearest")
     floor = max(float(smooth.max()), 1.0) * np.finfo(float).eps
-    found, _ = find_peaks(
+    found = prominent_peaks(
         np.log(np.maximum(smooth, floor)),
         prominence=np.log(_STANDS_OUT),
         distance=max(1, level.size // _APART),
     )
     return [
         max(0, i - _SMOOTH) + int(np.argmax(level[max(0, i - _SMOOTH) : i + _SMOOTH]))
-        for i in map(int, found)
+        for i in found.tolist()
     ]
 
 

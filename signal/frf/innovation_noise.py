@@ -14,7 +14,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.provenance import Provenance
 from jointbench.signal.hits.hit_pairs import Pair
 from jointbench.signal.hits.hit_spectra import HitSpectra
-from jointbench.signal.kalman.smoothing import stage_noise_of
+from jointbench.signal.kalman.stage_provenance import stage_noise_of
 
 
 def innovation_noise(

@@ -9,7 +9,6 @@ than noise and the local residual can explain.
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
@@ -17,6 +16,7 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     IntArray,
 )
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.computational_modes import find_beyond
 from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
@@ -206,7 +206,7 @@ def _needed(
     """Drop the least needed pole until all that are left are needed; return indices."""
     left = np.arange(pole.size)
     chance = _CHANCE / lines.laplace.size
-    limit = float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
+    limit = chi2_limit(chance, 2 * lines.response.shape[0])
     while left.size:
         fit = fit_residues(lines, np.append(pole[left], beyond), variance)
         significance = _significance(lines, fit, pole[left], noise, beyond)
