@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.stats import chi2 as chi2_distribution
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.lumped.identified import (
     Identification,
     IdentificationVerdict,
@@ -247,7 +247,7 @@ def _judge(
     freedom: int,
 ) -> tuple[IdentificationVerdict, tuple[str, ...]]:
     """Return the verdict on the identification, and its reasons."""
-    limit = chi2_distribution.isf(_POOR_FIT, freedom) if freedom > 0 else _SEPARATES
+    limit = chi2_limit(_POOR_FIT, freedom) if freedom > 0 else _SEPARATES
     undecided = [one for one in parameters if not one.identifiable]
     reasons = [f"{one.name}: {one.reason}" for one in undecided]
     if best.chi2 > limit:

@@ -12,9 +12,9 @@ start, and the levels disagree as well when they are compared without any model.
 from dataclasses import dataclass, replace
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_above
 from jointbench.signal.amplitude.amplitude_curve import Dependence
 from jointbench.signal.amplitude.band_fit import BandFit
 from jointbench.signal.amplitude.curve_basis import slope_basis
@@ -111,7 +111,7 @@ def score_chance(fit: BandFit, number: int) -> float:
     asked = first + np.array([1, 2, 4, 5])
     step = (bent.covariance @ bent.gradient)[asked]
     information = np.linalg.inv(bent.covariance[np.ix_(asked, asked)])
-    return float(scipy.stats.chi2.sf(step @ information @ step, asked.size))
+    return chi2_above(float(step @ information @ step), asked.size)
 
 
 def _bent(mode: ModeState) -> ModeState:

@@ -5,9 +5,8 @@ No model of the decay enters: a neighbour that was left out, a transient, a wron
 level are the same for hard and soft hits. What differs between them depends on level.
 """
 
-import scipy.stats
-
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.basics.tail_probabilities import f_above
 from jointbench.signal.frf.linearity import check_linearity
 from jointbench.signal.hits.hit_spectra import HitSpectra
 
@@ -46,7 +45,7 @@ def compare_levels(
     if factor < _LEAST_FACTOR:
         return None, _why_not(f", here by {factor:.2g}")
     freedom = max(2.0 * (found.hits - 2 * len(set(spectra.points))), 1.0)
-    return float(scipy.stats.f.sf(found.f_value, 2.0, freedom)), ""
+    return f_above(found.f_value, 2.0, freedom), ""
 
 
 def _why_not(here: str) -> str:

@@ -9,9 +9,9 @@ depends on the surface, so it is recalculated with the fitted one.
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.stats import chi2 as chi2_distribution
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_above
 from jointbench.signal.fractal.bounded_search import Found, search
 from jointbench.signal.fractal.fit_problem import FractalProblem
 from jointbench.signal.fractal.lag_weights import Weights, weigh
@@ -88,7 +88,7 @@ class GlsFit:
     @property
     def probability(self) -> float:
         """Probability of a larger chi2 if the model holds [-]."""
-        return float(chi2_distribution.sf(self.chi2, self.dof))
+        return chi2_above(self.chi2, self.dof)
 
     @property
     def likelihood_criterion(self) -> float:

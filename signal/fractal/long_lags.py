@@ -8,9 +8,9 @@ S at a long lag is a mean of few squares: it may exceed a model by many times it
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.stats import chi2
 
 from jointbench.acquisition.basics.arrays import IntArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_above
 from jointbench.signal.fractal.fit_problem import FractalProblem
 from jointbench.signal.fractal.lag_weights import lower_root
 from jointbench.signal.fractal.least_squares import GlsFit
@@ -43,7 +43,7 @@ def long_lag_probability(problem: FractalProblem, fit: GlsFit) -> float:
     share = problem.estimate.value[keep] / predicted
     gap = 3 * (np.cbrt(share) - 1) + np.diag(scatter) / 3
     white = solve_triangular(lower_root(scatter + error), gap, lower=True)
-    return float(chi2.sf(float(white @ white), keep.size))
+    return chi2_above(float(white @ white), keep.size)
 
 
 def _spaced(problem: FractalProblem) -> IntArray:

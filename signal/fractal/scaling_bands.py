@@ -2,9 +2,9 @@
 """Search for a band of lags with a power law where no model fits the whole range."""
 
 import numpy as np
-from scipy.stats import chi2
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
+from jointbench.acquisition.basics.tail_probabilities import chi2_above
 from jointbench.signal.fractal.fit_judgement import judge
 from jointbench.signal.fractal.fit_problem import FractalProblem
 from jointbench.signal.fractal.lag_weights import weigh
@@ -67,7 +67,7 @@ def _pruned(problem: FractalProblem, scatter: FloatArray) -> bool:
     line = np.linalg.solve(design.T @ weighted, weighted.T @ value)
     gap = value - design @ line
     distance = float(gap @ np.linalg.solve(covariance, gap))
-    return bool(chi2.sf(distance, problem.lag.size - 2) < PRUNING_PROBABILITY)
+    return chi2_above(distance, problem.lag.size - 2) < PRUNING_PROBABILITY
 
 
 def _windows(problem: FractalProblem) -> list[BoolArray]:

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter, uniform_filter1d
-from scipy.signal import find_peaks
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import Frf
@@ -154,6 +153,9 @@ def _standing_out(level: FloatArray) -> Sequence[int]:
     """
     smooth = median_filter(level, _SMOOTH, mode="nearest")
     floor = max(float(smooth.max()), 1.0) * np.finfo(float).eps
+    # Slow to import, and short commands import this module without looking for peaks.
+    from scipy.signal import find_peaks
+
     found, _ = find_peaks(
         np.log(np.maximum(smooth, floor)),
         prominence=np.log(_STANDS_OUT),
@@ -161,7 +163,7 @@ def _standing_out(level: FloatArray) -> Sequence[int]:
     )
     return [
         max(0, i - _SMOOTH) + int(np.argmax(level[max(0, i - _SMOOTH) : i + _SMOOTH]))
-        for i in map(int, found)
+        for i in found.tolist()
     ]
 
 

@@ -12,7 +12,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.provenance import Provenance
 from jointbench.signal.frf.estimators import floored_power
 from jointbench.signal.frf.spectral_sums import SpectralSums
-from jointbench.signal.kalman.smoothing import stage_noise_of
+from jointbench.signal.kalman.stage_provenance import stage_noise_of
 
 
 def innovation_noise(

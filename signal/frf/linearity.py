@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
 from scipy.ndimage import uniform_filter1d
 
 from jointbench.acquisition.basics.arrays import (
@@ -20,6 +19,7 @@ from jointbench.acquisition.basics.arrays import (
     freeze,
 )
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.basics.tail_probabilities import f_above
 from jointbench.signal.frf.frf import excited_band
 from jointbench.signal.hits.hit_pairs import Pair, pair_up
 from jointbench.signal.hits.hit_spectra import ForcesOfHits
@@ -185,8 +185,7 @@ def _test(fits: Sequence[_Fit]) -> tuple[float, float]:
     freedom = 2.0 * lines / length
     hits = sum(f.level.size * (f.hits - 2) for f in fits)
     f_value = numerator / lines
-    chance = scipy.stats.f.sf(f_value, freedom, 2.0 * hits / length)
-    return f_value, float(chance)
+    return f_value, f_above(f_value, freedom, 2.0 * hits / length)
 
 
 def _pooled(fit: _Fit) -> FloatArray:

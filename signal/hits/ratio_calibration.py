@@ -15,10 +15,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import NoHitFound
+from jointbench.acquisition.basics.tail_probabilities import t_quantile
 from jointbench.acquisition.records.recordings import (
     Channel,
     Hit,
@@ -167,7 +167,7 @@ def _result(
     shape = abs(flatness) / (2 * np.sqrt(3))
     combined = float(np.sqrt(repeat**2 + mass_part**2 + shape**2))
     freedom = (count - 1) * (combined / repeat) ** 4 if repeat > 0 else np.inf
-    factor = float(stats.t.ppf(0.5 + 0.5 * _COVERAGE, freedom))
+    factor = t_quantile(0.5 + 0.5 * _COVERAGE, freedom)
     return RatioCalibration(
         channel=channel,
         ratio=float(ratio),

@@ -15,7 +15,6 @@ from dataclasses import replace
 
 import numpy as np
 import scipy.fft
-import scipy.optimize
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
@@ -294,5 +293,7 @@ def _strengths(
             both = np.abs(z - root) ** -2 + np.abs(z - root.conjugate()) ** -2
             design[i, j] = 0.5 * both.mean()
     level = np.maximum(level, np.finfo(float).tiny)
-    found = scipy.optimize.nnls(design / level[:, None], np.ones(turn.size))[0]
+    from scipy.optimize import nnls  # slow to import; only this model needs it
+
+    found = nnls(design / level[:, None], np.ones(turn.size))[0]
     return np.maximum(found, _LEAST_NOISE * noise), noise

@@ -24,7 +24,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import ChannelMissing
-from jointbench.acquisition.records.provenance import Provenance, Step, step
+from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.kalman.process_models import (
     KalmanModel,
@@ -36,6 +36,7 @@ from jointbench.signal.kalman.process_models import (
     state_model,
 )
 from jointbench.signal.kalman.recursion import backward, forward
+from jointbench.signal.kalman.stage_provenance import KALMAN_STEP, NOISE_PREFIX
 from jointbench.signal.kalman.steady_gains import gains
 
 __all__ = [
@@ -49,13 +50,9 @@ __all__ = [
     "smooth_recording",
     "smooth_states",
     "stage_gain",
-    "stage_gain_of",
-    "stage_noise_of",
     "state_model",
 ]
 
-_STEP = "kalman_stage"
-_NOISE = "noise_sd_"
 # The median of the square of a standard normal number.
 _MEDIAN_CHI2 = 0.45493642311957283
 
@@ -170,7 +167,7 @@ def _stage_step(
 ) -> Step:
     """Return the step of the stage on some channels with their noise."""
     return step(
-        _STEP,
+        KALMAN_STEP,
         model=settings.model.value,
         cutoff=stage_cutoff(settings, recording.sample_rate),
         smooth=settings.smooth,
@@ -179,54 +176,10 @@ def _stage_step(
         sample_rate=recording.sample_rate,
         all_channels=len(names) == len(recording.channels),
         **{
-            f"{_NOISE}{name}": float(np.sqrt(variance))
+            f"{NOISE_PREFIX}{name}": float(np.sqrt(variance))
             for name, variance in zip(names, noise, strict=True)
         },
     )
-
-
-def stage_gain_of(provenance: Provenance, frequency: FloatArray) -> StageGain | None:
-    """Return the gain of the Kalman stage in a provenance.
-
-    Args:
-        provenance: of an FRF or a recording.
-        frequency: [Hz], shape (n,).
-
-    Returns:
-        The gain, or None if there was no such stage.
-    """
-    for done in provenance:
-        if done.name == _STEP:
-            detail = dict(done.detail)
-            settings = KalmanSettings(
-                KalmanModel(str(detail["model"])),
-                float(detail["cutoff"]),
-                bool(detail["smooth"]),
-                float(detail["frequency"]),
-                float(detail["damping_ratio"]),
-            )
-            gain = stage_gain(settings, frequency, float(detail["sample_rate"]))
-            return replace(gain, all_channels=bool(detail["all_channels"]))
-    return None
-
-
-def stage_noise_of(provenance: Provenance) -> dict[str, float]:
-    """Return the noise that the Kalman stage estimated in each channel.
-
-    Args:
-        provenance: of an FRF or of recordings.
-
-    Returns:
-        Standard deviation by channel name [sample unit], rms over stages; empty
-        without a stage.
-    """
-    seen: dict[str, list[float]] = {}
-    for done in provenance:
-        if done.name == _STEP:
-            for key, value in done.detail:
-                if key.startswith(_NOISE):
-                    seen.setdefault(key.removeprefix(_NOISE), []).append(float(value))
-    return {name: float(np.sqrt(np.mean(np.square(sds)))) for name, sds in seen.items()}
 
 
 def _parts(model: StateModel) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:

@@ -2,7 +2,6 @@
 """How much the FRF needs each mode: chi-squared over noise and local residual."""
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
@@ -10,6 +9,7 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     IntArray,
 )
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import local_residual
 from jointbench.signal.modal.lsfd import LinearFit, fit_residues
@@ -22,7 +22,7 @@ _CHANCE = 1e-6
 def least_significance(lines: FrfLines) -> float:
     """Return the chi-squared above which a mode is needed [-]."""
     chance = _CHANCE / lines.laplace.size
-    return float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
+    return chi2_limit(chance, 2 * lines.response.shape[0])
 
 
 def needed(

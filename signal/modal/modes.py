@@ -18,7 +18,7 @@ from jointbench.signal.frf.band import choose_band
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.line_weights import weights_of
 from jointbench.signal.kalman.process_models import StageGain
-from jointbench.signal.kalman.smoothing import stage_gain_of
+from jointbench.signal.kalman.stage_provenance import stage_gain_of
 from jointbench.signal.modal.frf_lines import FrfLines, lines_of
 from jointbench.signal.modal.lscf import Progress, fit_poles
 from jointbench.signal.modal.manual_selection import Choices, overrule

@@ -12,7 +12,6 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
@@ -20,6 +19,7 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     IntArray,
 )
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.modal_model import ModalModel, split_residues
 from jointbench.signal.modal.mode_selection import FittedModes
@@ -166,7 +166,7 @@ def _second_rank(model: ModalModel, number: int, chance: float = _HINT) -> bool:
     power = (rest.real / np.maximum(sd.real, floor)) ** 2
     power += (rest.imag / np.maximum(sd.imag, floor)) ** 2
     dof = 2 * (residue.shape[0] - 1) * (residue.shape[1] - 1)
-    return bool(power.sum() > scipy.stats.chi2.isf(chance, dof))
+    return bool(power.sum() > chi2_limit(chance, dof))
 
 
 def _peak(sides: _Sides, members: IntArray) -> PeakLines:
@@ -210,7 +210,7 @@ def _split(sides: _Sides, members: IntArray) -> _Split:
     )
     n_rows, n_references, _ = peak.response.shape
     chance = _CHANCE / sides.lines.laplace.size
-    limit = scipy.stats.chi2.isf(chance, 2 * (n_rows + n_references))
+    limit = chi2_limit(chance, 2 * (n_rows + n_references))
     width = np.append(np.full(2, peak.width), measured_width(sides.lines, pole[1:]))
     moved = np.abs(double.pole - np.concatenate((pole[:1], pole))) / width
     stays = (moved < 2.0 * _LEASH) & (double.pole.real < 0.0)

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.tail_probabilities import normal_quantile, t_quantile
 from jointbench.signal.modal.lscf import OrderPoles
 from jointbench.signal.modal.stabilisation import PoleCandidate, Stabilisation, mac
 from jointbench.signal.output_only.correlations import Correlations
@@ -178,7 +178,7 @@ def _jackknife(pole: ComplexArray) -> FloatArray:
     columns = np.stack((np.abs(pole) / (2.0 * np.pi), -pole.real / np.abs(pole)))
     away = columns - columns.mean(axis=1, keepdims=True)
     variance = (count - 1) / count * np.sum(away**2, axis=1)
-    few = scipy.stats.t.ppf(0.975, count - 1) / scipy.stats.norm.ppf(0.975)
+    few = t_quantile(0.975, count - 1) / normal_quantile(0.975)
     return np.asarray(np.sqrt(variance) * few)
 
 

@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import scipy.fft
-from scipy.interpolate import CubicSpline
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.simulators.hidden.campaign_design import CampaignCondition
@@ -133,6 +132,8 @@ def _clock_drift(
     a: FloatArray, p: Parameters, rate: float, _: CampaignCondition
 ) -> FloatArray:
     """Sample both accelerations with a clock faster than that of the force."""
+    from scipy.interpolate import CubicSpline  # slow to import, rarely needed
+
     index = np.arange(a.shape[1], dtype=float)
     late = np.minimum(index * (1 + p["rate"]), index[-1])
     return np.asarray(CubicSpline(index, a, axis=1)(late), dtype=float)

@@ -12,7 +12,7 @@ from jointbench.acquisition.records.session import JointSetup, Session, new_sess
 from jointbench.acquisition.records.surfaces import Surface
 from jointbench.acquisition.session_file.overwrite_guard import require_replaceable
 from jointbench.acquisition.session_file.store import write_session
-from jointbench.signal.modal.data_limits import time_scale_words
+from jointbench.signal.hits.pulse_duration import time_scale_words
 from jointbench.station.files.input_files import parse_preload, read_foreign
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.pipeline.roughness_words import caution_lines

@@ -24,14 +24,15 @@ from jointbench.signal.amplitude.resolved_model import resolved_model
 from jointbench.signal.frf.estimators import Estimator
 from jointbench.signal.frf.frf import Frf, estimate_frf
 from jointbench.signal.hits.find_hits import HitCriteria
+from jointbench.signal.hits.pulse_duration import time_scale_words
 from jointbench.signal.hits.windows import WindowRequest, requested_window
 from jointbench.signal.kalman.oscillator_bank import repair_dropouts
 from jointbench.signal.kalman.smoothing import (
     KalmanSettings,
     observe_noise,
-    stage_gain_of,
 )
-from jointbench.signal.modal.data_limits import block_words, time_scale_words
+from jointbench.signal.kalman.stage_provenance import stage_gain_of
+from jointbench.signal.modal.data_limits import block_words
 from jointbench.signal.modal.lscf import Progress
 from jointbench.signal.modal.modes import ModalResult, ModalSettings, identify_modes
 from jointbench.station.pipeline.judge_again import (

@@ -14,12 +14,12 @@ from jointbench.signal.frf.linearity import Linearity, check_linearity
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_pairs import point_of
 from jointbench.signal.hits.hit_spectra import hit_forces
+from jointbench.signal.hits.pulse_duration import time_scale_words
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.data_limits import (
     block_words,
     mode_words,
     requested_band_words,
-    time_scale_words,
 )
 from jointbench.station.pipeline.chain import ModalChain
 

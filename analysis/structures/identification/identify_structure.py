@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2 as chi2_distribution
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.analysis.lumped.identified import IdentificationVerdict, JointParameter
 from jointbench.analysis.structures.identification.joint_result import (
     FullCheck,
@@ -219,7 +219,7 @@ def _judge(
 ) -> tuple[IdentificationVerdict, tuple[str, ...]]:
     """Return the verdict on the identification, and its reasons."""
     reasons = [f"{one.name}: {one.reason}" for one in parameters if one.reason]
-    limit = chi2_distribution.isf(_POOR_FIT, freedom) if freedom > 0 else _NO_FREEDOM
+    limit = chi2_limit(_POOR_FIT, freedom) if freedom > 0 else _NO_FREEDOM
     if best.chi2 > limit:
         line = (
             f"chi2 is {best.chi2:.3g} for {freedom} degrees of freedom: no joint "

@@ -12,7 +12,8 @@ from jointbench.signal.frf.band import choose_band
 from jointbench.signal.frf.frf import Frf, FrfKind, estimate_frf
 from jointbench.signal.frf.line_weights import weights_of
 from jointbench.signal.hits.find_hits import find_hits
-from jointbench.signal.kalman.smoothing import smooth_recording, stage_noise_of
+from jointbench.signal.kalman.smoothing import smooth_recording
+from jointbench.signal.kalman.stage_provenance import stage_noise_of
 
 FREQUENCY = np.linspace(1.0, 100.0, 100)
 ALL = np.ones(100, bool)

@@ -24,9 +24,9 @@ from jointbench.signal.kalman.smoothing import (
     smooth_recording,
     smooth_states,
     stage_gain,
-    stage_gain_of,
     state_model,
 )
+from jointbench.signal.kalman.stage_provenance import stage_gain_of
 from jointbench.signal.kalman.steady_gains import gains
 
 RATE = 5000.0

@@ -11,12 +11,11 @@ import pytest
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 from jointbench.signal.frf.frf import estimate_frf
 from jointbench.signal.hits.find_hits import find_hits
+from jointbench.signal.hits.pulse_duration import pulse_duration, time_scale_words
 from jointbench.signal.modal.data_limits import (
     block_words,
     mode_words,
-    pulse_duration,
     requested_band_words,
-    time_scale_words,
 )
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
