@@ -36,6 +36,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.residuals.scatter_record import FORCE_GAIN
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress, score
@@ -122,8 +123,8 @@ def conclude(
             "sigma_min": float(bench.noise.sigma.min()),
             "sigma_max": float(bench.noise.sigma.max()),
             "force_sigma_N": bench.noise.force_sigma,
-            "scatter_gain": bench.noise.scatter[0],
-            "scatter_joint": max(bench.noise.scatter[1:], default=0.0),
+            "scatter_gain": bench.noise.scatter.size_of(FORCE_GAIN),
+            "scatter_joint": bench.noise.scatter.joint_size,
         },
         null_statistic=(
             outcome.base_screening.largest,

@@ -50,6 +50,8 @@ class LumpedResidual:
         short: the same bench with fewer samples, by length.
         settled: expansion of the model about the settling of each hit, or None.
         policy: thresholds for fits of the bench.
+        mixing: replaces `shrink` where hits are correlated: the matrix of the
+            components of all records that is removed, (n_records * n_kept) square.
     """
 
     campaign: Campaign
@@ -64,6 +66,7 @@ class LumpedResidual:
     short: dict[int, "LumpedResidual"]
     settled: Settled | None
     policy: Policy = field(default=STANDARD, kw_only=True)
+    mixing: FloatArray | None = field(default=None, kw_only=True)
 
     @property
     def expanded(self) -> bool:
@@ -164,7 +167,12 @@ class LumpedResidual:
         r = difference / self.noise.sigma[:, :, None]
         self.mask(r)
         rows = r.reshape(r.shape[0], -1, 1)
-        rows -= self.basis.transpose(0, 2, 1) @ (self.shrink * (self.basis @ rows))
+        along = self.basis @ rows
+        if self.mixing is None:
+            along *= self.shrink
+        else:
+            along = (self.mixing @ along.ravel()).reshape(along.shape)
+        rows -= self.basis.transpose(0, 2, 1) @ along
         return rows.ravel()
 
     def mask(self, rows: FloatArray) -> None:
