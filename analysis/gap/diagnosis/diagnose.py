@@ -12,6 +12,7 @@ from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence import make_evidence
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
+from jointbench.analysis.gap.diagnosis.scattered_hits import scatter_found
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
@@ -137,6 +138,7 @@ def conclude(
             _labels(f) for f in outcome.level if outcome.acceptance.passed
         ),
         policy=bench.policy,
+        scatter=scatter_found(bench),
     )
     if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)

@@ -54,7 +54,7 @@ def drawn(seed: int) -> FloatArray:
 
 
 def test_sizes_of_all_directions_are_found() -> None:
-    """Within 45 %, two sd of a size from 16 values; the mean of a gain is no scatter."""
+    """Within 45 %, two sd of a size from 16 values; a mean gain is no scatter."""
     found = estimated(drawn(1) + np.array([0.0, 0.0, 0.03, 0.0]))
     assert found.size == pytest.approx([0.01, 0.002, 0.005], rel=0.45)
     assert found.rho == 0.0
