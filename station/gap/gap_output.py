@@ -125,8 +125,7 @@ def _limit_words(found: Diagnosis) -> str:
                 f", largest remaining directed test {short(limits.remaining)} (limit "
                 f"{short(limits.remaining_allowed)})"
             )
-    scatter = found.noise.get("scatter_gain", 0.0)
-    return f"{words}; hits repeat within {100 * scatter:.2g} %"
+    return words if found.scatter is None else f"{words}; {found.scatter.words}"
 
 
 def _where(found: Diagnosis) -> list[tuple[str, str]]:

@@ -4,6 +4,7 @@
 from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Gap
 from jointbench.analysis.gap.model.evidence_records import GapEvidence
+from jointbench.analysis.gap.model.scatter_found import hit_words
 from jointbench.station.report.gap_bars import view_grid
 from jointbench.station.report.gap_figures import (
     record_estimate_figure,
@@ -320,11 +321,20 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
     floor = (
         f"Noise floor: {noise['sigma_min']:.3g} to {noise['sigma_max']:.3g} of the "
         f"response's unit, {noise['force_sigma_N']:.3g} {force_unit} of the force. "
-        f"Repeatability: hits scatter by {100 * noise['scatter_gain']:.2g} % in "
-        f"gain, the joint by {100 * noise['scatter_joint']:.2g} % in stiffness; "
-        "a smaller effect cannot be detected."
+        f"{_repeatability(found)}"
     )
     return (Text(floor), table)
+
+
+def _repeatability(found: Diagnosis) -> str:
+    """Return how far hits scatter, by direction, and the hits that deviate."""
+    if found.scatter is None:
+        return ""
+    words = f"Repeatability: {found.scatter.words}; a smaller effect is not detected."
+    if found.scatter.hits:
+        listed = ", ".join(hit_words(hit) for hit in found.scatter.hits)
+        words += f" Hits that deviate from the others: {listed}."
+    return words
 
 
 def _base(found: Diagnosis) -> DataTable:

@@ -12,6 +12,7 @@ from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence import make_evidence
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
+from jointbench.analysis.gap.diagnosis.scattered_hits import scatter_found
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
@@ -36,6 +37,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.residuals.scatter_record import FORCE_GAIN
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.selection_round import Progress, score
@@ -122,8 +124,8 @@ def conclude(
             "sigma_min": float(bench.noise.sigma.min()),
             "sigma_max": float(bench.noise.sigma.max()),
             "force_sigma_N": bench.noise.force_sigma,
-            "scatter_gain": bench.noise.scatter[0],
-            "scatter_joint": max(bench.noise.scatter[1:], default=0.0),
+            "scatter_gain": bench.noise.scatter.size_of(FORCE_GAIN),
+            "scatter_joint": bench.noise.scatter.joint_size,
         },
         null_statistic=(
             outcome.base_screening.largest,
@@ -136,6 +138,7 @@ def conclude(
             _labels(f) for f in outcome.level if outcome.acceptance.passed
         ),
         policy=bench.policy,
+        scatter=scatter_found(bench),
     )
     if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)

@@ -90,6 +90,12 @@ class DiagnosisSettings:
         "steps of the time integration on parts of a record that no fit has seen",
         "Silverbox",
     )
+    repeat_share: float = numerical(
+        0.3,
+        "of the residual",
+        "share of the residual of a record that its repeats must leave as well, for it "
+        "to belong to the condition and not to the hit",
+    )
     clear_sd: float = numerical(
         4.0,
         "sd",

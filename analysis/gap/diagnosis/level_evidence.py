@@ -29,6 +29,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.residuals.joint_settling import joint_at
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.scatter_record import FORCE_GAIN
 from jointbench.analysis.gap.search.descent import BASE_RESOLUTIONS, fit_coarse_to_fine
 
 
@@ -114,7 +115,8 @@ def _scatters(
     """Return the scatter of the hits: in strength, and in the joint stiffness."""
     moved = base.copy()
     moved[joint_at(bench.campaign.model)] += DIAGNOSIS.level_step
-    gain, joint = bench.noise.scatter[0], max(bench.noise.scatter[1:], default=0.0)
+    scatter = bench.noise.scatter
+    gain, joint = scatter.size_of(FORCE_GAIN), scatter.joint_size
     slope = (bench.response(moved, ()) - model) / DIAGNOSIS.level_step
     return Scatter(gain, model), Scatter(joint, slope)
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The verdict on an outcome, its reason in one line, and what to do next."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,11 +9,13 @@ import numpy as np
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.location import counted_samples
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.diagnosis.scattered_hits import unexplained_hits
 from jointbench.analysis.gap.judgement.campaign_limits import flat_tops
 from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import labels_of, words_of
+from jointbench.analysis.gap.model.scatter_found import HitFound, hit_words
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.selection_round import score
@@ -75,6 +78,9 @@ def _unknown(outcome: SearchOutcome, bench: LumpedBench) -> DiagnosisVerdict:
             "a channel is overloaded; reduce its gain and repeat the hits"
         )
         return DiagnosisVerdict(Finding.UNKNOWN, reason, _way_out(reason))
+    if alone := unexplained_hits(bench, outcome.best):
+        reason = _scatters(alone)
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, _way_out(reason))
     if odd := _odd_record(outcome, bench):
         return DiagnosisVerdict(Finding.UNKNOWN, odd, _way_out(odd))
     reason = (
@@ -83,6 +89,15 @@ def _unknown(outcome: SearchOutcome, bench: LumpedBench) -> DiagnosisVerdict:
     if outcome.given_up:
         reason += "; the search for a further effect reached its effort limit"
     return DiagnosisVerdict(Finding.UNKNOWN, reason, "")
+
+
+def _scatters(hits: Sequence[HitFound]) -> str:
+    """Return the reason where hits scatter beyond what can be modelled."""
+    listed = ", ".join(hit_words(hit) for hit in hits)
+    return (
+        f"hits scatter: {listed} deviate from their repeats by more than gain, delay "
+        "and joint stiffness explain: repeat these hits"
+    )
 
 
 def _way_out(reason: str) -> str:

@@ -10,6 +10,7 @@ from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import GapEvidence, evidence_json
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_json
+from jointbench.analysis.gap.model.scatter_found import ScatterFound, scatter_json
 
 
 class Finding(StrEnum):
@@ -122,6 +123,7 @@ class Diagnosis:
         explanations: labels of the effects of each accepted explanation that cannot
             be distinguished from the best, best first; ("none",) is the base alone.
         policy: thresholds of the verdict.
+        scatter: of the hits, by direction; None if not prepared.
     """
 
     verdict: Finding
@@ -138,6 +140,7 @@ class Diagnosis:
     evidence: GapEvidence | None = None
     explanations: tuple[tuple[str, ...], ...] = ()
     policy: Policy = STANDARD
+    scatter: ScatterFound | None = None
 
     @property
     def predicted(self) -> bool:
@@ -191,6 +194,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         },
         "base": _estimates(d.base),
         "noise": dict(d.noise),
+        "scatter": None if d.scatter is None else scatter_json(d.scatter),
         "null_test": {"largest": d.null_statistic[0], "limit": d.null_statistic[1]},
         "experiment": d.experiment,
         "reason": d.reason,

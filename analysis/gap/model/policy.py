@@ -173,12 +173,20 @@ class Policy:
         "400 nulls, 210 of them without scatter (docs/gap-confusion.md); hidden 95054",
         "-30 %: 0 of 16; +30 %: 0 of 16",
     )
-    scatter_chance: float = decision(
-        0.0025,
+    outstanding_sd: float = decision(
+        4.0,
+        "sd",
+        "deviation of a hit, in sd of its direction, above which it is listed",
+        "closed form: one hit in 16,000 by chance",
+        "",
+    )
+    outstanding_chance: float = decision(
+        1e-5,
         "-",
-        "chance of the differences between repeats that bounds the scatter above",
-        "chi2 pivot in closed form; development campaigns",
-        "-30 %: 0 of 16; +30 %: 0 of 16",
+        "chance of the deviation of one hit below which the hit stands out and does "
+        "not count for the scatter of the others",
+        "closed form; 100 hits and directions: 0.1 % a campaign",
+        "",
     )
     trend_chance: float = decision(
         3e-4,

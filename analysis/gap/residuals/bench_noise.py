@@ -8,30 +8,43 @@ import numpy as np
 import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.model.campaign import TAIL
+from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Settled
 from jointbench.analysis.gap.residuals.hit_scatter import (
-    gain_scatter,
-    regress,
+    HitsSeen,
+    estimate_scatter,
     repeat_groups,
-    without_trend,
 )
 from jointbench.analysis.gap.residuals.joint_settling import (
     hit_stiffness,
     joint_at,
     mean_stiffness,
 )
-from jointbench.analysis.gap.residuals.lumped_residual import SomeBench, settle
+from jointbench.analysis.gap.residuals.lumped_residual import (
+    LumpedResidual,
+    SomeBench,
+    settle,
+)
 from jointbench.analysis.gap.residuals.noise_models import (
     FORCE_SHAPES,
     Noise,
     channel_sigma,
     whitening_basis,
+    whitening_of_all,
 )
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+from jointbench.analysis.gap.residuals.scatter_directions import (
+    directions_of,
+    scatter_columns,
+)
+from jointbench.analysis.gap.residuals.scatter_likelihood import (
+    CompressedRecords,
+    compress,
+)
+from jointbench.analysis.gap.residuals.scatter_record import HitScatter, no_scatter
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
 from jointbench.analysis.gap.response.excitation import prepare_excitation
 from jointbench.analysis.gap.response.predict_records import respond
@@ -59,33 +72,22 @@ def refine_noise(
     bench.mask(residual)
     sigma = _channel_noise(at, model, residual)
     columns = _force_columns(bench, base, sigma)
-    ways = _scatter_ways(at, base, terms, model, sigma)
-    noise = replace(bench.noise, sigma=sigma)
-    none = tuple(0.0 for _ in range(ways.shape[1]))
-    bare = _with_noise(at, replace(noise, scatter=none), columns, ways)
-    coefficients, variances = regress(
-        (residual / sigma[:, :, None]).reshape(len(sigma), -1),
-        ways,
-        bare.basis,
-        bare.shrink,
-    )
-    rise = at.rise(terms)
-    known = at.excitation.conditions.settling
-    if known is not None:
-        coefficients[:, 1] -= np.log((np.exp(known) + rise) / (1.0 + rise))
-    scatter = _scatter_of(at, coefficients, variances)
-    noise = replace(noise, scatter=scatter)
-    refined = _with_noise(at, noise, columns, ways)
+    at = replace(at, noise=replace(bench.noise, sigma=sigma))
+    ways = scatter_columns(at, base, terms, model)
+    scatter = _scatter(at, residual, ways, columns, terms)
+    refined = _with_noise(at, replace(at.noise, scatter=scatter), columns, ways)
     lost = np.linalg.norm(residual) > RESIDUALS.uninformative_share * np.linalg.norm(
         model
     )
-    if len(scatter) < 2 or scatter[1] == 0.0 or lost:
+    if scatter.joint_size == 0.0 or lost:
         return settle(refined, None)
-    share = scatter[1] ** 2 / (scatter[1] ** 2 + variances[:, 1])
-    off = -coefficients[:, 1] * share / scatter[1]
-    if diverged and np.abs(off).max() > RESIDUALS.diverged_reach:
+    size, off = scatter.joint_size, -scatter.joint_values
+    if diverged and np.abs(off).max() > RESIDUALS.diverged_reach * size:
         return settle(refined, None)
-    off = np.clip(off, -RESIDUALS.settling_reach, RESIDUALS.settling_reach) * scatter[1]
+    off = np.clip(
+        off, -RESIDUALS.settling_reach * size, RESIDUALS.settling_reach * size
+    )
+    rise = at.rise(terms)
     settling = np.log(
         np.maximum(np.exp(off) * (1.0 + rise) - rise, RESIDUALS.least_stiffness_factor)
     )
@@ -94,6 +96,47 @@ def refine_noise(
     if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not diverged:
         return settle(refined, None)
     return expanded
+
+
+def _scatter(
+    bench: LumpedResidual,
+    residual: FloatArray,
+    ways: FloatArray,
+    columns: list[FloatArray],
+    terms: Sequence[Term],
+) -> HitScatter:
+    """Estimate the scatter of the hits from the residual of a solution."""
+    campaign = bench.campaign
+    directions = directions_of(bench)
+    if campaign.repeatability is not None:
+        return no_scatter(directions, len(residual))
+    rows = (residual / bench.noise.sigma[:, :, None]).reshape(len(residual), -1)
+    records = _compressed(rows, ways, columns)
+    known = bench.excitation.conditions.settling
+    if known is not None:
+        rise = bench.rise(terms)
+        settled = np.zeros(records.along.shape)
+        settled[:, 1] = np.log((np.exp(known) + rise) / (1.0 + rise))
+        records = records.moved(settled)
+    seen = HitsSeen(
+        _patterns(campaign),
+        tuple(repeat_groups(campaign.hit, campaign.level, campaign.preload)),
+    )
+    return estimate_scatter(records, directions, seen, bench.blocks.dof, bench.policy)
+
+
+def _compressed(
+    residual: FloatArray, ways: FloatArray, columns: list[FloatArray]
+) -> CompressedRecords:
+    """Return records along the ways, after whitening the force noise."""
+    rows, seen = [], []
+    for r, w, own in zip(residual, ways, columns, strict=True):
+        basis, shrink = whitening_basis(own)
+        both = np.concatenate([r[None, :], w])
+        both = both - ((both @ basis.T) * shrink) @ basis
+        rows.append(both[0])
+        seen.append(both[1:])
+    return compress(np.array(rows), np.array(seen))
 
 
 def _centred(bench: SomeBench, base: FloatArray, terms: Sequence[Term]) -> SomeBench:
@@ -122,27 +165,6 @@ def _channel_noise(
     return sigma
 
 
-def _scatter_of(
-    bench: SomeBench, coefficients: FloatArray, variances: FloatArray
-) -> tuple[float, ...]:
-    """Return the scatter along each way."""
-    campaign = bench.campaign
-    count = len(coefficients.T)
-    if campaign.repeatability is not None:
-        return (0.0,) * count
-    groups = repeat_groups(campaign.hit, campaign.level, campaign.preload)
-    patterns = _patterns(bench.excitation.conditions)
-    return tuple(
-        gain_scatter(
-            without_trend(coefficients[:, i], variances[:, i], patterns, bench.policy),
-            variances[:, i],
-            groups,
-            bench.policy,
-        )
-        for i in range(count)
-    )
-
-
 def _expanded(
     bench: SomeBench,
     settling: FloatArray,
@@ -158,16 +180,23 @@ def _expanded(
     there = settle(bench, settling)
     sigma = bench.noise.sigma
     moved = there.response(base, terms)
-    ways = _scatter_ways(there, base, terms, moved, sigma)
+    ways = scatter_columns(there, base, terms, moved)
     slope = ways[:, 1].reshape(*sigma.shape, -1) * sigma[:, :, None]
     whitened = _with_noise(there, bench.noise, columns, ways)
     settled = Settled(base.copy(), slope, there.rise(terms))
     return replace(whitened, settled=settled)
 
 
-def _patterns(conditions: HitConditions) -> FloatArray:
-    """Return possible trends of a joint over the records, shape (2, n_records)."""
-    return np.stack([np.log(conditions.preload), conditions.progress])
+def _patterns(campaign: Campaign) -> FloatArray:
+    """Return possible trends over the records, shape (n_patterns, n_records)."""
+    return np.stack(
+        [
+            np.log(campaign.preload),
+            campaign.order.astype(float),
+            np.log(campaign.level),
+            campaign.hit.astype(float),
+        ]
+    )
 
 
 def _force_columns(
@@ -221,58 +250,27 @@ def _leading(rows: FloatArray, grams: FloatArray, sigma: FloatArray) -> FloatArr
     return np.asarray(shapes.reshape(len(shapes), -1))
 
 
-def _scatter_ways(
-    bench: SomeBench,
-    base: FloatArray,
-    terms: Sequence[Term],
-    model: FloatArray,
-    sigma: FloatArray,
-) -> FloatArray:
-    """Return the ways in which hits scatter, over sigma, (n_records, n_ways, n_rows).
-
-    First the operator: the acting force differs slightly from the measured one. Then
-    each joint: its stiffness settles differently in each hit.
-    """
-    ways = [_harder(bench, base, terms, model)]
-    n = len(bench.campaign.model.bodies)
-    for i, link in enumerate(bench.campaign.model.links):
-        if link.joint and not bench.campaign.continuous:
-            moved = base.copy()
-            moved[n + i] += RESIDUALS.scatter_step
-            ways.append((bench.response(moved, terms) - model) / RESIDUALS.scatter_step)
-    stacked = np.stack(ways, axis=1)
-    bench.mask(stacked)
-    stacked /= sigma[:, None, :, None]
-    return stacked.reshape(len(sigma), len(ways), -1)
-
-
-def _harder(
-    bench: SomeBench, base: FloatArray, terms: Sequence[Term], model: FloatArray
-) -> FloatArray:
-    """Return the change of the response per relative change of the force.
-
-    A clipped sample does not change.
-    """
-    entries = [a.entry for a in bench.actions(terms)]
-    if all(e.law is None and e.shape is None for e in entries):
-        return model.copy()
-    spectrum = bench.excitation.spectrum * (1.0 + RESIDUALS.scatter_step)
-    pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))
-    return (pushed.response(base, terms) - model) / RESIDUALS.scatter_step
-
-
 def _with_noise(
     bench: SomeBench, noise: Noise, columns: list[FloatArray], ways: FloatArray
 ) -> SomeBench:
     """Return the bench with the whitening of `noise`."""
+    scatter = noise.scatter
+    if scatter.rho > 0.0:
+        basis, mixing = whitening_of_all(columns, ways, scatter.sd, scatter.rho)
+        shrink = np.zeros((*basis.shape[:2], 1))
+        return replace(
+            bench, noise=noise, basis=basis, shrink=shrink, mixing=mixing, short={}
+        )
     parts = []
-    for own, way in zip(columns, ways, strict=True):
-        spread = [s * w[None, :] for s, w in zip(noise.scatter, way, strict=True) if s]
-        parts.append(whitening_basis(np.concatenate([own, *spread])))
+    for own, way, sd in zip(columns, ways, scatter.sd, strict=True):
+        spread = way[sd > 0.0] * sd[sd > 0.0, None]
+        parts.append(whitening_basis(np.concatenate([own, spread])))
     kept = max(b.shape[0] for b, _ in parts)
     basis = np.zeros((len(parts), kept, ways.shape[2]))
     shrink = np.zeros((len(parts), kept, 1))
     for k, (b, s) in enumerate(parts):
         basis[k, : b.shape[0]] = b
         shrink[k, : b.shape[0], 0] = s
-    return replace(bench, noise=noise, basis=basis, shrink=shrink, short={})
+    return replace(
+        bench, noise=noise, basis=basis, shrink=shrink, mixing=None, short={}
+    )

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Scatter from hit to hit: of the operator, of the joint, and trends."""
+"""Scatter from hit to hit: its sizes, its trends, and the hits that stand out."""
 
-import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.stats
@@ -9,6 +10,38 @@ import scipy.stats
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+from jointbench.analysis.gap.residuals.scatter_likelihood import (
+    CompressedRecords,
+    weigh,
+    without_systematic,
+)
+from jointbench.analysis.gap.residuals.scatter_record import (
+    HitScatter,
+    ScatterDirection,
+    direction_of_columns,
+)
+from jointbench.analysis.gap.residuals.scatter_sizes import (
+    SizeProblem,
+    likeliest_sizes,
+    of_repeats,
+    regressed_sizes,
+    repeat_limits,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HitsSeen:
+    """What is known of the hits, to tell scatter from trends.
+
+    Attributes:
+        patterns: possible trends over the records, shape (n_patterns, n_records).
+        groups: records of each condition that was measured more than once.
+        joints: directions that are the stiffness of a joint.
+    """
+
+    patterns: FloatArray
+    groups: tuple[IntArray, ...]
+    joints: frozenset[int] = frozenset()
 
 
 def repeat_groups(
@@ -24,146 +57,248 @@ def repeat_groups(
     return groups
 
 
-def gain_scatter(
-    gains: FloatArray,
-    variances: FloatArray,
-    groups: list[IntArray],
+def estimate_scatter(
+    records: CompressedRecords,
+    directions: tuple[ScatterDirection, ...],
+    seen: HitsSeen,
+    dof: int,
     policy: Policy = STANDARD,
-) -> float:
-    """Estimate the relative gain scatter from hit to hit.
+) -> HitScatter:
+    """Estimate how far hits scatter along each direction.
 
-    Repeats of a condition differ by scatter and noise alone, but they are few; all
-    records together contain more information, but also the influence of a missing
-    effect. The estimate from all records is therefore limited to the range between the
-    likeliest value and the upper limit from the repeats: steps^2/(v + s^2) is a chi2
-    pivot.
+    The mean of all hits is not scatter, neither is a trend: what varies at random is.
+    All records together bear on the sizes, but a missing effect influences them;
+    repeats bound the sizes, because repeats share every missing effect. Where the
+    records are far from the model even so, repeats alone count.
 
     Args:
-        gains: regression of each residual on its response [-], shape (n_records,).
-        variances: of the gains by noise alone, same shape.
-        groups: records that repeat a condition.
-        policy: with the least scatter, and the chance of its upper limit.
-
-    Returns:
-        Standard deviation of the gain [-].
+        records: compressed along the columns.
+        directions: in the order of their columns.
+        seen: patterns and repeats.
+        dof: number of residuals with weight.
+        policy: thresholds.
     """
-    grid = _scatter_grid() ** 2
-    everywhere = _deviance(gains, variances, grid)
-    wide = float(grid[int(np.argmin(everywhere))])
-    pairs = [(i, j) for rows in groups for i, j in itertools.pairwise(rows.tolist())]
-    if not pairs:
-        return _significant(np.sqrt(wide), policy)
-    first, second = (np.array(x) for x in zip(*pairs, strict=True))
-    steps = (gains[first] - gains[second]) / np.sqrt(2.0)
-    spread = (variances[first] + variances[second]) / 2
-    low = float(grid[int(np.argmin(_deviance(steps, spread, grid)))])
-    pivot = np.sum(steps**2 / (spread + grid[:, None]), axis=1)
-    allowed = grid[pivot > scipy.stats.chi2.ppf(policy.scatter_chance, steps.size)]
-    high = max(float(allowed.max(initial=0.0)), low)
-    return _significant(np.sqrt(np.clip(wide, low, high)), policy)
+    direction = direction_of_columns(directions)
+    problem = SizeProblem(
+        records,
+        direction,
+        _intercepts(records.along.shape),
+        np.full(len(directions), np.inf),
+    )
+    joints = frozenset(k for k, d in enumerate(directions) if d.is_joint)
+    seen = replace(seen, joints=joints)
+    start = np.maximum(regressed_sizes(records, direction), 1e-4)
+    found = _Estimate(problem, likeliest_sizes(problem, start), ())
+    found = _within_repeats(found, seen)
+    found = _with_systematic(found, seen, policy)
+    found = _correlated(found, problem.systematic)
+    found = _within_repeats(found, seen)
+    size = np.where(found.size < policy.least_scatter, 0.0, found.size)
+    problem, outstanding = found.problem, found.outstanding
+    if problem.weighed(size).chi2 > policy.far_chi2 * dof and seen.groups:
+        repeats = of_repeats(problem, seen.groups)
+        size = likeliest_sizes(repeats, start)
+        size = np.where(size < policy.least_scatter, 0.0, size)
+        problem, outstanding = replace(problem, rho=0.0), ()
+    sd, values = _each_hit(problem, size, outstanding)
+    return HitScatter(directions, size, problem.rho, sd, values, outstanding)
 
 
-def _significant(scatter: float, policy: Policy) -> float:
-    """Return a scatter, or 0 if it is below that of any operator and joint."""
-    return float(scatter) if scatter >= policy.least_scatter else 0.0
+def _intercepts(shape: tuple[int, ...]) -> FloatArray:
+    """Return X of one mean for each column: the mean of all hits is no scatter."""
+    x = np.zeros((*shape, shape[1]))
+    columns = np.arange(shape[1])
+    x[:, columns, columns] = 1.0
+    return x
 
 
-def without_trend(
-    values: FloatArray,
-    variances: FloatArray,
-    patterns: FloatArray,
-    policy: Policy = STANDARD,
-) -> FloatArray:
-    """Subtract the pattern that best explains the values of all records, if any.
+def _each_hit(
+    problem: SizeProblem,
+    size: FloatArray,
+    outstanding: tuple[tuple[int, int], ...],
+) -> tuple[FloatArray, FloatArray]:
+    """Return sd and expected deviation of each hit, (n_records, n_columns)."""
+    sd = np.tile(size[problem.direction], (problem.records.along.shape[0], 1))
+    for record, column in outstanding:
+        sd[record, column] = RESIDUALS.outstanding_sd
+    values = weigh(problem.records, sd**2, problem.rho).predicted
+    for record, column in outstanding:
+        usual = float(size[problem.direction[column]])
+        sd[record, column] = np.hypot(usual, float(values[record, column]))
+    return sd, values
 
-    A trend over the records is not scatter, but would be counted as scatter and so be
-    hidden. Only a pattern that is unlikely to occur by chance is subtracted. The
-    information in a record varies (a soft hit has hardly any), so each is weighted by
-    its own variance and the remaining scatter. Their weighted mean is kept: the fit of
-    the base has already brought it to zero.
 
-    Args:
-        values: shape (n_records,).
-        variances: of the values by noise alone, same shape.
-        patterns: possible trends over the records, shape (n_patterns, n_records).
-        policy: with the chance below which a pattern is a trend.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Estimate:
+    """Sizes, with the systematic values and the hits that stand out so far."""
 
-    Returns:
-        Values minus their dependence on one pattern, shape (n_records,).
+    problem: SizeProblem
+    size: FloatArray
+    outstanding: tuple[tuple[int, int], ...]
+
+
+def _within_repeats(found: _Estimate, seen: HitsSeen) -> _Estimate:
+    """Return the estimate with its sizes within what repeats allow."""
+    if not seen.groups or not np.any(found.size > 0.0):
+        return found
+    free = replace(found.problem, highest=np.full(found.size.size, np.inf))
+    repeats = of_repeats(_less(free, found.outstanding), seen.groups)
+    likeliest = likeliest_sizes(repeats, np.where(found.size > 0.0, found.size, 1e-4))
+    limits = repeat_limits(repeats, likeliest, found.size)
+    if free.rho > 0.0:
+        # Correlated repeats differ by less than their scatter.
+        lag = np.concatenate([np.diff(rows) for rows in seen.groups])
+        limits = limits / np.sqrt(1.0 - float(np.mean(free.rho**lag)))
+    bound = replace(free, highest=limits)
+    if np.all(found.size <= limits):
+        return replace(found, problem=bound)
+    size = likeliest_sizes(bound, np.minimum(found.size, limits))
+    return replace(found, problem=bound, size=size)
+
+
+def _less(problem: SizeProblem, outstanding: Sequence[tuple[int, int]]) -> SizeProblem:
+    """Return the problem with the deviations of outstanding hits taken out."""
+    if not outstanding:
+        return problem
+    sd = np.zeros(problem.records.along.shape)
+    for record, column in outstanding:
+        sd[record, column] = RESIDUALS.outstanding_sd
+    values = weigh(problem.records, sd**2).predicted
+    return replace(problem, records=problem.records.moved(values))
+
+
+def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
+    """Return the estimate with correlated hits and no trends, if that is likelier.
+
+    A slow drift of the scatter resembles a trend; the restricted likelihood, which
+    charges for each systematic value, decides.
     """
-    best, least = values, policy.trend_chance
-    for pattern in patterns:
-        q = pattern - pattern.mean()
-        if q @ q < 1e-12 or values.size < 4:
-            continue
-        slope, squared, middle = _trend(values, variances, q)
-        chance = float(scipy.stats.f.sf(squared, 1, values.size - 2))
-        if chance < least:
-            best, least = values - slope * (q - middle), chance
+    size = found.size
+    if not np.any(size > 0.0) or len(found.problem.records.along) > (
+        RESIDUALS.most_correlated
+    ):
+        return found
+    best, least = found, found.problem.deviance(size) - RESIDUALS.correlation_gain
+    own_hits = _hits(intercepts.shape, found.outstanding)
+    plain = replace(
+        found.problem, systematic=np.concatenate([intercepts, own_hits], axis=2)
+    )
+    for rho in RESIDUALS.correlations:
+        tried = replace(plain, rho=rho, highest=np.full(size.size, np.inf))
+        own = likeliest_sizes(tried, np.where(size > 0.0, size, 1e-4))
+        now = tried.deviance(own)
+        if now < least:
+            best, least = _Estimate(tried, own, found.outstanding), now
     return best
 
 
-def _trend(
-    values: FloatArray, variances: FloatArray, q: FloatArray
-) -> tuple[float, float, float]:
-    """Return the slope along a pattern, its squared ratio to its sd, and the mean.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Systematic:
+    """A possible systematic value: its column of X, and the hit if it is one hit's."""
 
-    The mean is the weighted mean of the pattern.
+    column: FloatArray
+    hit: tuple[int, int] | None
 
-    Source:
-        Weighted least squares of a mean and a slope, the scatter by restricted
-        maximum likelihood (Patterson and Thompson 1971) on the grid of scatters.
+
+def _with_systematic(found: _Estimate, seen: HitsSeen, policy: Policy) -> _Estimate:
+    """Add trends and outstanding hits to X, one at a time, while they are unlikely."""
+    if not np.any(found.size > 0.0):
+        return found
+    candidates = [*_trends(found.problem, seen), *_single_hits(found.problem)]
+    for _ in range(RESIDUALS.most_systematic):
+        best = _likeliest(found, candidates, seen, policy)
+        if best is None:
+            break
+        chosen, found = best
+        candidates = [c for c in candidates if c is not chosen]
+    return found
+
+
+def _likeliest(
+    found: _Estimate,
+    candidates: Sequence[_Systematic],
+    seen: HitsSeen,
+    policy: Policy,
+) -> tuple[_Systematic, _Estimate] | None:
+    """Return the systematic value that raises the likelihood most, if unlikely."""
+    problem, size = found.problem, found.size
+    left, score = without_systematic(problem.weighed(size), problem.systematic)
+    columns = np.stack([c.column.ravel() for c in candidates], axis=1)
+    information = np.einsum("rc,rc->c", columns, left @ columns)
+    gain = (columns.T @ score) ** 2 / (1.0 + information)
+    before = problem.deviance(size, restricted=False)
+    best, least = None, 1.0
+    for at in np.argsort(-gain)[: RESIDUALS.systematic_tried].tolist():
+        chosen = candidates[at]
+        if gain[at] < RESIDUALS.systematic_gain:
+            break
+        if chosen.hit and not _stands_out(found, chosen.hit, seen):
+            continue
+        more = np.concatenate([problem.systematic, chosen.column[:, :, None]], axis=2)
+        tried = replace(problem, systematic=more)
+        own = likeliest_sizes(tried, size)
+        drop = before - tried.deviance(own, restricted=False)
+        chance = _chance(drop, len(problem.records.along))
+        limit = policy.outstanding_chance if chosen.hit else policy.trend_chance
+        if chance / limit < least:
+            hits = (*found.outstanding, chosen.hit) if chosen.hit else found.outstanding
+            best, least = (chosen, _Estimate(tried, own, hits)), chance / limit
+    return best
+
+
+def _chance(drop: float, count: int) -> float:
+    """Return the chance of a drop of -2 log likelihood by one value of many hits."""
+    free = max(count - 2, 1)
+    squared = free * np.expm1(min(max(drop, 0.0) / max(count, 1), 50.0))
+    return float(scipy.stats.f.sf(squared, 1, free))
+
+
+def _trends(problem: SizeProblem, seen: HitsSeen) -> list[_Systematic]:
+    """Return a trend of each column with each pattern."""
+    found = []
+    n, k = problem.records.along.shape
+    for pattern in seen.patterns:
+        q = pattern - pattern.mean()
+        if q @ q < 1e-12 or n < RESIDUALS.least_hits:
+            continue
+        for column in range(k):
+            x = np.zeros((n, k))
+            x[:, column] = q / np.sqrt(np.mean(q**2))
+            found.append(_Systematic(x, None))
+    return found
+
+
+def _single_hits(problem: SizeProblem) -> list[_Systematic]:
+    """Return a deviation of each hit along each column."""
+    n, k = problem.records.along.shape
+    if n < RESIDUALS.least_hits:
+        return []
+    every = [(record, column) for record in range(n) for column in range(k)]
+    columns = _hits((n, k), every)
+    return [_Systematic(columns[:, :, at], hit) for at, hit in enumerate(every)]
+
+
+def _hits(shape: tuple[int, ...], hits: Sequence[tuple[int, int]]) -> FloatArray:
+    """Return X of a deviation of each of some hits along its column."""
+    x = np.zeros((*shape[:2], len(hits)))
+    for at, (record, column) in enumerate(hits):
+        x[record, column, at] = 1.0
+    return x
+
+
+def _stands_out(found: _Estimate, hit: tuple[int, int], seen: HitsSeen) -> bool:
+    """Return whether a hit deviates by itself, and not its whole condition.
+
+    A condition that was hit once may show a missing effect, which changes the joint.
     """
-    grid = _scatter_grid() ** 2
-    total = variances + grid[:, None]
-    weight = 1 / total
-    columns = np.stack([np.ones_like(q), q], axis=1)
-    normal = np.einsum("sr,ri,rj->sij", weight, columns, columns)
-    right = np.einsum("sr,ri,r->si", weight, columns, values)
-    solution = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
-    left = values - solution @ columns.T
-    deviance = np.sum(left**2 * weight + np.log(total), axis=1)
-    deviance += np.linalg.slogdet(normal)[1]
-    at = int(np.argmin(deviance))
-    slope = float(solution[at, 1])
-    middle = float(weight[at] @ q / weight[at].sum())
-    return slope, slope**2 / float(np.linalg.inv(normal[at])[1, 1]), middle
-
-
-def _scatter_grid() -> FloatArray:
-    """Return the grid of scatters [-]; the first is zero."""
-    return np.concatenate(
-        [
-            [0.0],
-            np.geomspace(RESIDUALS.smallest_scatter, RESIDUALS.largest_scatter, 360),
-        ]
-    )
-
-
-def _deviance(x: FloatArray, v: FloatArray, grid: FloatArray) -> FloatArray:
-    """Return -2 log likelihood of x ~ N(0, v + grid), shape of grid."""
-    total = v[None, :] + grid[:, None]
-    return np.asarray(np.sum(x**2 / total + np.log(total), axis=1))
-
-
-def regress(
-    residual: FloatArray, ways: FloatArray, basis: FloatArray, shrink: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Regress residuals on the ways to scatter, after whitening the force noise.
-
-    Args:
-        residual: over sigma, shape (n_records, n_rows).
-        ways: over sigma, shape (n_records, n_ways, n_rows).
-        basis: of the force noise, shape (n_records, n_kept, n_rows).
-        shrink: of it, shape (n_records, n_kept, 1).
-
-    Returns:
-        Coefficients [-] and their variances, shape (n_records, n_ways) each.
-    """
-    both = np.concatenate([residual[:, None, :], ways], axis=1).transpose(0, 2, 1)
-    both = both - basis.transpose(0, 2, 1) @ (shrink * (basis @ both))
-    r, w = both[:, :, :1], both[:, :, 1:]
-    turned = w.transpose(0, 2, 1)
-    inverse = np.linalg.pinv(turned @ w)
-    coefficients = (inverse @ (turned @ r))[:, :, 0]
-    return coefficients, np.diagonal(inverse, axis1=1, axis2=2).copy()
+    problem, (record, column) = found.problem, hit
+    sd = np.tile(found.size[problem.direction], (len(problem.records.along), 1))
+    sd[record, column] = RESIDUALS.outstanding_sd
+    values = weigh(problem.records, sd**2, problem.rho).predicted[:, column]
+    if abs(values[record]) < RESIDUALS.least_outstanding:
+        return False
+    own = [rows for rows in seen.groups if record in rows]
+    if not own:
+        return int(problem.direction[column]) not in seen.joints
+    rest = np.mean([values[i] for i in own[0] if i != record])
+    return bool(abs(values[record] - rest) > 0.5 * abs(values[record]))

@@ -50,6 +50,8 @@ class LumpedResidual:
         short: the same bench with fewer samples, by length.
         settled: expansion of the model about the settling of each hit, or None.
         policy: thresholds for fits of the bench.
+        mixing: replaces `shrink` where hits are correlated: the matrix of the
+            components of all records that is removed, (n_records * n_kept) square.
     """
 
     campaign: Campaign
@@ -64,6 +66,7 @@ class LumpedResidual:
     short: dict[int, "LumpedResidual"]
     settled: Settled | None
     policy: Policy = field(default=STANDARD, kw_only=True)
+    mixing: FloatArray | None = field(default=None, kw_only=True)
 
     @property
     def expanded(self) -> bool:
@@ -163,6 +166,12 @@ class LumpedResidual:
         """Whiten model minus measurement, shape (n_records, n_channels, n_samples)."""
         r = difference / self.noise.sigma[:, :, None]
         self.mask(r)
+        if self.mixing is not None:
+            rows = r.reshape(r.shape[0], -1, 1)
+            along = self.basis @ rows
+            along = (self.mixing @ along.ravel()).reshape(along.shape)
+            rows -= self.basis.transpose(0, 2, 1) @ along
+            return rows.ravel()
         rows = r.reshape(r.shape[0], -1)
         # Record by record: the basis of one stays in the processor's cache.
         for row, basis, shrink in zip(

@@ -19,6 +19,8 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.lumped_residual import gated_excitation
 from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+from jointbench.analysis.gap.residuals.scatter_directions import scatter_directions
+from jointbench.analysis.gap.residuals.scatter_record import no_scatter
 from jointbench.analysis.gap.response.dynamic_stiffness import dynamic_stiffness, invert
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.response.predict_records import motion, undamped
@@ -53,6 +55,9 @@ def make_bench(
     sigma = np.sqrt(np.mean(campaign.response[:, :, :quiet] ** 2, axis=(0, 2)))
     floor = 1e-6 * np.abs(campaign.response).max()
     sigma = np.tile(np.maximum(sigma, floor), (records, 1))
+    directions = scatter_directions(
+        campaign.model, campaign.sample_rate, continuous=campaign.continuous
+    )
     bench = LumpedBench(
         campaign=campaign,
         entries=entries,
@@ -60,7 +65,7 @@ def make_bench(
         probes=candidates_of(PROBES, campaign.model),
         excitation=excitation,
         time_gate=time_gate,
-        noise=Noise(sigma, force_sigma, ()),
+        noise=Noise(sigma, force_sigma, no_scatter(directions, records)),
         basis=np.zeros((records, 1, channels * samples)),
         shrink=np.zeros((records, 1, 1)),
         scales={},
@@ -80,6 +85,8 @@ def force_time_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
         RESIDUALS.hit_noise_sd * sigma,
         RESIDUALS.hit_share * np.abs(force).max(axis=1, keepdims=True),
     )
+    # A contact lasts several samples; a single one is a peak of the noise.
+    strong[:, 1:-1] &= strong[:, :-2] | strong[:, 2:]
     where = np.flatnonzero(strong.any(axis=0))
     if where.size == 0 or np.ptp(where) > n // 2:
         return (0, n), 0.0

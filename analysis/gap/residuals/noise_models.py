@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Noise of the channels and of the force, and how it is whitened."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ import scipy.fft
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+from jointbench.analysis.gap.residuals.scatter_record import HitScatter
 
 FORCE_SHAPES = RESIDUALS.force_directions
 
@@ -19,12 +21,12 @@ class Noise:
     Attributes:
         sigma: white noise of each record and channel, shape (n_records, n_channels).
         force_sigma: white noise of the force [N].
-        scatter: relative sd from hit to hit, of gain and of joint stiffness [-].
+        scatter: of the hits, along each direction.
     """
 
     sigma: FloatArray
     force_sigma: float
-    scatter: tuple[float, ...]
+    scatter: HitScatter
 
 
 def high_band_sigma(residual: FloatArray) -> FloatArray:
@@ -91,3 +93,42 @@ def whitening_basis(columns: FloatArray) -> tuple[FloatArray, FloatArray]:
     s = np.sqrt(values[keep])
     basis = (vectors[:, keep] / s).T @ columns
     return basis, 1.0 - 1.0 / np.sqrt(1.0 + s**2)
+
+
+def whitening_of_all(
+    columns: Sequence[FloatArray], ways: FloatArray, sd: FloatArray, rho: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return the whitening of hits whose scatter is correlated.
+
+    Args:
+        columns: of force noise, over sigma, (any, n_rows) for each record.
+        ways: of scatter, over sigma, shape (n_records, n_columns, n_rows).
+        sd: of each hit and column, shape (n_records, n_columns).
+        rho: correlation between successive hits [-].
+
+    Returns:
+        Basis of each record, shape (n_records, n_kept, n_rows), and the matrix that is
+        to be subtracted from the components of all records, square, of size
+        n_records * n_kept.
+    """
+    parts = []
+    for own, way, s in zip(columns, ways, sd, strict=True):
+        spread = way * s[:, None]
+        basis, _ = whitening_basis(np.concatenate([own, spread]))
+        parts.append((basis, basis @ own.T, basis @ spread.T))
+    kept, (n, k) = max(len(p[0]) for p in parts), sd.shape
+    basis = np.zeros((n, kept, ways.shape[2]))
+    force = np.zeros((n * kept, n * kept))
+    spread = np.zeros((n, kept, k))
+    for i, (own, noise, hits) in enumerate(parts):
+        basis[i, : len(own)] = own
+        spread[i, : len(own)] = hits
+        at = slice(i * kept, i * kept + len(own))
+        force[at, at] = noise @ noise.T
+    order = np.arange(n)
+    between = rho ** np.abs(order[:, None] - order[None, :])
+    common = np.einsum("iak,jbk,ij->iajb", spread, spread, between, optimize=True)
+    covariance = force + common.reshape(n * kept, n * kept)
+    values, vectors = np.linalg.eigh(covariance)
+    lost = 1.0 - 1.0 / np.sqrt(1.0 + np.maximum(values, 0.0))
+    return basis, (vectors * lost) @ vectors.T

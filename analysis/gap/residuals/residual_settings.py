@@ -60,11 +60,117 @@ class ResidualSettings:
         "directions of the force noise that are whitened",
         "they hold most of unit noise in every row",
     )
-    largest_scatter: float = numerical(
-        0.004,
+    least_information: float = numerical(
+        1e-11,
+        "of the largest",
+        "information along a combination of columns below which it counts as none",
+        "delays of all channels together are the common delay",
+    )
+    scatter_gain: float = numerical(
+        4.0,
+        "-2 log likelihood",
+        "gain below which a direction has no scatter",
+        "closed form: a chance of 2.3 % for one direction",
+    )
+    scatter_iterations: int = numerical(
+        25,
+        "steps",
+        "most Newton steps to the likeliest sizes",
+        "6 to 12 are usual",
+    )
+    scatter_damping: float = numerical(
+        0.01,
         "-",
-        "largest relative scatter between hits that is tried",
-        "five times that of a poor operator",
+        "first damping of these steps",
+    )
+    most_damping: float = numerical(
+        1e3,
+        "-",
+        "damping at which they end",
+    )
+    longest_step: float = numerical(
+        4.0,
+        "-",
+        "longest step in the logarithm of a variance",
+    )
+    scatter_settled: float = numerical(
+        1e-2,
+        "-2 log likelihood",
+        "gain below which the sizes have converged",
+        "a hundredth of what a significant size gains",
+    )
+    limit_accuracy: float = numerical(
+        0.05,
+        "-",
+        "relative accuracy of a limit by repeats",
+    )
+    repeat_limit: float = numerical(
+        9.5,
+        "-2 log likelihood",
+        "loss beyond which repeats exclude a size",
+        "closed form: a chance of 0.2 % for one direction",
+    )
+    correlations: tuple[float, ...] = numerical(
+        (0.5, 0.8, 0.93),
+        "-",
+        "correlations between successive hits that are tried",
+        "the likelihood is flat between them for 8 to 24 hits",
+    )
+    correlation_gain: float = numerical(
+        2.0,
+        "-2 log likelihood",
+        "gain below which hits are not correlated",
+        "scatter correlated by 0.8 (docs/gap-scatter.md)",
+    )
+    most_correlated: int = numerical(
+        64,
+        "hits",
+        "number of hits above which no correlation between them is estimated",
+        "the matrices of all hits together: a second at 64",
+    )
+    most_systematic: int = numerical(
+        6,
+        "-",
+        "most trends and outstanding hits",
+        "a campaign with more has no common scatter",
+    )
+    systematic_tried: int = numerical(
+        3,
+        "-",
+        "trends or hits, best by first order, for which sizes are estimated again",
+    )
+    systematic_gain: float = numerical(
+        4.0,
+        "-2 log likelihood",
+        "gain by first order below which no trend or hit is tried",
+    )
+    outstanding_sd: float = numerical(
+        1.0,
+        "-, samples",
+        "prior sd of a hit that stands out",
+        "a hit that is 100 % off is not recorded",
+    )
+    least_outstanding: float = numerical(
+        0.005,
+        "-, samples",
+        "deviation below which no hit stands out",
+        "good hits scatter by as much",
+    )
+    least_hits: int = numerical(
+        6,
+        "hits",
+        "number of hits below which neither trends nor outstanding hits are looked for",
+    )
+    flat_samples: int = numerical(
+        4,
+        "samples",
+        "samples at the same largest value from which a channel counts as clipped",
+    )
+    delay_step: float = numerical(
+        1e-3,
+        "samples",
+        "difference step of the delay",
+        "its second order is 1e-3 of the first at half the sample rate",
     )
     smallest_scatter: float = numerical(
         2e-7,

@@ -9,7 +9,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.residuals.hit_scatter import gain_scatter, without_trend
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.residuals.noise_models import (
     channel_sigma,
@@ -124,49 +123,6 @@ def test_white_noise_is_estimated_from_the_top_of_the_spectrum() -> None:
     residual = 0.2 * rng.standard_normal((16, 2, 2048)) + tone
     sigma = channel_sigma(residual, np.ones((16, 2)))
     assert sigma == pytest.approx(0.2 * np.ones((16, 2)), rel=0.02)
-
-
-def test_scatter_is_found_when_repeats_differ_by_more_than_noise() -> None:
-    """A scatter of 0.15 % with noise of 0.01 % comes out within 40 %."""
-    rng = np.random.default_rng(8)
-    gains = 1e-4 * rng.standard_normal(16)
-    gains += np.repeat([1.5e-3, -1.5e-3], 8)
-    groups = [np.array([i, i + 8]) for i in range(8)]
-    found = gain_scatter(gains, np.full(16, 1e-8), groups)
-    assert found == pytest.approx(1.5e-3, rel=0.4)
-
-
-PRELOADS = np.log([2e3, 2e3, 2e3, 2e3, 2e3, 2e3, 8e3, 8e3])
-
-
-def test_a_scatter_below_that_of_any_joint_counts_as_zero() -> None:
-    """Three times the noise, but 3 parts in a million: residual, not scatter."""
-    rng = np.random.default_rng(7)
-    noise = rng.standard_normal(16)
-    groups = [np.arange(8), np.arange(8, 16)]
-    assert gain_scatter(3e-6 * noise, np.full(16, 1e-12), groups) == 0.0
-    assert gain_scatter(3e-4 * noise, np.full(16, 1e-8), groups) > 1e-4
-
-
-def test_a_trend_is_found_despite_a_record_with_little_information() -> None:
-    """Seven precise records determine the trend; the soft hit has little weight."""
-    sd = np.array([1e-4, 9e-6, 2e-6, 9e-6, 2e-5, 4e-6, 9e-6, 2e-5])
-    drawn = sd * np.random.default_rng(3).standard_normal(8)
-    values = drawn - 7e-5 * (PRELOADS - PRELOADS.mean())
-    left = without_trend(values, sd**2, PRELOADS[None, :])
-    assert np.polyfit(PRELOADS[1:], left[1:], 1)[0] == pytest.approx(0, abs=1e-5)
-
-
-def test_scatter_alone_is_rarely_a_trend() -> None:
-    """2,000 draws of pure scatter over unequal noise: about 3e-4 may be changed."""
-    rng = np.random.default_rng(4)
-    sd = np.array([1e-3, 1e-4, 2e-5, 1e-4, 2e-4, 4e-5, 1e-4, 2e-4])
-    changed = 0
-    for _ in range(2000):
-        values = rng.standard_normal(8) * np.sqrt(sd**2 + 1.5e-3**2)
-        left = without_trend(values, sd**2, PRELOADS[None, :])
-        changed += not np.array_equal(left, values)
-    assert changed <= 4
 
 
 def test_whitening_leaves_unit_noise_along_a_strong_direction() -> None:

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: MIT
+"""Directions in which hits scatter: derivatives of the model, record by record.
+
+On lumped bodies that move along one line, aim and tilt of the hammer change the gain of
+each channel (rocking adds to the motion at its sensor), so their direction is a gain of
+each channel and hit.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.model.effect import Term
+from jointbench.analysis.gap.residuals.lumped_residual import LumpedResidual
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+from jointbench.analysis.gap.residuals.scatter_record import (
+    CHANNEL_GAIN,
+    DELAY_OF_CHANNEL,
+    DELAY_OF_HIT,
+    FORCE_GAIN,
+    JOINT,
+    ScatterDirection,
+)
+from jointbench.analysis.gap.response.dynamic_stiffness import Action
+from jointbench.analysis.gap.response.predict_records import respond
+from jointbench.analysis.lumped.lumped_model import LumpedModel
+
+_DELAY = next(entry for entry in CATALOGUE if entry.name == "delay")
+
+
+def scatter_directions(
+    model: LumpedModel, sample_rate: float, *, continuous: bool = False
+) -> tuple[ScatterDirection, ...]:
+    """Return the directions of a model, in the order of their columns.
+
+    Args:
+        model: bodies, links and channels.
+        sample_rate: [Hz].
+        continuous: of records without hits: joints do not settle.
+    """
+    joints = [x.name for x in model.links if x.joint and not continuous]
+    found = [ScatterDirection(FORCE_GAIN, "-", (0,))]
+    for name in joints:
+        found.append(ScatterDirection(JOINT + name, "-", (len(found),)))
+    if continuous:
+        return tuple(found)
+    at, channels = len(found), len(model.channels)
+    gains = tuple(range(at, at + channels))
+    at += channels
+    step = 1.0 / sample_rate
+    return (
+        *found,
+        ScatterDirection(CHANNEL_GAIN, "-", gains),
+        ScatterDirection(DELAY_OF_HIT, "s", (at,), step),
+        ScatterDirection(
+            DELAY_OF_CHANNEL,
+            "s",
+            tuple(range(at + 1, at + 1 + channels)),
+            step,
+        ),
+    )
+
+
+def directions_of(bench: LumpedResidual) -> tuple[ScatterDirection, ...]:
+    """Return the directions in which the hits of a bench may scatter."""
+    campaign = bench.campaign
+    return scatter_directions(
+        campaign.model, campaign.sample_rate, continuous=campaign.continuous
+    )
+
+
+def scatter_columns(
+    bench: LumpedResidual,
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+) -> FloatArray:
+    """Return the columns over the noise, shape (n_records, n_columns, n_rows).
+
+    First the operator: the acting force differs slightly from the measured one. Then
+    each joint, whose stiffness settles differently in each hit; then gains and delays.
+
+    Args:
+        bench: measurement and model.
+        base: log(parameter / nominal), shape (n_base,).
+        terms: effects.
+        model: response there, shape (n_records, n_channels, n_samples).
+    """
+    columns = [_harder(bench, base, terms, model)]
+    n = len(bench.campaign.model.bodies)
+    for i, link in enumerate(bench.campaign.model.links):
+        if link.joint and not bench.campaign.continuous:
+            moved = base.copy()
+            moved[n + i] += RESIDUALS.scatter_step
+            columns.append(
+                (bench.response(moved, terms) - model) / RESIDUALS.scatter_step
+            )
+    if not bench.campaign.continuous:
+        columns += _each_channel(_louder(bench, base, terms, model))
+        late = _later(bench, base, terms, model)
+        columns += [late, *_each_channel(late)]
+    stacked = np.stack(columns, axis=1)
+    bench.mask(stacked)
+    stacked /= bench.noise.sigma[:, None, :, None]
+    return stacked.reshape(len(model), len(columns), -1)
+
+
+def _each_channel(rows: FloatArray) -> list[FloatArray]:
+    """Return one array for each channel, 0 in all others."""
+    found = []
+    for c in range(rows.shape[1]):
+        alone = np.zeros_like(rows)
+        alone[:, c] = rows[:, c]
+        found.append(alone)
+    return found
+
+
+def _harder(
+    bench: LumpedResidual,
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+) -> FloatArray:
+    """Return the change of the response per relative change of the force.
+
+    A clipped sample does not change.
+    """
+    entries = [a.entry for a in bench.actions(terms)]
+    if all(e.law is None and e.shape is None for e in entries):
+        return model.copy()
+    spectrum = bench.excitation.spectrum * (1.0 + RESIDUALS.scatter_step)
+    pushed = replace(bench, excitation=replace(bench.excitation, spectrum=spectrum))
+    return (pushed.response(base, terms) - model) / RESIDUALS.scatter_step
+
+
+def _louder(
+    bench: LumpedResidual,
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+) -> FloatArray:
+    """Return the change of each channel per relative change of its gain."""
+    if all(a.entry.shape is None for a in bench.actions(terms)):
+        return model
+    clipped = np.abs(model) >= np.abs(model).max(axis=2, keepdims=True)
+    kept = np.sum(clipped, axis=2, keepdims=True) < RESIDUALS.flat_samples
+    return np.where(clipped & ~kept, 0.0, model)
+
+
+def _later(
+    bench: LumpedResidual,
+    base: FloatArray,
+    terms: Sequence[Term],
+    model: FloatArray,
+) -> FloatArray:
+    """Return the change of the response per sample of delay, by the transform."""
+    step = RESIDUALS.delay_step
+    late = np.array([step / bench.campaign.sample_rate])
+    delay = Action(_DELAY, "channel", -1, late)
+    moved = respond(
+        bench.campaign.model,
+        bench.theta(base),
+        bench.excitation,
+        [*bench.actions(terms), delay],
+        oversampling=8,
+        measured=bench.campaign.response,
+    )
+    return (moved - model) / step

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""Sizes of scatter by restricted maximum likelihood, with limits from repeats."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
+from jointbench.analysis.gap.residuals.scatter_likelihood import (
+    CompressedRecords,
+    Weighed,
+    deviance,
+    weigh,
+    without_systematic,
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SizeProblem:
+    """Records whose sizes of scatter are wanted.
+
+    Attributes:
+        records: compressed along the columns.
+        direction: direction of each column, shape (n_columns,), 0-based; columns of one
+            direction share their size.
+        systematic: X, shape (n_records, n_columns, n_systematic).
+        highest: largest size of each direction, shape (n_directions,).
+        rho: correlation between successive hits [-].
+    """
+
+    records: CompressedRecords
+    direction: IntArray
+    systematic: FloatArray
+    highest: FloatArray
+    rho: float = 0.0
+
+    def weighed(self, size: FloatArray) -> Weighed:
+        """Weigh the records by the scatter of those sizes."""
+        each = np.broadcast_to(size[self.direction] ** 2, self.records.along.shape)
+        return weigh(self.records, each, self.rho)
+
+    def deviance(self, size: FloatArray, *, restricted: bool = True) -> float:
+        """Return -2 log likelihood of sizes, shape (n_directions,)."""
+        return deviance(self.weighed(size), self.systematic, restricted=restricted)
+
+
+def likeliest_sizes(problem: SizeProblem, start: FloatArray) -> FloatArray:
+    """Return the likeliest sizes; a size is 0 unless it is significant.
+
+    Args:
+        problem: records and systematic values.
+        start: sizes to start from, shape (n_directions,).
+    """
+    size = np.clip(start, RESIDUALS.smallest_scatter, problem.highest)
+    size, value = _descend(problem, size)
+    for direction in np.argsort(size).tolist():
+        if size[direction] == 0.0:
+            continue
+        without = size.copy()
+        without[direction] = 0.0
+        if problem.deviance(without) - value < RESIDUALS.scatter_gain:
+            size, value = _descend(problem, without)
+            continue
+        again, least = _descend(problem, without)
+        if least - value < RESIDUALS.scatter_gain:
+            size, value = again, least
+    return size
+
+
+def _descend(problem: SizeProblem, size: FloatArray) -> tuple[FloatArray, float]:
+    """Minimise the deviance over the logarithms of the sizes; sizes of 0 remain.
+
+    Source:
+        Gilmour, Thompson and Cullis 1995, Biometrics 51, 1440: Newton's method with the
+        average of observed and expected information.
+    """
+    free = np.flatnonzero(size > 0.0)
+    value = problem.deviance(size)
+    damping = RESIDUALS.scatter_damping
+    for _ in range(RESIDUALS.scatter_iterations if free.size else 0):
+        slope, curvature = _slopes(problem, size, free)
+        scale = np.diag(np.maximum(np.diag(curvature), RESIDUALS.scatter_settled))
+        moved = False
+        while not moved and damping < RESIDUALS.most_damping:
+            step = -np.linalg.solve(curvature + damping * scale, slope)
+            step = np.clip(step, -RESIDUALS.longest_step, RESIDUALS.longest_step)
+            tried = size.copy()
+            tried[free] = np.clip(
+                size[free] * np.exp(0.5 * step),
+                RESIDUALS.smallest_scatter,
+                problem.highest[free],
+            )
+            now = problem.deviance(tried)
+            moved = now < value
+            damping = damping / 5.0 if moved else 4.0 * damping + 0.1
+        if not moved:
+            break
+        gain, size, value = value - now, tried, now
+        if gain < RESIDUALS.scatter_settled:
+            break
+    return size, value
+
+
+def _slopes(
+    problem: SizeProblem, size: FloatArray, free: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return gradient and information of the deviance by the log variances."""
+    left, score = without_systematic(problem.weighed(size), problem.systematic)
+    n, k = problem.records.along.shape
+    blocks, values = left.reshape(n, k, n, k), score.reshape(n, k)
+    order = np.arange(n)
+    between = np.eye(n)
+    if problem.rho > 0.0:
+        between = problem.rho ** np.abs(order[:, None] - order[None, :])
+    traces = np.einsum("ikjk,ij->k", blocks, between)
+    along = between @ values
+    squares = np.sum(values * along, axis=0)
+    variance = size[free] ** 2
+    own = problem.direction[None, :] == free[:, None]
+    slope = variance * (own @ (traces - squares))
+    parts = variance[:, None, None] * np.where(own[:, None, :], along[None], 0.0)
+    flat = parts.reshape(free.size, n * k)
+    curvature = flat @ left @ flat.T
+    return slope, curvature + np.diag(np.abs(slope))
+
+
+def regressed_sizes(records: CompressedRecords, direction: IntArray) -> FloatArray:
+    """Return rough sizes, from a regression of each record on its columns."""
+    each = np.linalg.pinv(records.factor, rcond=1e-5)
+    u = np.einsum("ikl,il->ik", each, records.along)
+    count = int(direction.max()) + 1
+    return np.array([np.sqrt(np.mean(u[:, direction == d] ** 2)) for d in range(count)])
+
+
+def of_repeats(problem: SizeProblem, groups: Sequence[IntArray]) -> SizeProblem:
+    """Return the problem of repeated conditions alone, each with values of its own.
+
+    Repeats share every missing effect, so that no effect speaks through them.
+    """
+    rows = np.concatenate(groups)
+    condition = np.repeat(np.arange(len(groups)), [g.size for g in groups])
+    columns = problem.direction.size
+    own = np.zeros((rows.size, columns, len(groups), columns))
+    for column in range(columns):
+        own[np.arange(rows.size), column, condition, column] = 1.0
+    return SizeProblem(
+        problem.records.some(rows),
+        problem.direction,
+        own.reshape(rows.size, columns, -1),
+        np.full(problem.highest.size, np.inf),
+    )
+
+
+def repeat_limits(
+    repeats: SizeProblem, likeliest: FloatArray, size: FloatArray
+) -> FloatArray:
+    """Return the largest size of each direction that repeats do not exclude.
+
+    Args:
+        repeats: problem of the repeats alone.
+        likeliest: sizes by the repeats, shape (n_directions,).
+        size: wanted sizes, same shape: a limit above is not sought.
+    """
+    bound = repeats.deviance(likeliest) + RESIDUALS.repeat_limit
+    limits = np.full(size.size, np.inf)
+    for direction in np.flatnonzero(size > likeliest).tolist():
+        tried = likeliest.copy()
+        tried[direction] = size[direction]
+        if repeats.deviance(tried) < bound:
+            continue
+        low = np.log(max(likeliest[direction], RESIDUALS.smallest_scatter))
+        high = np.log(size[direction])
+        while high - low > RESIDUALS.limit_accuracy:
+            middle = 0.5 * (low + high)
+            tried[direction] = np.exp(middle)
+            if repeats.deviance(tried) < bound:
+                low = middle
+            else:
+                high = middle
+        limits[direction] = np.exp(low)
+    return limits
