@@ -18,7 +18,7 @@ from jointbench.analysis.gap.response.effect_hooks import (
     HitConditions,
     LumpedEffect,
 )
-from jointbench.analysis.gap.response.force_integration import CURVES
+from jointbench.analysis.gap.response.law_forces import CURVES
 
 PROBE_NAMES = frozenset(probe.effect.name for probe in PROBES)
 """Names that no effect may have, because the engine's probes use them."""

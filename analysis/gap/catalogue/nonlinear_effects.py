@@ -11,7 +11,7 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
-from jointbench.analysis.gap.response import force_integration as integration
+from jointbench.analysis.gap.response import law_forces as integration
 from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
 from jointbench.analysis.gap.response.slider_integration import slider_tables
 

@@ -11,7 +11,7 @@ from jointbench.analysis.gap.response.curve_integration import (
     tabulate,
 )
 from jointbench.analysis.gap.response.effect_hooks import Law
-from jointbench.analysis.gap.response.force_integration import CURVES
+from jointbench.analysis.gap.response.law_forces import CURVES
 
 
 def curve_law(

@@ -55,7 +55,7 @@ class Law:
     """A nonlinear force law for the time integration.
 
     Attributes:
-        kind: one of the constants of `force_integration`.
+        kind: one of the constants of `law_forces`.
         parameters: of the law, shape (n,).
         slips: of sliders [m]; empty for others.
         weights: of sliders [N/m].

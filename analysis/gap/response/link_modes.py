@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Modes of the compliance across a link, including the linear effects of a fit.
+"""Modes between the links of a lumped model, including the linear effects of a fit.
 
-The time integration computes the motion caused by a nonlinear link force. It needs the
-poles and residues of the link's compliance for each record, since a preload, a settling
-or an attached oscillator changes them.
+The time integration computes the motion caused by nonlinear link forces. It needs the
+poles of the model and its shapes across the links for each record, since a preload, a
+settling or an attached oscillator changes them.
 """
 
 from collections.abc import Sequence
@@ -14,6 +14,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.response.dynamic_stiffness import Action, state_of
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
+from jointbench.analysis.gap.response.port_forces import PortModes
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.lumped.lumped_matrices import incidence
 from jointbench.analysis.lumped.lumped_model import LumpedModel
@@ -40,47 +41,47 @@ def link_modes(
     model: LumpedModel,
     theta: FloatArray,
     conditions: HitConditions,
-    link: int,
+    links: Sequence[int],
     actions: Sequence[Action] = (),
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return poles and doubled residues of the compliance across a link.
+) -> PortModes:
+    """Return the modes of a model, with links as ports.
 
     Args:
         model: bodies and links.
         theta: masses, stiffnesses, dampings [SI], shape (n_base,).
         conditions: of each record.
-        link: index of the link.
+        links: index of the link at each port; a port's motion is its elongation.
         actions: effects; only those with a stiffness hook are used.
 
     Returns:
-        Poles [rad/s], one of each conjugate pair, and residues [m/N rad/s], doubled
-        for a pair; both of shape (n_modes, n_records).
+        Poles, one of each conjugate pair, and rows of the ports.
     """
     linear = [a for a in actions if a.entry.stiffness is not None]
     records = conditions.preload.size
     parts = _base_parts(model, theta, conditions)
     parts += [_part(model, theta, conditions, action) for action in linear]
     variants = max(p.polynomial.shape[0] for p in parts)
-    across = incidence(model)[link]
-    poles, right = np.linalg.eig(_state_matrix(theta[: across.size], parts, variants))
-    push = np.zeros((variants, poles.shape[1], 1), dtype=np.complex128)
-    inertia = _inertia(theta[: across.size], parts, variants)
-    n = across.size
-    push[:, n : 2 * n, 0] = np.linalg.solve(inertia, across[None, :, None])[..., 0]
-    left = np.linalg.solve(right, push)[..., 0]
-    residues = np.einsum("i,rij->rj", across, right[:, :n]) * left
-    poles, residues = _one_of_each_pair(poles, residues)
+    across = incidence(model)[list(links)]
+    n = across.shape[1]
+    poles, right = np.linalg.eig(_state_matrix(theta[:n], parts, variants))
+    push = np.zeros((variants, poles.shape[1], len(links)), dtype=np.complex128)
+    inertia = _inertia(theta[:n], parts, variants)
+    push[:, n : 2 * n] = np.linalg.solve(inertia, across.T[None])
+    left = np.linalg.solve(right, push)
+    shapes = np.einsum("pi,rij->rjp", across, right[:, :n])
+    poles, inputs, shapes = _one_of_each_pair(poles, left, shapes)
     repeat = records // variants
-    return (
-        np.repeat(poles, repeat, axis=0).T.copy(),
-        np.repeat(residues, repeat, axis=0).T.copy(),
+    poles, inputs, shapes = (
+        np.ascontiguousarray(np.moveaxis(np.repeat(x, repeat, axis=0), 0, -1))
+        for x in (poles, inputs, shapes)
     )
+    return PortModes(poles, inputs, shapes)
 
 
 def _one_of_each_pair(
-    poles: ComplexArray, residues: ComplexArray
-) -> tuple[ComplexArray, ComplexArray]:
-    """Keep upper poles, with doubled residues, and real poles; pad with zeros."""
+    poles: ComplexArray, inputs: ComplexArray, shapes: ComplexArray
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Keep upper poles, with doubled inputs, and real poles; pad with zeros."""
     size = np.abs(poles) + 1e-300
     upper = poles.imag > RESPONSE.real_pole_share * size
     weight = np.where(
@@ -90,7 +91,11 @@ def _one_of_each_pair(
     count = int((weight > 0).sum(axis=1).max())
     rows = np.arange(poles.shape[0])[:, None]
     kept = order[:, :count]
-    return poles[rows, kept], (residues * weight)[rows, kept]
+    return (
+        poles[rows, kept],
+        (inputs * weight[:, :, None])[rows, kept],
+        shapes[rows, kept],
+    )
 
 
 def _base_parts(

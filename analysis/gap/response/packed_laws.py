@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pack the force laws of a link into the arrays of the time integration."""
+"""Pack the force laws of ports into the arrays of the time integration."""
 
 from collections.abc import Sequence
 
@@ -7,7 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.response.effect_hooks import Law
-from jointbench.analysis.gap.response.force_integration import (
+from jointbench.analysis.gap.response.law_forces import (
     CURVES,
     SLIDERS,
     IntegrationLaws,
@@ -18,14 +18,20 @@ SLIDER_ROWS = 4
 CURVE_ROWS = 3
 
 
-def pack_laws(laws: Sequence[Law]) -> IntegrationLaws:
-    """Return laws that act together at one link in packed arrays."""
+def pack_laws(laws: Sequence[Law], ports: Sequence[int]) -> IntegrationLaws:
+    """Return laws that act together in packed arrays.
+
+    Args:
+        laws: in the order of their forces.
+        ports: port of each law.
+    """
     p = np.zeros((len(laws), PARAMETERS))
     for row, law in zip(p, laws, strict=True):
         row[: law.parameters.size] = law.parameters
     sizes = [law.slips.size for law in laws]
     return IntegrationLaws(
         kinds=np.array([law.kind for law in laws], dtype=np.int64),
+        ports=np.array(ports, dtype=np.int64),
         p=p,
         ends=np.cumsum([0, *sizes], dtype=np.int64),
         slips=np.concatenate([law.slips for law in laws]),

@@ -25,22 +25,16 @@ from jointbench.analysis.gap.response.dynamic_stiffness import (
     dynamic_stiffness,
     invert,
 )
-from jointbench.analysis.gap.response.effect_hooks import Law
 from jointbench.analysis.gap.response.excitation import Excitation
-from jointbench.analysis.gap.response.force_integration import (
-    COULOMB,
-    CURVES,
-    LANES,
-    QUADRATIC_DAMPING,
-    integrate_link_force,
-)
 from jointbench.analysis.gap.response.link_modes import link_modes
-from jointbench.analysis.gap.response.packed_laws import pack_laws
+from jointbench.analysis.gap.response.port_forces import (
+    PortLaw,
+    filled_lanes,
+    need_velocity,
+    port_forces,
+)
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.lumped.lumped_model import LumpedModel
-
-_MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
-"""Laws that depend on the velocity."""
 
 
 def respond(
@@ -92,14 +86,8 @@ def motion(
     bodies = range(len(model.bodies))
     variant = np.arange(excitation.hit.size) if h.shape[2] > 1 else 0
     linear = [h[i, excitation.hit, variant] * excitation.spectrum for i in bodies]
-    nonlinear = [a for a in actions if a.entry.law is not None]
-    for link in sorted({a.index for a in nonlinear}):
-        laws = [
-            a.entry.law(a.values) for a in nonlinear if a.index == link if a.entry.law
-        ]
-        link_force = _link_force(
-            model, theta, excitation, actions, linear, link, laws, oversampling
-        )
+    forces = _link_forces(model, theta, excitation, actions, linear, oversampling)
+    for link, link_force in forces.items():
         for i in bodies:
             linear[i] = linear[i] - _across(model, h, i, link) * link_force
     return linear
@@ -121,61 +109,72 @@ def _across(model: LumpedModel, h: ComplexArray, body: int, link: int) -> Comple
     return np.asarray(value)
 
 
-def _link_force(
+def _link_forces(
     model: LumpedModel,
     theta: FloatArray,
     excitation: Excitation,
     actions: Sequence[Action],
     linear: Sequence[ComplexArray],
-    link: int,
-    laws: Sequence[Law],
     oversampling: int,
-) -> ComplexArray:
-    """Return the damped spectrum of the nonlinear link force, anti-aliased.
+) -> dict[int, ComplexArray]:
+    """Return the damped spectra of all nonlinear link forces, anti-aliased, by link.
 
-    The error of the time integration is proportional to the square of its step, so a
-    solution with half as many steps gives an extrapolation to zero step; dry friction
-    at standstill is not smooth enough for that.
+    The links are the ports of one coupled time integration.
     """
-    first, second = model.ends(link)
-    x = linear[second]
-    if first >= 0:
-        x = x - linear[first]
-    modes = link_modes(model, theta, excitation.conditions, link, actions)
-    fine = _between_samples(excitation, x, laws, oversampling)
-    force = _integrated(excitation, fine, modes, laws, oversampling)
-    if oversampling >= RESPONSE.extrapolated_steps and all(
-        law.kind != COULOMB for law in laws
-    ):
-        coarse = fine[:, ::2]
-        half = _integrated(excitation, coarse, modes, laws, oversampling // 2)
-        force = (4.0 * force - half) / 3.0
-    return np.asarray(force * excitation.taper)
+    nonlinear = [a for a in actions if a.entry.law is not None]
+    links = sorted({a.index for a in nonlinear})
+    if not links:
+        return {}
+    laws = [
+        PortLaw(port, a.entry.law(a.values))
+        for port, link in enumerate(links)
+        for a in nonlinear
+        if a.index == link and a.entry.law is not None
+    ]
+    motions = []
+    for link in links:
+        first, second = model.ends(link)
+        motions.append(linear[second] - (linear[first] if first >= 0 else 0.0))
+    modes = link_modes(model, theta, excitation.conditions, links, actions)
+    fine = _between_samples(excitation, motions, laws, oversampling)
+    dt = 1 / (excitation.sample_rate * oversampling)
+    twice = oversampling >= RESPONSE.extrapolated_steps
+    force, half = port_forces(fine, modes, dt, laws, extrapolated=twice)
+    spectra = _spectra(excitation, force, oversampling)
+    if half is not None:
+        spectra = (4.0 * spectra - _spectra(excitation, half, oversampling // 2)) / 3.0
+    return dict(zip(links, spectra * excitation.taper, strict=True))
 
 
 def _between_samples(
     excitation: Excitation,
-    x: ComplexArray,
-    laws: Sequence[Law],
+    motions: Sequence[ComplexArray],
+    laws: Sequence[PortLaw],
     oversampling: int,
 ) -> FloatArray:
-    """Return motion and speed across a link, shape (2, n_steps, n_columns).
+    """Return motion and speed of ports, shape (2, n_ports, n_steps, n_columns).
 
     Only the motion is returned if no law depends on the speed. There is one column per
     record, and zero columns fill the lanes of the time integration.
+
+    Args:
+        excitation: of the records.
+        motions: damped spectra of each port, shape (n_records, n_lines).
+        laws: at the ports.
+        oversampling: steps per sample.
     """
     count = excitation.growth.size * oversampling
-    moving = any(law.kind in _MOVING for law in laws)
-    spectra = [x, x * excitation.s] if moving else [x]
     long = excitation.padded * oversampling
     gain = oversampling * _growth(excitation, oversampling)
-    records = len(x)
-    columns = -(-records // LANES) * LANES
-    motions = np.zeros((len(spectra), count, columns))
-    for motion_of, y in zip(motions, spectra, strict=True):
-        rows = scipy.fft.irfft(y, long, axis=1)[:, :count] * gain
-        motion_of[:, :records] = rows.T
-    return motions
+    records = excitation.hit.size
+    powers = (0, 1) if need_velocity(laws) else (0,)
+    out = np.zeros((len(powers), len(motions), count, filled_lanes(records)))
+    for power in powers:
+        for port, x in enumerate(motions):
+            y = x * excitation.s if power else x
+            rows = scipy.fft.irfft(y, long, axis=1)[:, :count] * gain
+            out[power, port, :, :records] = rows.T
+    return out
 
 
 def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
@@ -185,24 +184,14 @@ def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
     return np.asarray(np.exp(excitation.damping * dt * np.arange(count)))
 
 
-def _integrated(
-    excitation: Excitation,
-    motions: FloatArray,
-    modes: tuple[ComplexArray, ComplexArray],
-    laws: Sequence[Law],
-    oversampling: int,
+def _spectra(
+    excitation: Excitation, force: FloatArray, oversampling: int
 ) -> ComplexArray:
-    """Return the damped spectrum of the link force at one step size, up to Nyquist."""
-    motions = np.ascontiguousarray(motions)
-    dt = 1 / (excitation.sample_rate * oversampling)
-    packed = pack_laws(laws)
-    force = integrate_link_force(
-        motions[0], motions[-1], *modes, dt, packed, len(motions) > 1
-    )
+    """Return damped spectra of forces up to Nyquist, (n_ports, n_records, n_lines)."""
     records = excitation.hit.size
-    damped = force.T[:records] / _growth(excitation, oversampling)
-    spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=1)
-    return np.asarray(spectrum[:, : excitation.taper.size] / oversampling)
+    damped = np.moveaxis(force, 1, 2)[:, :records] / _growth(excitation, oversampling)
+    spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=2)
+    return np.asarray(spectrum[..., : excitation.taper.size] / oversampling)
 
 
 def _channels(

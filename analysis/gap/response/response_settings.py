@@ -84,6 +84,18 @@ class ResponseSettings:
         "steps from which the time integration is extrapolated to a step of zero",
         "convergence tests of the second method (tests/judges)",
     )
+    friction_sweeps: int = numerical(
+        30,
+        "sweeps",
+        "most sweeps over the ports in which dry friction is balanced within a step",
+        "two bodies of a quarter of each other's mass need 8",
+    )
+    friction_tolerance: float = numerical(
+        1e-7,
+        "of the friction force",
+        "change in a sweep below which dry friction is balanced",
+        "as the solution for one port",
+    )
     slider_table_points: int = numerical(
         4096,
         "points",

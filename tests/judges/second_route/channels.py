@@ -20,20 +20,23 @@ AT_SAMPLES = ("saturation", "hum")
 """Faults of the converter, after its filter; all others are before it."""
 
 
-def anti_alias(signal: FloatArray, excitation: Excitation) -> FloatArray:
+def anti_alias(
+    signal: FloatArray, excitation: Excitation, points: int = UPSAMPLING
+) -> FloatArray:
     """Take what lies above the pass band out of a signal between the samples.
 
     Args:
-        signal: `UPSAMPLING` points per sample from rest, shape (..., n_fine).
+        signal: from rest, shape (..., n_fine).
         excitation: its taper is the filter.
+        points: of the signal per sample.
 
     Returns:
         The same, shape (..., n_fine).
     """
     count = signal.shape[-1]
-    rate = excitation.sample_rate * UPSAMPLING
+    rate = excitation.sample_rate * points
     growth = np.exp(excitation.damping * np.arange(count) / rate)
-    long, lines = excitation.padded * UPSAMPLING, excitation.taper.size
+    long, lines = excitation.padded * points, excitation.taper.size
     spectrum = scipy.fft.rfft(signal / growth, long, axis=-1)
     spectrum[..., :lines] *= excitation.taper
     spectrum[..., lines:] = 0.0

@@ -17,7 +17,7 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.response.curve_integration import GRADE
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import Law
-from jointbench.analysis.gap.response.force_integration import CURVES
+from jointbench.analysis.gap.response.law_forces import CURVES
 
 SLIDERS_OF_IWAN = 14
 """The catalogue's bank: equal steps of slip displacement, a slider in the mean of

@@ -30,7 +30,7 @@ class Motion:
 
     Attributes:
         derivatives: displacement [m], velocity [m/s] and acceleration [m/s^2], shape
-            (3, n_records, n_bodies, n_fine), `UPSAMPLING` points per sample.
+            (3, n_records, n_bodies, n_fine), `UPSAMPLING` points per sample or more.
         evaluations: of the equations of motion.
     """
 
@@ -38,12 +38,15 @@ class Motion:
     evaluations: int
 
 
-def force_between_samples(excitation: Excitation, beyond: int) -> CubicSpline:
+def force_between_samples(
+    excitation: Excitation, beyond: int, points: int = UPSAMPLING
+) -> CubicSpline:
     """Return the band-limited force, a spline through its up-sampled points.
 
     Args:
         excitation: holds the forces, zero outside their hits.
         beyond: samples of silence after the record.
+        points: per sample.
 
     Returns:
         Function of time [s] with values of shape (..., n_records).
@@ -51,14 +54,19 @@ def force_between_samples(excitation: Excitation, beyond: int) -> CubicSpline:
     n = excitation.growth.size
     samples = undamped(excitation.spectrum, excitation)
     spectrum = scipy.fft.rfft(samples, 2 * n, axis=1)
-    fine = scipy.fft.irfft(spectrum, 2 * n * UPSAMPLING, axis=1) * UPSAMPLING
-    count = (n + beyond) * UPSAMPLING + 1
-    time = np.arange(count) / (excitation.sample_rate * UPSAMPLING)
+    fine = scipy.fft.irfft(spectrum, 2 * n * points, axis=1) * points
+    count = (n + beyond) * points + 1
+    time = np.arange(count) / (excitation.sample_rate * points)
     return CubicSpline(time, fine[:, :count].T)
 
 
 def integrate_motion(
-    system: System, excitation: Excitation, *, beyond: int = 0, tolerance: float
+    system: System,
+    excitation: Excitation,
+    *,
+    beyond: int = 0,
+    tolerance: float,
+    points: int = UPSAMPLING,
 ) -> Motion:
     """Integrate all records from rest.
 
@@ -67,14 +75,15 @@ def integrate_motion(
         excitation: forces.
         beyond: samples to continue after the record.
         tolerance: local error over the size of the state [-].
+        points: per sample, at least `UPSAMPLING`; more where a force jumps.
 
     Raises:
         BadData: the integrator gave up, as it does where a law runs away.
     """
     records, width, n = len(system.mass), system.width, system.mass.shape[1]
-    push = force_between_samples(excitation, beyond)
-    count = (excitation.growth.size + beyond) * UPSAMPLING
-    time = np.arange(count) / (excitation.sample_rate * UPSAMPLING)
+    push = force_between_samples(excitation, beyond, points)
+    count = (excitation.growth.size + beyond) * points
+    time = np.arange(count) / (excitation.sample_rate * points)
 
     def rate(t: float, y: FloatArray) -> FloatArray:
         return system.rates(push(t), y.reshape(records, width)).ravel()

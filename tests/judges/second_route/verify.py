@@ -65,6 +65,7 @@ def second_response(
     *,
     measured: FloatArray | None = None,
     tolerance: float = TOLERANCE,
+    points: int = UPSAMPLING,
 ) -> FloatArray:
     """Predict the channels by the second route; arguments as those of `respond`.
 
@@ -75,6 +76,7 @@ def second_response(
         actions: effects switched on.
         measured: from which hum takes its phase, shape as the result.
         tolerance: local error over the size of the state [-].
+        points: per sample, a multiple of `UPSAMPLING`; more where a force jumps.
 
     Returns:
         Response in the model's output, shape (n_records, n_channels, n_samples).
@@ -85,10 +87,13 @@ def second_response(
     """
     bent = [a for a in actions if a.entry.law is not None]
     straight = [a for a in actions if a.entry.law is None]
-    fine = _fine(model, theta, excitation, straight, tolerance)
+    every = points // UPSAMPLING
+    linear = _fine(model, theta, excitation, straight, tolerance, points)
+    fine = linear[..., ::every]
     if bent:
-        whole = _fine(model, theta, excitation, actions, tolerance)
-        fine = fine + anti_alias(whole - fine, excitation)
+        whole = _fine(model, theta, excitation, actions, tolerance, points)
+        bend = anti_alias(whole - linear, excitation, points)
+        fine = fine + bend[..., ::every]
     fine = through_channels(fine, actions, excitation.sample_rate)
     samples = fine[..., : excitation.growth.size * UPSAMPLING : UPSAMPLING]
     return through_converter(samples, actions, excitation.sample_rate, measured)
@@ -100,10 +105,13 @@ def _fine(
     excitation: Excitation,
     actions: Sequence[Action],
     tolerance: float,
+    points: int = UPSAMPLING,
 ) -> FloatArray:
     """Return what the bodies under the channels do, between the samples as well."""
     system = make_system(model, theta, excitation, actions)
-    motion = integrate_motion(system, excitation, beyond=BEYOND, tolerance=tolerance)
+    motion = integrate_motion(
+        system, excitation, beyond=BEYOND, tolerance=tolerance, points=points
+    )
     rows = [model.index(channel.body) for channel in model.channels]
     return np.asarray(motion.derivatives[int(model.output)][:, rows])
 

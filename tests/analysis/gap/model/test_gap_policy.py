@@ -30,6 +30,8 @@ NO_SETTINGS = {
     "COULOMB": "the same",
     "QUADRATIC_DAMPING": "the same",
     "CURVES": "the same",
+    "ONE_PORT": "version of the compiled loop",
+    "SEVERAL_PORTS": "the same",
     "PARAMETERS": "layout of packed laws",
     "SLIDER_ROWS": "the same",
     "CURVE_ROWS": "the same",

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""Compiled force laws of ports that have no memory, for many records side by side.
+
+The state of the records is in two plain arrays, in blocks of one value per record
+(lane); the constants here are the offsets of these blocks. With one array per quantity,
+a step of the integration takes twice as long.
+"""
+
+import math
+from typing import NamedTuple
+
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.compiled import compiled
+from jointbench.analysis.gap.response.curve_integration import curve_force
+from jointbench.analysis.gap.response.response_settings import RESPONSE
+
+POLYNOMIAL = 0
+ONE_SIDED = 1
+SLIDERS = 2
+COULOMB = 3
+QUADRATIC_DAMPING = 4
+CURVES = 5
+MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
+"""Laws that depend on the velocity."""
+LANES = RESPONSE.lanes
+
+FORCE, GUESS, BEFORE, MOTION, SPEED, SLOPE = (i * LANES for i in range(6))
+"""Offsets within a port: force of its laws, its estimate, the last motion, the motion,
+its rate, and the change of that rate per unit force of the port within a step."""
+PORT = 6 * LANES
+OWN, EARLIER, EXTRAPOLATED = (i * LANES for i in range(3))
+"""Offsets within a law: its force, that of the previous step, and the extrapolation."""
+LAW = 3 * LANES
+
+
+class IntegrationLaws(NamedTuple):
+    """All force laws at all ports in the arrays of the time integration.
+
+    Common arrays are used because passing each law as an array or a view would take
+    longer at every step than its evaluation.
+
+    Attributes:
+        kinds: which laws, shape (n_laws,).
+        ports: port of each law, same shape.
+        p: their parameters, shape (n_laws, 2).
+        ends: first slider of each law, and the end of the last, shape (n_laws + 1,).
+        slips: slip displacements of the sliders [m], ascending within a law, shape
+            (n_sliders,).
+        weights: stiffness of each slider [N/m], same shape.
+        tables: of sliders, four rows per law, shape (4 n_laws, n_points).
+        tops: properties of these tables, see `slide`, shape (n_laws, 7).
+        curves: of curve laws, three rows per law, shape (3 n_laws, n_points).
+    """
+
+    kinds: IntArray
+    ports: IntArray
+    p: FloatArray
+    ends: IntArray
+    slips: FloatArray
+    weights: FloatArray
+    tables: FloatArray
+    tops: FloatArray
+    curves: FloatArray
+
+
+@compiled()
+def rub(limit: float, width: float, v: float, slope: float, guess: float) -> float:
+    """Solve f = limit tanh((v - slope (f - guess)) / width), by safe Newton steps."""
+    low, high = -abs(limit), abs(limit)
+    force = limit * math.tanh(v / width)
+    for _ in range(12):
+        t = math.tanh((v - slope * (force - guess)) / width)
+        excess = force - limit * t
+        if excess > 0.0:
+            high = force
+        else:
+            low = force
+        step = excess / (1.0 + limit * slope * (1.0 - t * t) / width)
+        trial = force - step
+        if not low <= trial <= high:
+            trial = 0.5 * (low + high)
+        if abs(trial - force) < 1e-7 * (abs(limit) + 1e-300):
+            return trial
+        force = trial
+    return force
+
+
+@compiled(fastmath=True, inline="always")
+def force_without_memory(
+    a: int,
+    at: int,
+    w: FloatArray,
+    f: FloatArray,
+    kinds: IntArray,
+    p: FloatArray,
+    curves: FloatArray,
+) -> None:
+    """Write the force of law `a`, other than a slider law, in every lane.
+
+    Args:
+        a: index of the law.
+        at: offset of its port in `w`.
+        w: state of the lanes, with motions and speeds.
+        f: forces of the lanes; changed in place.
+        kinds: of all laws.
+        p: parameters of all laws.
+        curves: tables of all laws given by curves.
+    """
+    kind, first, second, own = kinds[a], p[a, 0], p[a, 1], a * LAW + OWN
+    if kind == POLYNOMIAL:
+        for k in range(LANES):
+            r = w[at + MOTION + k]
+            f[own + k] = r * r * (first + second * r)
+    elif kind == ONE_SIDED:
+        for k in range(LANES):
+            f[own + k] = first * max(w[at + MOTION + k] - second, 0.0)
+    elif kind == QUADRATIC_DAMPING:
+        for k in range(LANES):
+            v = w[at + SPEED + k]
+            f[own + k] = first * v * abs(v)
+    elif kind == COULOMB:
+        for k in range(LANES):
+            guess = f[a * LAW + EXTRAPOLATED + k]
+            speed, slope = w[at + SPEED + k], w[at + SLOPE + k]
+            f[own + k] = rub(first, second, speed, slope, guess)
+    elif kind == CURVES:
+        for k in range(LANES):
+            r, v = w[at + MOTION + k], w[at + SPEED + k]
+            f[own + k] = curve_force(curves, 3 * a, first, second, r, v)
