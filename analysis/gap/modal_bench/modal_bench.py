@@ -34,7 +34,8 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resol
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import channel_sigma
 from jointbench.analysis.gap.residuals.residual_views import slice_views
-from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
+from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
+from jointbench.analysis.gap.response.port_forces import PortLaw
 from jointbench.analysis.gap.response.search_effort import spend
 
 
@@ -156,16 +157,16 @@ class ModalBench:
             self.given.sample_rate,
         )
 
-    def _laws(self, terms: Sequence[Term]) -> dict[int, list[Law]]:
-        """Return the laws of terms by the index of their port."""
+    def _laws(self, terms: Sequence[Term]) -> list[PortLaw]:
+        """Return the laws of terms, each with the index of its port."""
         entries = {e.effect.name: e for e in (*self.entries, *PROBES)}
         ports = [port.name for port in self.given.ports]
-        found: dict[int, list[Law]] = {}
+        found = []
         for term in terms:
             law = entries[term.candidate.effect.name].law
             if law is not None:
-                index = ports.index(term.candidate.site.name)
-                found.setdefault(index, []).append(law(values_of(self, term)))
+                port = ports.index(term.candidate.site.name)
+                found.append(PortLaw(port, law(values_of(self, term))))
         return found
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Response of a modal base with laws at its ports, from rest, to measured forces."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,9 +11,10 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.modal_bench.level_records import LevelRecord, RecordSet
 from jointbench.analysis.gap.modal_bench.modal_base import Modes, port_shapes
 from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
-from jointbench.analysis.gap.modal_bench.port_force import port_force
-from jointbench.analysis.gap.response.effect_hooks import HitConditions, Law
+from jointbench.analysis.gap.modal_bench.port_force import force_spectra
+from jointbench.analysis.gap.response.effect_hooks import HitConditions
 from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation
+from jointbench.analysis.gap.response.port_forces import PortLaw, PortModes
 from jointbench.analysis.lumped.lumped_model import GROUND
 
 
@@ -96,7 +97,7 @@ def respond_modes(
     given: RecordSet,
     modes: Modes,
     data: Shaken,
-    laws: Mapping[int, Sequence[Law]],
+    laws: Sequence[PortLaw],
     *,
     oversampling: int,
     measured_motion: bool = False,
@@ -107,7 +108,7 @@ def respond_modes(
         given: the set, with its points and ports.
         modes: of the base.
         data: the transformed records.
-        laws: that act at each port, by its index.
+        laws: that act at the ports.
         oversampling: steps of the time integration per sample.
         measured_motion: whether the laws follow the measured motion of their port
             instead of the predicted one; the response is then smooth in the parameters
@@ -120,16 +121,19 @@ def respond_modes(
     receptance = modal_receptance(modes, s)
     push = modes.shapes[:, [points.index(p) for p in given.inputs]]
     modal = np.einsum("mi,ril->rml", push, data.spectrum) * receptance
-    for index, own in laws.items():
-        across = port_shapes(modes, points, given.ports[index])
-        motion = np.einsum("m,rml->rl", across, modal)
-        poles, residues = port_compliance(modes, across)
+    if laws:
+        ports = sorted({x.port for x in laws})
+        across = port_rows(given, modes)[:, ports]
+        motion = np.einsum("mp,rml->prl", across, modal)
+        between = port_modes(modes, across, len(data.records))
         if measured_motion:
-            motion, residues = port_motion(given, data, index), 0.0 * residues
-        force = port_force(
-            data.excitation, motion, (poles, residues), own, oversampling
+            motion = np.stack([port_motion(given, data, q) for q in ports])
+            between = replace(between, inputs=0.0 * between.inputs)
+        renumbered = [PortLaw(ports.index(x.port), x.law) for x in laws]
+        forces = force_spectra(
+            data.excitation, motion, between, renumbered, oversampling
         )
-        modal = modal - across[None, :, None] * receptance * force[:, None, :]
+        modal = modal - np.einsum("mp,prl->rml", across, forces) * receptance
     seen = modes.shapes[:, [points.index(p) for p in given.sensors]]
     spectra = np.einsum("ms,rml->rsl", seen, modal)
     if given.output:
@@ -154,10 +158,25 @@ def modal_receptance(modes: Modes, s: ComplexArray) -> ComplexArray:
     return np.asarray(1.0 / (s * s + 2.0 * modes.damping[:, None] * omega * s + omega**2))
 
 
-def port_compliance(
-    modes: Modes, across: FloatArray
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return poles and doubled residues of a port's compliance, (n_modes,) each."""
+def port_rows(given: RecordSet, modes: Modes) -> FloatArray:
+    """Return the relative motion at every port in each mode, (n_modes, n_ports)."""
+    rows = [port_shapes(modes, given.points, port) for port in given.ports]
+    return np.stack(rows, axis=1)
+
+
+def port_modes(modes: Modes, across: FloatArray, records: int) -> PortModes:
+    """Return the modes between ports, for a number of records.
+
+    Args:
+        modes: of unit mass.
+        across: motion of the ports, shape (n_modes, n_ports).
+        records: number of records.
+    """
     damped = modes.omega * np.sqrt(1.0 - np.minimum(modes.damping, 0.99) ** 2)
-    poles = -modes.damping * modes.omega + 1j * damped
-    return np.asarray(poles), np.asarray(across**2 / (1j * damped))
+    poles = np.asarray(-modes.damping * modes.omega + 1j * damped)
+    inputs = across / (1j * damped[:, None])
+    return PortModes(
+        np.tile(poles[:, None], (1, records)),
+        np.tile(inputs[:, :, None], (1, 1, records)),
+        np.tile(across[:, :, None] + 0j, (1, 1, records)),
+    )

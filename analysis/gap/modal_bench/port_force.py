@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Force of the laws at a port, integrated along the motion of a modal base."""
+"""Spectra of the nonlinear forces at the ports of a modal base."""
 
 from collections.abc import Sequence
 
@@ -7,90 +7,83 @@ import numpy as np
 import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.analysis.gap.response.effect_hooks import Law
 from jointbench.analysis.gap.response.excitation import Excitation
-from jointbench.analysis.gap.response.force_integration import (
-    COULOMB,
-    CURVES,
-    LANES,
-    QUADRATIC_DAMPING,
-    integrate_link_force,
+from jointbench.analysis.gap.response.port_forces import (
+    PortLaw,
+    PortModes,
+    filled_lanes,
+    need_velocity,
+    port_forces,
 )
-from jointbench.analysis.gap.response.packed_laws import pack_laws
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 
-_MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES)
 
-
-def port_force(
+def force_spectra(
     excitation: Excitation,
     motion: ComplexArray,
-    compliance: tuple[ComplexArray, ComplexArray],
-    laws: Sequence[Law],
+    modes: PortModes,
+    laws: Sequence[PortLaw],
     oversampling: int,
 ) -> ComplexArray:
-    """Return the damped spectrum of the force of all laws at a port.
+    """Return damped spectra of the forces at the ports, up to the pass band.
 
     Args:
         excitation: time axis and Laplace line of the transforms.
-        motion: linear motion across the port [m s], damped spectrum, shape
-            (n_records, n_lines).
-        compliance: poles [rad/s] and doubled residues [m/N rad/s] of the port's own
-            compliance, each of shape (n_modes,).
-        laws: that act there together.
+        motion: of the ports without the laws [m s], damped spectra, shape
+            (n_ports, n_records, n_lines).
+        modes: between the ports.
+        laws: at least one for each port.
         oversampling: steps of the time integration per sample.
+
+    Returns:
+        Shape of the motion; not finite if the motion diverges.
     """
-    fine = _between_samples(excitation, motion, laws, oversampling)
-    force = _integrated(excitation, fine, compliance, laws, oversampling)
-    if oversampling >= RESPONSE.extrapolated_steps and all(
-        law.kind != COULOMB for law in laws
-    ):
-        half = _integrated(
-            excitation, fine[:, ::2], compliance, laws, oversampling // 2
+    fine = _between_samples(excitation, motion, need_velocity(laws), oversampling)
+    try:
+        forces, halved = port_forces(
+            fine,
+            modes,
+            1.0 / (excitation.sample_rate * oversampling),
+            laws,
+            extrapolated=oversampling >= RESPONSE.extrapolated_steps,
         )
-        force = (4.0 * force - half) / 3.0
-    return np.asarray(force * excitation.taper)
+    except ZeroDivisionError:  # compiled code reports an overflow as such
+        return np.full(motion.shape, np.nan + 0j)
+    records = motion.shape[1]
+    spectra = _spectra(excitation, forces, records, oversampling)
+    if halved is not None:
+        coarse = _spectra(excitation, halved, records, oversampling // 2)
+        spectra = (4.0 * spectra - coarse) / 3.0
+    return np.asarray(spectra * excitation.taper)
 
 
 def _between_samples(
-    excitation: Excitation, x: ComplexArray, laws: Sequence[Law], oversampling: int
+    excitation: Excitation, motion: ComplexArray, moving: bool, oversampling: int
 ) -> FloatArray:
-    """Return motion, and speed if a law needs it, (1 or 2, n_steps, n_columns)."""
+    """Return motions, and speeds if needed, (1 or 2, n_ports, n_steps, n_columns)."""
+    ports, records, _ = motion.shape
     count = excitation.growth.size * oversampling
-    moving = any(law.kind in _MOVING for law in laws)
-    spectra = [x, x * excitation.s] if moving else [x]
+    spectra = [motion, motion * excitation.s] if moving else [motion]
     gain = oversampling * _growth(excitation, oversampling)
-    motions = np.zeros((len(spectra), count, -(-len(x) // LANES) * LANES))
-    for motion_of, y in zip(motions, spectra, strict=True):
-        rows = scipy.fft.irfft(y, excitation.padded * oversampling, axis=1)
-        motion_of[:, : len(x)] = (rows[:, :count] * gain).T
-    return motions
+    rows = np.zeros((len(spectra), ports, count, filled_lanes(records)))
+    for row, y in zip(rows, spectra, strict=True):
+        x = scipy.fft.irfft(y, excitation.padded * oversampling, axis=-1)
+        row[:, :, :records] = (x[..., :count] * gain).transpose(0, 2, 1)
+    return rows
 
 
 def _growth(excitation: Excitation, oversampling: int) -> FloatArray:
+    """Return exp(a t) at `oversampling` steps per sample."""
     count = excitation.growth.size * oversampling
-    dt = 1 / (excitation.sample_rate * oversampling)
+    dt = 1.0 / (excitation.sample_rate * oversampling)
     return np.asarray(np.exp(excitation.damping * dt * np.arange(count)))
 
 
-def _integrated(
-    excitation: Excitation,
-    motions: FloatArray,
-    compliance: tuple[ComplexArray, ComplexArray],
-    laws: Sequence[Law],
-    oversampling: int,
+def _spectra(
+    excitation: Excitation, forces: FloatArray, records: int, oversampling: int
 ) -> ComplexArray:
-    motions = np.ascontiguousarray(motions)
-    records = excitation.hit.size
-    poles, residues = (np.tile(c[:, None], (1, records)) for c in compliance)
-    dt = 1 / (excitation.sample_rate * oversampling)
-    packed = pack_laws(laws)
-    try:
-        force = integrate_link_force(
-            motions[0], motions[-1], poles, residues, dt, packed, len(motions) > 1
-        )
-    except ZeroDivisionError:  # compiled code reports an overflow as such
-        return np.full((records, excitation.taper.size), np.nan + 0j)
-    damped = force.T[:records] / _growth(excitation, oversampling)
-    spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=1)
-    return np.asarray(spectrum[:, : excitation.taper.size] / oversampling)
+    """Return damped spectra of forces in time, (n_ports, n_records, n_lines)."""
+    rows = forces[:, :, :records].transpose(0, 2, 1)
+    damped = rows / _growth(excitation, oversampling)
+    spectrum = scipy.fft.rfft(damped, excitation.padded * oversampling, axis=-1)
+    return np.asarray(spectrum[..., : excitation.taper.size] / oversampling)
