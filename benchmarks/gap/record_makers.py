@@ -71,9 +71,7 @@ def finer(force: Array, *, periodic: bool = True) -> Array:
     if not periodic:
         mirrored = np.concatenate([force, -force[..., ::-1]], axis=-1)
         return finer(mirrored)[..., : n * FINE]
-    return np.asarray(
-        np.fft.irfft(np.fft.rfft(force), n * FINE) * FINE
-    )
+    return np.asarray(np.fft.irfft(np.fft.rfft(force), n * FINE) * FINE)
 
 
 def simulate(structure: Structure, fine: Array, rate: float, periods: int = 1) -> Array:
@@ -121,7 +119,9 @@ def _slope(x, v, z, push, k, c, inward, across, springs, sliders, a, dz):  # typ
         stiffness, turned, along, power = sliders[j]
         size = abs(z[j])
         sign = 1.0 if z[j] > 0.0 else -1.0
-        dz[j] = stiffness * rate - size**power * (turned * abs(rate) * sign + along * rate)
+        dz[j] = stiffness * rate - size**power * (
+            turned * abs(rate) * sign + along * rate
+        )
     for i in range(n):
         total = push[i] - inward[i] * force
         for m in range(n):
@@ -151,8 +151,18 @@ def _march(k, c, push, inward, across, springs, sliders, half, periods):  # type
             w[stage] = vt
             at = (i + (stage + 1) // 2) % count
             _slope(
-                xt, vt, zt, push[:, at], k, c, inward, across, springs, sliders,
-                a[stage], dz[stage],
+                xt,
+                vt,
+                zt,
+                push[:, at],
+                k,
+                c,
+                inward,
+                across,
+                springs,
+                sliders,
+                a[stage],
+                dz[stage],
             )
         if i % FINE == 0:
             s = i // FINE

@@ -13,9 +13,9 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.gap.modal_bench.level_records import RecordSet
+from jointbench.analysis.gap.modal_bench.level_records import LevelRecord, RecordSet
 from jointbench.analysis.gap.modal_bench.modal_base import ModalBase, Modes
-from jointbench.analysis.gap.modal_bench.modal_bench import make_modal_bench
+from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench, make_modal_bench
 from jointbench.analysis.gap.modal_bench.modal_response import modal_receptance
 from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.modal_bench.record_frf import record_frf
@@ -75,15 +75,41 @@ def base_from_records(given: RecordSet, wanted: BaseRequest) -> tuple[ModalBase,
         modes.frequency.size,
     )
     sd = np.hypot(MODAL.widening * np.minimum(sd, MODAL.start_sd), floor)
-    return ModalBase(given.points, modes, sd), widened**2
+    base = ModalBase(given.points, modes, sd)
+    return replace(base, sd=np.hypot(sd, _change(given, base))), widened**2
 
 
-def _fitted(given: RecordSet, modes: Modes):  # type: ignore[no-untyped-def]
-    """Fit modes to the lowest level, with its noise estimated twice."""
+def _change(given: RecordSet, base: ModalBase) -> FloatArray:
+    """Return the change of the base from the lowest level to the next, (n_base,).
+
+    A law adds to the lowest level as well, by about as much as to the step to the next:
+    a base of the lowest level may be off by so much.
+    """
+    above = [r for r in given.training if r not in given.lowest]
+    if not above:
+        return np.zeros(base.sd.size)
+    level = min(above, key=lambda r: r.rms).level
+    records = tuple(r for r in above if r.level == level)
+    _, fit = _refined(
+        given, replace(base, sd=np.full(base.sd.size, MODAL.start_sd)), records
+    )
+    return np.minimum(np.abs(fit.base), MODAL.start_sd)
+
+
+def _fitted(given: RecordSet, modes: Modes) -> tuple[ModalBench, Fit]:
+    """Fit modes to the lowest level, with uninformative priors."""
     count = modes.frequency.size * (2 + len(given.points))
     base = ModalBase(given.points, modes, np.full(count, MODAL.start_sd))
-    bench = make_modal_bench(given, base, records=given.lowest)
-    fit = minimise(make_problem(bench, ()), np.zeros(count), iterations=MODAL.base_iterations)
+    return _refined(given, base, given.lowest)
+
+
+def _refined(
+    given: RecordSet, base: ModalBase, records: tuple[LevelRecord, ...]
+) -> tuple[ModalBench, Fit]:
+    """Fit a base to some records, with their noise estimated twice."""
+    bench = make_modal_bench(given, base, records=records)
+    x = np.zeros(base.sd.size)
+    fit = minimise(make_problem(bench, ()), x, iterations=MODAL.base_iterations)
     for _ in range(2):
         bench = bench.refine(fit.base, ())
         fit = minimise(make_problem(bench, ()), fit.x, iterations=MODAL.base_iterations)

@@ -39,6 +39,7 @@ class LevelRecord:
             the record is unknown.
         noise: of each sensor, shape (n_sensors,), if periods or a statement give it.
         held_out: whether the record is used for validation alone.
+        excitation: random, multisine or sweep; empty if not stated.
     """
 
     name: str
@@ -48,12 +49,15 @@ class LevelRecord:
     lead: int = 0
     noise: FloatArray | None = None
     held_out: bool = False
+    excitation: str = ""
 
     def __post_init__(self) -> None:
         """Check the rows once and make them read-only."""
         require_shape("force", self.force, (None, None))
         require_shape("response", self.response, (None, self.force.shape[1]))
-        if not np.all(np.isfinite(self.force)) or not np.all(np.isfinite(self.response)):
+        if not np.all(np.isfinite(self.force)) or not np.all(
+            np.isfinite(self.response)
+        ):
             raise BadData(
                 f"record {self.name!r} holds NaN or infinite samples; cut them out"
             )

@@ -243,7 +243,8 @@ def noise_of(
 def _blocks(given: RecordSet, data: Shaken) -> Blocks:
     records, sensors, samples = data.measured.shape
     labels = tuple(
-        {"level": record.level, "order": f"{k}"} for k, record in enumerate(data.records)
+        {"level": r.level, "excitation": r.excitation or "any", "order": f"{k}"}
+        for k, r in enumerate(data.records)
     )
     return Blocks(
         np.repeat(np.arange(records), sensors * samples),

@@ -155,7 +155,9 @@ def port_motion(given: RecordSet, data: Shaken, index: int) -> ComplexArray:
 def modal_receptance(modes: Modes, s: ComplexArray) -> ComplexArray:
     """Return the receptance of each mode of unit mass, shape (n_modes, n_lines)."""
     omega = modes.omega[:, None]
-    return np.asarray(1.0 / (s * s + 2.0 * modes.damping[:, None] * omega * s + omega**2))
+    return np.asarray(
+        1.0 / (s * s + 2.0 * modes.damping[:, None] * omega * s + omega**2)
+    )
 
 
 def port_rows(given: RecordSet, modes: Modes) -> FloatArray:

@@ -95,6 +95,18 @@ class ModalSettings:
         "frequency below which a measured acceleration is not integrated",
         "noise of the displacement grows with the square of the period",
     )
+    lead_periods: int = numerical(
+        2,
+        "periods",
+        "periods of a multisine that are simulated before the one that is scored",
+        "a transient from rest decays over them; made records",
+    )
+    least_repeats: int = numerical(
+        3,
+        "periods",
+        "averaged periods from which their scatter gives the noise",
+        "with two, leakage of a transient would count as noise",
+    )
 
 
 MODAL = ModalSettings()
