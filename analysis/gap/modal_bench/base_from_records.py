@@ -149,7 +149,7 @@ def start_modes(
         damping = np.append(damping, 0.01)
     size = omega.size
     bare = Modes(omega / (2.0 * np.pi), damping, np.zeros((size, len(given.points))))
-    s = 2j * np.pi * frf.frequency
+    s = frf.added_decay_rate + 2j * np.pi * frf.frequency
     columns = modal_receptance(bare, s).T * s[:, None] ** int(given.output)
     constants = np.zeros((size, len(given.sensors), len(given.inputs)))
     for o in range(len(given.sensors)):

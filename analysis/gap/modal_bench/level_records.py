@@ -40,6 +40,8 @@ class LevelRecord:
         noise: of each sensor, shape (n_sensors,), if periods or a statement give it.
         held_out: whether the record is used for validation alone.
         excitation: random, multisine or sweep; empty if not stated.
+        period: of a steady state [samples], which the record ends with; None for any
+            other record.
     """
 
     name: str
@@ -50,6 +52,7 @@ class LevelRecord:
     noise: FloatArray | None = None
     held_out: bool = False
     excitation: str = ""
+    period: int | None = None
 
     def __post_init__(self) -> None:
         """Check the rows once and make them read-only."""

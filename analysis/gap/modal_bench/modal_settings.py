@@ -16,6 +16,13 @@ class ModalSettings:
         "segments that the records of the lowest level are cut into for the FRF",
         "start values only: the base is then fitted to the whole records",
     )
+    frf_decay: float = numerical(
+        5.0,
+        "-",
+        "decay of a record from rest over its length: what is cut off at its end is "
+        "reduced by exp(-5)",
+        "made records; more would widen the peaks",
+    )
     least_segment: int = numerical(
         1024,
         "samples",

@@ -39,6 +39,7 @@ def one_period(record: LevelRecord, period: int) -> LevelRecord:
         force=np.tile(force, times),
         response=np.tile(response, times),
         lead=MODAL.lead_periods * period,
+        period=period,
         noise=noise if count >= MODAL.least_repeats else record.noise,
     )
 
