@@ -14,6 +14,7 @@ from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
 from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
+from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
 from jointbench.analysis.gap.diagnosis.single_record import (
     StretchScore,
     diagnose_record,
@@ -25,6 +26,8 @@ from jointbench.signal.hits.find_hits import HitCriteria
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.gap.level_files import names_levels, read_levels
+from jointbench.station.gap.level_remarks import level_remarks
 from jointbench.station.gap.record_campaign import read_record
 from jointbench.station.pipeline.chain import hits_stage
 from jointbench.station.pipeline.joint_stages import gap_of
@@ -38,6 +41,7 @@ from jointbench.station.sources.recorded_session import record_session_file
 ANY_LEVEL = HitCriteria(peak_fraction=0.01, limits=HitLimits(weak_ratio=0.0))
 """Levels span 30x on purpose: none is weak but what lies far below the softest of them,
 and the trigger must reach that one."""
+_RESPONSE_UNITS = ("m", "m/s", "m/s^2")
 Progress = Callable[[str], None]
 
 
@@ -133,6 +137,8 @@ def _examine_named(
 ) -> Examined:
     """Examine the files that a model file names."""
     model = paths[0]
+    if names_levels(model):
+        return _examine_levels(paths, wanted, progress)
     if len(paths) > 1 or wanted.model is not None:
         raise UsageError(
             f"'{model}' is a model file: give it alone, with the sessions it is about "
@@ -149,6 +155,32 @@ def _examine_named(
         )
     files = [str(model.parent / name) for name in names]
     return examine(files, replace(wanted, model=model), progress=progress)
+
+
+def _examine_levels(
+    paths: list[Path], wanted: GapRequest, progress: Progress
+) -> Examined:
+    """Examine records at several levels, with a base of modes."""
+    if len(paths) > 1 or wanted.model is not None or wanted.preload is not None:
+        raise UsageError(
+            f"'{paths[0]}' names its records, ports and base: give it alone"
+        )
+    progress("reading the levels")
+    given, base = read_levels(paths[0])
+    done = diagnose_levels(
+        given,
+        base,
+        without=wanted.without,
+        entries=wanted.entries,
+        progress=progress,
+    )
+    return Examined(
+        given.name,
+        done.found,
+        done.scores,
+        _RESPONSE_UNITS[int(given.output)],
+        level_remarks(given, done),
+    )
 
 
 def _examine_campaign(

@@ -73,10 +73,15 @@ def slide(
         x = min(x + forward, tops[6])
         return side * _lookup(tables, row, tops[0], x), side * x
     elastic = tops[5] > 0.0
-    left = (size if elastic else _lookup(tables, row + 2, tops[2], size)) + forward
+    start = size if elastic else _lookup(tables, row + 2, tops[2], size)
+    left = start + forward
     if left < 0.0:
         return -side * _lookup(tables, row, tops[0], -left), side * left
-    return side * (left if elastic else _lookup(tables, row + 3, tops[3], left)), _STALE
+    if not elastic:
+        # A difference of two lookups: the error of each would add up over the steps.
+        left = size + _lookup(tables, row + 3, tops[3], left)
+        left = max(left - _lookup(tables, row + 3, tops[3], start), 0.0)
+    return side * left, _STALE
 
 
 class Bank(NamedTuple):
@@ -194,7 +199,10 @@ def slider_tables(
     limit = 30.0
     if loading > 0:
         limit = min(limit, loading ** (-1.0 / sharpness))
-    stretch = 1.0 - np.exp(-np.linspace(0.0, 14.0, 3000))
+    if loading > 0:  # fine towards saturation
+        stretch = 1.0 - np.exp(-np.linspace(0.0, 14.0, 3000))
+    else:  # fine towards zero, where most motions are
+        stretch = np.sinh(np.linspace(0.0, 8.0, 6000))
     u = limit * stretch / stretch[-1] * (1.0 - 1e-6)
     load = _cumulative(u, 1.0 / (1.0 - loading * u**sharpness))
     unload = _cumulative(u, 1.0 / np.maximum(1.0 + unloading * u**sharpness, 1e-3))

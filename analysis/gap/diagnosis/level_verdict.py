@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""The verdict on records at several levels, its reason, and what to do next."""
+
+from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.judgement.rivals import rival_within
+from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench
+from jointbench.analysis.gap.model.diagnosis_record import Finding
+from jointbench.analysis.gap.model.effect import labels_of, words_of
+from jointbench.analysis.gap.search.selection_round import score
+
+MORE_LEVELS = (
+    "measure another level, or a slow sine sweep through the first mode: it separates "
+    "friction (damping) from clearance (stiffness)"
+)
+
+
+def level_verdict(
+    outcome: SearchOutcome, bench: ModalBench
+) -> tuple[Finding, str, str]:
+    """Return verdict, reason and next step of a search on records at several levels.
+
+    Args:
+        outcome: of the search.
+        bench: with its final noise estimate.
+    """
+    levels = {r.level for r in bench.data.records}
+    if len(levels) < 2:
+        reason = (
+            f"all records of the fits have one level ({levels.pop()}), which the base "
+            "itself explains; add a higher level"
+        )
+        return Finding.UNKNOWN, reason, "add a higher level"
+    if not outcome.acceptance.passed:
+        reason = "no effect of the catalogue explains the records: " + (
+            outcome.acceptance.reason
+        )
+        return Finding.UNKNOWN, reason, MORE_LEVELS
+    if not outcome.best.candidates:
+        reason = "the modes of the lowest level explain all levels within their noise"
+        return Finding.NONE, reason, "none required; higher levels would show more"
+    if len(outcome.level) == 1:
+        reason = f"explains the records to chi2/dof {1 + outcome.acceptance.excess:.3f}"
+        return Finding.NAMED, reason, _no_rival(outcome, bench)
+    names = " or ".join(words_of(f.candidates) for f in outcome.level)
+    if len(outcome.level) > bench.policy.most_rivals:
+        reason = f"too many explanations fit equally well: {names}"
+        return Finding.UNKNOWN, reason, MORE_LEVELS
+    reason = f"{names}: the difference of their scores is not significant"
+    return Finding.AMBIGUOUS, reason, MORE_LEVELS
+
+
+def _no_rival(outcome: SearchOutcome, bench: ModalBench) -> str:
+    own = labels_of(outcome.best.candidates)
+    others = [
+        score(bench, f)
+        for f in outcome.ranked
+        if not (labels_of(f.candidates) <= own or own <= labels_of(f.candidates))
+    ]
+    if not others:
+        return "no further experiment required: no other explanation comes close"
+    delta_score = min(others) - score(bench, outcome.best)
+    limit = rival_within(outcome.best, bench.policy)
+    return (
+        "no further experiment required: the nearest rival has a delta score of "
+        f"{delta_score:.0f} (limit {limit:.0f})"
+    )

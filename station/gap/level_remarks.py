@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""What a user should know of the base behind a verdict on records at several levels."""
+
+from jointbench.analysis.gap.diagnosis.level_diagnosis import LevelDiagnosis
+from jointbench.analysis.gap.modal_bench.level_records import RecordSet
+
+
+def level_remarks(given: RecordSet, done: LevelDiagnosis) -> tuple[str, ...]:
+    """Return one line each on the base, the scale of its shapes and the noise.
+
+    Args:
+        given: the records.
+        done: their diagnosis.
+    """
+    base = done.base
+    modes = ", ".join(
+        f"{f:.4g} Hz ({100 * z:.3g} %)"
+        for f, z in zip(base.nominal.frequency, base.nominal.damping, strict=True)
+    )
+    lines = [
+        f"base of the lowest level ({given.lowest[0].level}): {modes}; chi2/dof "
+        f"{done.base_chi2:.3g} there"
+    ]
+    if not set(given.inputs) & set(given.sensors):
+        lines.append(
+            "no sensor is where a force acts, so that the scale of the shapes, and of "
+            "every force at a port, is not known: put one there"
+        )
+    if given.repeatability is not None:
+        share = 100 * given.repeatability
+        lines.append(f"{share:g} % of the peak response counts as noise, as stated")
+    return tuple(lines)
