@@ -167,11 +167,11 @@ class LumpedResidual:
         r = difference / self.noise.sigma[:, :, None]
         self.mask(r)
         if self.mixing is not None:
-            rows = r.reshape(r.shape[0], -1, 1)
-            along = self.basis @ rows
+            columns = r.reshape(r.shape[0], -1, 1)
+            along = self.basis @ columns
             along = (self.mixing @ along.ravel()).reshape(along.shape)
-            rows -= self.basis.transpose(0, 2, 1) @ along
-            return rows.ravel()
+            columns -= self.basis.transpose(0, 2, 1) @ along
+            return columns.ravel()
         rows = r.reshape(r.shape[0], -1)
         # Record by record: the basis of one stays in the processor's cache.
         for row, basis, shrink in zip(
