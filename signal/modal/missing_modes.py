@@ -77,8 +77,9 @@ def _starts(whole: WholeFit) -> list[complex]:
     added = float(whole.lines.laplace.real[0])
     limit = least_significance(whole.lines)
     best, starts = likeness.max(axis=0), []
-    width = measured_width(whole.lines, whole.pole)
-    for pole, near in zip(whole.pole, _APART * width, strict=True):
+    modes = whole.pole[: whole.n_modes]
+    width = measured_width(whole.lines, modes)
+    for pole, near in zip(modes, _APART * width, strict=True):
         best[np.abs(omega - pole.imag) < near] = 0.0
     for _ in range(_TRIALS):
         at = int(np.argmax(best))
