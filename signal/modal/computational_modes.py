@@ -49,7 +49,8 @@ def find_beyond(whole: WholeFit) -> ComplexArray:
         if _excess(whole.residual, whole.noise, edge) < _EDGE_RESIDUAL:
             continue
         reach = (1.0 if whole.n_modes <= _FEW_MODES else _REACH) * (high - low)
-        group = group_around(whole, high if above else low, 1.01 * reach)
+        place = high if above else low
+        group = group_around(whole, place, 1.01 * reach, with_beyond=True)
         # A group replaces the poles that it held.
         known = known[~np.isin(known, whole.pole[group.beyond])]
         known = np.append(known, _beyond_edge(whole, group, edge, above=above))

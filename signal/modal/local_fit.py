@@ -68,23 +68,27 @@ class Group:
     beyond: IntArray
 
 
-def group_around(whole: WholeFit, omega: float, reach: float) -> Group:
+def group_around(
+    whole: WholeFit, omega: float, reach: float, *, with_beyond: bool = False
+) -> Group:
     """Return the poles within reach of a frequency, and the lines around it.
 
     Args:
         whole: fit of all lines.
         omega: middle of the group [rad/s].
         reach: lines on each side [rad/s]; more where the group has many poles.
+        with_beyond: whether computational poles belong to it.
     """
     places = whole.lines.laplace.imag
     keep = _enough_lines(whole, omega, reach)
     low, high = places[keep][[0, -1]]
     width = measured_width(whole.lines, whole.pole)
     near = (whole.pole.imag > low - width) & (whole.pole.imag < high + width)
-    # Beyond an edge of the band all poles belong to the modes at that edge.
     outer = np.arange(whole.pole.size) >= whole.n_modes
+    # Beyond an edge of the band all poles belong to the modes at that edge.
     near |= outer & bool(keep[-1]) & (whole.pole.imag > places[-1])
     near |= outer & bool(keep[0]) & (whole.pole.imag < places[0])
+    near &= ~outer | with_beyond
     index = np.flatnonzero(near)
     own = _contribution(whole, index, keep)
     return Group(

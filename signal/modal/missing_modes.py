@@ -14,12 +14,10 @@ import scipy.fft
 from jointbench.acquisition.basics.arrays import (
     ComplexArray,
     FloatArray,
-    IntArray,
 )
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
-from jointbench.signal.modal.lsfd import fit_residues
-from jointbench.signal.modal.mode_significance import least_significance, significance
+from jointbench.signal.modal.lsfd import fit_residues, least_significance, significance
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
@@ -57,7 +55,8 @@ def find_missing(whole: WholeFit, barred: FloatArray) -> ComplexArray:
         Refined together with their neighbours [rad/s], shape (n_missing,).
     """
     found: list[complex] = []
-    for start in _starts(whole):
+    limit = least_significance(whole.lines)
+    for start in trial_starts(whole, limit, apart=_APART, most=_TRIALS):
         pole = _tried(whole, start)
         if pole is None or np.any(np.abs(pole.imag - barred) < 2.0 * abs(pole.real)):
             continue
@@ -66,27 +65,39 @@ def find_missing(whole: WholeFit, barred: FloatArray) -> ComplexArray:
     return np.array(found, complex)
 
 
-def _starts(whole: WholeFit) -> list[complex]:
-    """Return trial poles where the residual is most like a resonance."""
+def trial_starts(
+    whole: WholeFit, limit: float, *, apart: float, most: int
+) -> list[complex]:
+    """Return trial poles where the residual is most like a resonance.
+
+    Args:
+        whole: fit of all lines.
+        limit: chi-squared above which a resonance stands out [-].
+        apart: half-power half-widths around modes that are left out.
+        most: trials.
+
+    Returns:
+        Poles [rad/s], the most distinct first.
+    """
     omega = whole.lines.laplace.imag
     if whole.n_modes == 0 or omega.size < 3:
         return []
-    usual = float(np.median(measured_width(whole.lines, whole.pole[: whole.n_modes])))
-    decays = [factor * usual for factor in _DECAYS]
+    modes = whole.pole[: whole.n_modes]
+    width = measured_width(whole.lines, modes)
+    decays = [factor * float(np.median(width)) for factor in _DECAYS]
     likeness = np.array([_likeness(whole, decay) for decay in decays])
-    added = float(whole.lines.laplace.real[0])
-    limit = least_significance(whole.lines)
-    best, starts = likeness.max(axis=0), []
-    width = measured_width(whole.lines, whole.pole)
-    for pole, near in zip(whole.pole, _APART * width, strict=True):
+    best = likeness.max(axis=0)
+    for pole, near in zip(modes, apart * width, strict=True):
         best[np.abs(omega - pole.imag) < near] = 0.0
-    for _ in range(_TRIALS):
+    added = float(whole.lines.laplace.real[0])
+    starts: list[complex] = []
+    while len(starts) < most:
         at = int(np.argmax(best))
         if best[at] < limit:
             break
         decay = decays[int(np.argmax(likeness[:, at]))]
         starts.append(complex(added - decay, omega[at]))
-        best = np.where(np.abs(omega - omega[at]) < 2.0 * decay, 0.0, best)
+        best[np.abs(omega - omega[at]) < 2.0 * decay] = 0.0
     return starts
 
 
@@ -114,12 +125,9 @@ def _tried(whole: WholeFit, start: complex) -> complex | None:
     """Return the refined pole where the lines around it need it."""
     pitch = float(np.median(np.diff(whole.lines.laplace.imag)))
     added = float(whole.lines.laplace.real[0])
-    width = added - start.real
-    group = group_around(
-        whole, start.imag, max(_REACH_WIDTHS * width, _REACH_LINES * pitch)
-    )
-    without = _refined(whole, group, group.modes)
-    fitted = _refined(whole, group, group.modes, start)
+    group = trial_group(whole, start)
+    without = refined_group(whole, group)
+    fitted = refined_group(whole, group, start)
     pole = complex(fitted.pole[-1])
     if not _plausible(whole, fitted, pole, pitch):
         return None
@@ -135,10 +143,19 @@ def _tried(whole: WholeFit, start: complex) -> complex | None:
     return pole if need[-1] > least_significance(whole.lines) else None
 
 
-def _refined(
-    whole: WholeFit, group: Group, modes: IntArray, more: complex | None = None
+def trial_group(whole: WholeFit, start: complex) -> Group:
+    """Return the modes and lines around a trial pole."""
+    pitch = float(np.median(np.diff(whole.lines.laplace.imag)))
+    width = float(whole.lines.laplace.real[0]) - start.real
+    reach = max(_REACH_WIDTHS * width, _REACH_LINES * pitch)
+    return group_around(whole, start.imag, reach)
+
+
+def refined_group(
+    whole: WholeFit, group: Group, more: complex | None = None
 ) -> RefinedPoles:
-    start = whole.pole[modes]
+    """Refine the modes of a group, and a further pole where one is given."""
+    start = whole.pole[group.modes]
     return refine_poles(
         group.lines,
         start if more is None else np.append(start, more),

@@ -182,7 +182,8 @@ def _uncertainty(
     """Return sd of frequency [Hz] and damping ratio [-] by linear propagation."""
     poles = fitted.poles
     pole, size = poles.pole, np.abs(poles.pole)
-    covariance = poles.covariance * poles.inflation[:, None, None] + fitted.shared
+    covariance = poles.covariance * poles.inflation[:, None, None]
+    covariance = covariance + fitted.shared + fitted.doubts.shift
     # d|p| and d(-Re p / |p|) for a change of (Re p, Im p).
     along = np.stack((pole.real, pole.imag), axis=1) / size[:, None]
     across = np.stack((-(pole.imag**2), pole.real * pole.imag), axis=1)

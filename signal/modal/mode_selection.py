@@ -17,6 +17,10 @@ from jointbench.acquisition.basics.arrays import (
     IntArray,
 )
 from jointbench.signal.modal.computational_modes import find_beyond
+from jointbench.signal.modal.doubtful_neighbours import (
+    DoubtfulNeighbours,
+    doubtful_neighbours,
+)
 from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
@@ -26,9 +30,8 @@ from jointbench.signal.modal.line_noise import (
 )
 from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lscf import Progress
-from jointbench.signal.modal.lsfd import LinearFit, fit_residues
+from jointbench.signal.modal.lsfd import LinearFit, fit_residues, needed, significance
 from jointbench.signal.modal.missing_modes import find_missing
-from jointbench.signal.modal.mode_significance import needed, significance
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
@@ -62,6 +65,7 @@ class FittedModes:
         residual_ratio: around each mode, rms residual over noise [-], shape (n_modes,).
         shared: covariance of (Re p, Im p) from errors common to the FRFs of a
             reference [rad^2/s^2], shape (n_modes, 2, 2).
+        doubts: neighbours that may be missing.
     """
 
     chosen: IntArray
@@ -73,6 +77,7 @@ class FittedModes:
     model_error: float
     residual_ratio: FloatArray
     shared: FloatArray
+    doubts: DoubtfulNeighbours
 
 
 def fit_modes(
@@ -124,12 +129,12 @@ def fit_modes(
     error = model_error(poles.residual, noise, lines.response)
     variance = noise + error**2 * level
     barred = np.empty(0) if dropped is None else dropped
-    start = _Start(candidates, held, noise, variance, barred, steps)
+    start = _Start(candidates, held, noise, variance, error, barred, steps)
     kept = needed(lines, poles.pole, held[chosen], noise, variance, poles.beyond)
     report("refining modes", 0.7)
     done = _settled(lines, start, chosen, kept, poles)
     for _ in range(_SEARCHES if refine else 0):
-        more = _completed(lines, start, done)
+        more = _completed(lines, start, done, scatter)
         if more is None:
             break
         start, done = more
@@ -139,11 +144,12 @@ def fit_modes(
         start.candidates,
         done.poles,
         done.fit.of_modes(done.chosen.size),
-        variance,
+        start.variance,
         done.significance,
-        error,
-        residual_around(lines, done.poles.pole, done.poles.residual, noise),
-        shared_covariance(lines, done.poles, done.fit, variance, n_inputs),
+        start.error,
+        residual_around(lines, done.poles.pole, done.poles.residual, start.noise),
+        shared_covariance(lines, done.poles, done.fit, start.variance, n_inputs),
+        _doubts(lines, start, done, refine=refine),
     )
 
 
@@ -156,6 +162,7 @@ class _Start:
         held: which of them are always kept.
         noise: noise variance of the lines.
         variance: noise and model error.
+        error: the model error, as a share of the local level [-].
         barred: frequencies at which no mode may be added [rad/s].
         steps: most evaluations of a refinement.
     """
@@ -164,6 +171,7 @@ class _Start:
     held: BoolArray
     noise: FloatArray
     variance: FloatArray
+    error: float
     barred: FloatArray
     steps: int
 
@@ -210,31 +218,52 @@ def _settled(
 
 
 def _completed(
-    lines: FrfLines, start: _Start, done: _Settled
+    lines: FrfLines, start: _Start, done: _Settled, scatter: FloatArray | None
 ) -> tuple[_Start, _Settled] | None:
-    """Add what the residual shows; None where it shows nothing."""
+    """Add what the residual shows; None where it shows nothing.
+
+    Weights are taken again: what was missing counted as model error.
+    """
     poles = done.poles
-    whole = WholeFit(
-        lines,
-        np.append(poles.pole, poles.beyond),
-        poles.pole.size,
-        done.fit,
-        start.noise,
-        start.variance,
-    )
+    whole = _final(lines, start, done)
     beyond, added = find_beyond(whole), find_missing(whole, start.barred)
     if added.size == 0 and beyond.size == poles.beyond.size:
         return None
     everything = np.append(start.candidates, added)
     held = np.append(start.held, np.zeros(added.size, bool))
     place = np.arange(start.candidates.size, everything.size)
-    begun = _again(lines, np.append(poles.pole, added), beyond, start.variance, steps=0)
-    wider = replace(start, candidates=everything, held=held)
-    chosen = np.append(done.chosen, place)
-    left = needed(
-        lines, begun.pole, held[chosen], start.noise, start.variance, begun.beyond
+    begun = _again(lines, np.append(poles.pole, added), beyond, start.variance)
+    noise = line_noise(lines.response, scatter, begun.residual)
+    error = min(start.error, model_error(begun.residual, noise, lines.response))
+    variance = noise + error**2 * local_level(lines.response)
+    wider = replace(
+        start,
+        candidates=everything,
+        held=held,
+        noise=noise,
+        variance=variance,
+        error=error,
     )
+    chosen = np.append(done.chosen, place)
+    left = needed(lines, begun.pole, held[chosen], noise, variance, begun.beyond)
     return wider, _settled(lines, wider, chosen, left, begun)
+
+
+def _final(lines: FrfLines, start: _Start, done: _Settled) -> WholeFit:
+    everything = np.append(done.poles.pole, done.poles.beyond)
+    n_modes = done.poles.pole.size
+    return WholeFit(lines, everything, n_modes, done.fit, start.noise, start.variance)
+
+
+def _doubts(
+    lines: FrfLines, start: _Start, done: _Settled, *, refine: bool
+) -> DoubtfulNeighbours:
+    poles = done.poles
+    if not refine:
+        nothing = np.zeros((poles.pole.size, 2, 2))
+        return DoubtfulNeighbours(np.empty(0), nothing)
+    covariance = poles.covariance * poles.inflation[:, None, None]
+    return doubtful_neighbours(_final(lines, start, done), covariance)
 
 
 def _again(
@@ -242,10 +271,9 @@ def _again(
     pole: ComplexArray,
     beyond: ComplexArray,
     variance: FloatArray,
-    steps: int = _FEW_STEPS,
 ) -> RefinedPoles:
     """Refine modes and poles beyond the band for a few steps."""
-    return refine_poles(lines, pole, variance, beyond=beyond, steps=steps)
+    return refine_poles(lines, pole, variance, beyond=beyond, steps=_FEW_STEPS)
 
 
 def _whole(
