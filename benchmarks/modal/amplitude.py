@@ -7,6 +7,7 @@ Usage: OMP_NUM_THREADS=1 python benchmarks/modal/amplitude.py --log LOG.jsonl
 
 The four parts (or those named) take turns until the time is up; each draw is one line
 of the log, and a later run continues where the log ends. Part and seed define a draw.
+A part ends early once the Wilson interval of its share is past the bar.
 """
 
 import argparse
@@ -28,6 +29,8 @@ from jointbench.station.pipeline.chain import ChainSettings, ModalChain, judged_
 
 _NORMAL_95 = 1.959964
 _NEAR = 0.08
+# Median of the absolute value of a normal error, in standard deviations.
+_MEDIAN = 0.6745
 FAMILY = {
     "micro-slip": "friction",
     "jenkins": "friction",
@@ -96,6 +99,7 @@ def _scores(case: Case, mode: AmplitudeMode) -> Row:
         ),
         "f_ppm": float(1e6 * np.sqrt(np.mean((curve.frequency / f - 1) ** 2))),
         "z_percent": float(100 * np.median(np.abs(curve.damping_ratio / z - 1))),
+        "z_bound": float(100 * np.median(curve.damping_noise_sd / z) * _MEDIAN),
         "residual_ratio": mode.residual_ratio,
         "exponent": mode.laws[0].exponent if mode.laws else None,
         "law_found": mode.laws[0].name if mode.laws else None,
@@ -134,6 +138,14 @@ def _peers(
             float(100 * np.median(np.abs(z[inside] / true_z - 1))),
             float(1e6 * np.sqrt(np.mean((ours[:, 0] / true_f - 1) ** 2))),
             float(100 * np.median(np.abs(ours[:, 1] / true_z - 1))),
+            float(
+                100
+                * _MEDIAN
+                * np.median(
+                    np.interp(size[inside], curve.amplitude, curve.damping_noise_sd)
+                    / true_z
+                )
+            ),
         ]
     return found
 
@@ -203,17 +215,22 @@ PARTS: dict[str, tuple[Callable[[int], Row], int]] = {
 }
 
 
+def wilson_ends(held: int, n: int) -> tuple[float, float]:
+    """Return the ends of a share's 95 % Wilson interval [%]."""
+    if n == 0:
+        return 0.0, 100.0
+    z, p = _NORMAL_95, held / n
+    middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
+    half = z * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2)) / (1 + z**2 / n)
+    return 100 * max(middle - half, 0.0), 100 * min(middle + half, 1.0)
+
+
 def wilson(held: int, n: int) -> str:
     """Return a share with its 95 % Wilson interval, in percent."""
     if n == 0:
         return "none run"
-    z, p = _NORMAL_95, held / n
-    middle = (p + z**2 / (2 * n)) / (1 + z**2 / n)
-    half = z * np.sqrt(p * (1 - p) / n + z**2 / (4 * n**2)) / (1 + z**2 / n)
-    return (
-        f"{held} of {n}: {100 * p:.1f} % ({100 * max(middle - half, 0.0):.1f} to "
-        f"{100 * (middle + half):.1f})"
-    )
+    low, high = wilson_ends(held, n)
+    return f"{held} of {n}: {100 * held / n:.1f} % ({low:.1f} to {high:.1f})"
 
 
 def main() -> None:
@@ -230,7 +247,7 @@ def main() -> None:
     seed = given.first
     while time.monotonic() < ends and seed < max(n for _, n in PARTS.values()):
         for part, (run, most) in PARTS.items():
-            wanted = part in given.parts and seed < most
+            wanted = part in given.parts and seed < most and not _clear(part, done)
             if wanted and (part, seed) not in done:
                 done[part, seed] = _drawn(run, part, seed, given.log)
         seed += 1
@@ -238,6 +255,17 @@ def main() -> None:
         from amplitude_page import page
 
         given.page.write_text(page(done))
+
+
+def _clear(part: str, done: dict[tuple[str, int], Row]) -> bool:
+    """Return whether the Wilson interval of a part is past its bar already."""
+    rows = [row for (name, _), row in done.items() if name == part]
+    if part == "softening":
+        return wilson_ends(sum(row.get("near") == 1 for row in rows), len(rows))[0] > 97
+    if part == "linear":
+        fired = sum("depends" in row.get("outcomes", []) for row in rows)
+        return wilson_ends(fired, len(rows))[1] < 1
+    return False
 
 
 def _drawn(run: Callable[[int], Row], part: str, seed: int, log: Path) -> Row:

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 import scipy.signal
+from kalman_peer import kalman_smoother
 
 Floats = npt.NDArray[np.float64]
 Points = tuple[Floats, Floats, Floats]
@@ -71,6 +72,7 @@ PEERS: dict[str, Peer] = {
     "Hilbert": hilbert,
     "short-time Fourier ridge": short_time,
     "peaks, log decrement": peaks,
+    "extended Kalman smoother": kalman_smoother,
 }
 
 

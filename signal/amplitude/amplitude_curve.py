@@ -18,6 +18,17 @@ FREQUENCY_FLOOR = 50e-6
 DAMPING_FLOOR = 5e-3
 
 
+CURVE_ARRAYS = (
+    "frequency",
+    "frequency_sd",
+    "damping_ratio",
+    "damping_sd",
+    "frequency_noise_sd",
+    "damping_noise_sd",
+)
+"""Arrays of an `AmplitudeCurve` beside its amplitude."""
+
+
 class Dependence(StrEnum):
     """Whether a mode depends on its amplitude."""
 
@@ -38,6 +49,9 @@ class AmplitudeCurve:
         damping_sd: standard uncertainty [-], shape (n,).
         channel: label of the channel in which the mode is largest.
         unit: of the amplitude.
+        frequency_noise_sd: part of `frequency_sd` that white noise causes, without
+            model errors: the bound of an unbiased estimator [Hz], shape (n,).
+        damping_noise_sd: likewise of `damping_sd` [-], shape (n,).
     """
 
     amplitude: FloatArray
@@ -47,11 +61,13 @@ class AmplitudeCurve:
     damping_sd: FloatArray
     channel: str
     unit: str
+    frequency_noise_sd: FloatArray
+    damping_noise_sd: FloatArray
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
         require_ascending("amplitude", self.amplitude)
-        for name in ("frequency", "frequency_sd", "damping_ratio", "damping_sd"):
+        for name in CURVE_ARRAYS:
             require_shape(name, getattr(self, name), self.amplitude.shape)
             freeze(self, name)
         freeze(self, "amplitude")

@@ -149,7 +149,12 @@ def _root(curve: LevelCurve, part: slice) -> FloatArray:
     cross = curve.cross_covariance[part, part] * zeta
     own = curve.zeta_covariance[part, part] * zeta[:, None] * zeta
     matrix = np.block([[omega, cross], [cross.T, own]])
-    floor = np.concatenate((np.full(zeta.size, FREQUENCY_FLOOR), DAMPING_FLOOR * zeta))
+    floor = np.concatenate(
+        (
+            np.hypot(FREQUENCY_FLOOR, curve.omega_model_sd[part]),
+            np.hypot(DAMPING_FLOOR, curve.zeta_model_sd[part]) * zeta,
+        )
+    )
     return np.asarray(np.linalg.cholesky(matrix + np.diag(floor**2)))
 
 

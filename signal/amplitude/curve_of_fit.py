@@ -13,15 +13,15 @@ from jointbench.signal.amplitude.amplitude_curve import (
 )
 from jointbench.signal.amplitude.band_fit import BandFit
 from jointbench.signal.amplitude.mode_state import ModeState, curve_slices
+from jointbench.signal.amplitude.model_errors import energy_share, model_errors
 from jointbench.signal.amplitude.ring_downs import RingDowns
 
 _POINTS = 40
 # A point of the curve is shown where its frequency is known to this share of half the
 # half-power width.
 _KNOWN = 0.5
-# Rate of a decay over that of the pole, see `_energy_share`: elastic, friction, least
-# ratio of the changes of damping and frequency in friction, and what q may be off.
-_ELASTIC, _MASING, _FRICTION_RATIO, _ENERGY_SD = 0.5, 2.0, 0.27, 0.4
+# Correction of the rate of a decay, at least.
+_LEAST_FALL = -0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,6 +36,9 @@ class LevelCurve:
         zeta_covariance: likewise, shape (n, n).
         cross_covariance: of ln omega with ln zeta, likewise, shape (n, n).
         channel: index of the largest channel.
+        inflation: factor of the residual ratio in the square roots of the covariances.
+        omega_model_sd: of ln omega, what the model itself may be off, shape (n,).
+        zeta_model_sd: of ln zeta, likewise, shape (n,).
     """
 
     level: FloatArray
@@ -45,6 +48,9 @@ class LevelCurve:
     zeta_covariance: FloatArray
     cross_covariance: FloatArray
     channel: int
+    inflation: float
+    omega_model_sd: FloatArray
+    zeta_model_sd: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -56,6 +62,8 @@ class LevelCurve:
             "omega_covariance",
             "zeta_covariance",
             "cross_covariance",
+            "omega_model_sd",
+            "zeta_model_sd",
         )
 
 
@@ -65,41 +73,28 @@ def level_curve(fit: BandFit, number: int, points: int = _POINTS) -> LevelCurve:
     basis, own = mode.basis, curve_slices(fit.curved.modes)[number]
     level = np.linspace(basis.low, basis.high, points)
     values = basis.at(level)
-    inflation = max(1.0, fit.curved.residual_ratio) ** 2
-    covariance = fit.curved.covariance[own, own] * inflation
+    inflation = max(1.0, fit.curved.residual_ratio)
+    covariance = fit.curved.covariance[own, own] * inflation**2
     size = basis.size
     relative, log_zeta = values @ mode.log_omega, values @ mode.log_zeta
     shapes, turned = _shapes(fit, mode, relative, np.exp(log_zeta))
     slope = np.gradient(relative, level)
-    stored = _energy_share(relative, np.exp(log_zeta)) * slope
-    unknown = np.diag((_ENERGY_SD * slope) ** 2)
+    falls = np.gradient(turned, level)
+    falls = falls + energy_share(relative, np.exp(log_zeta)) * slope
+    errors = model_errors(fit, mode, level, slope)
     channel = int(np.argmax(np.abs(shapes[0])))
     return LevelCurve(
         level=level + np.log(np.abs(shapes[:, channel])) + fit.power * relative,
         log_omega=relative + np.log(fit.lines.centre),
-        log_zeta=log_zeta + np.log1p(np.gradient(turned, level) + stored),
+        log_zeta=log_zeta + np.log1p(np.maximum(falls, _LEAST_FALL)),
         omega_covariance=values @ covariance[:size, :size] @ values.T,
-        zeta_covariance=values @ covariance[size:, size:] @ values.T + unknown,
+        zeta_covariance=values @ covariance[size:, size:] @ values.T,
         cross_covariance=values @ covariance[:size, size:] @ values.T,
         channel=channel,
+        inflation=inflation,
+        omega_model_sd=errors[0],
+        zeta_model_sd=errors[1],
     )
-
-
-def _energy_share(relative: FloatArray, zeta: FloatArray) -> float:
-    """Return q: amplitude times omega^q falls at the rate of the pole.
-
-    A decay is not a steady vibration: amplitude falls as the energy that is stored
-    does. To first order in the softening the rate is zeta omega / (1 + q d ln omega /
-    dL), with q = 1/2 where the joint is elastic (the action is lost) and q = 2 where it
-    is friction after Masing (energy changes with the tangent of the backbone). What
-    the joint adds to damping distinguishes the two.
-    """
-    change = relative[-1] - relative[0]
-    if change == 0.0:
-        return _ELASTIC
-    ratio = -(zeta[-1] - zeta[0]) / change
-    friction = float(np.clip(ratio / _FRICTION_RATIO, 0.0, 1.0))
-    return _ELASTIC + friction * (_MASING - _ELASTIC)
 
 
 def _shapes(
@@ -152,14 +147,18 @@ def amplitude_curve(
     frequency = np.exp(curve.log_omega[part]) * natural / (2.0 * np.pi)
     own_f = np.sqrt(np.diag(curve.omega_covariance)[part])
     own_z = np.sqrt(np.diag(curve.zeta_covariance)[part])
-    f_sd = np.sqrt(own_f**2 + FREQUENCY_FLOOR**2 + shift[0][part] ** 2)
-    z_sd = np.sqrt(own_z**2 + DAMPING_FLOOR**2 + shift[1][part] ** 2)
+    f_extra = shift[0][part] ** 2 + curve.omega_model_sd[part] ** 2
+    z_extra = shift[1][part] ** 2 + curve.zeta_model_sd[part] ** 2
+    f_sd = np.sqrt(own_f**2 + FREQUENCY_FLOOR**2 + f_extra)
+    z_sd = np.sqrt(own_z**2 + DAMPING_FLOOR**2 + z_extra)
     return AmplitudeCurve(
         amplitude=np.exp(level),
         frequency=frequency,
         frequency_sd=frequency * f_sd,
         damping_ratio=zeta / natural,
         damping_sd=zeta / natural * z_sd,
+        frequency_noise_sd=frequency * own_f / curve.inflation,
+        damping_noise_sd=zeta / natural * own_z / curve.inflation,
         channel=decays.labels[curve.channel],
         unit=decays.unit,
     )

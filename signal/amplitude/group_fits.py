@@ -2,7 +2,7 @@
 """Fits of all groups of close modes: each alone, then with the others on its joint."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,6 +27,8 @@ _LEAST_DELAYS = 4
 _UNEASY = 2.0
 # Fewer curves may leave this much more power than all of them.
 _FEWER = 2.0
+# Rounds in which groups see the curves of the others.
+_ROUNDS = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,9 +71,15 @@ def fit_groups(
             alone[group] = _fit_group(decays, model, group)
         except np.linalg.LinAlgError:
             alone[group] = None
+    joined = alone
+    for _ in range(_ROUNDS):
+        joined = {
+            group: None if fit is None else _together(group, fit, joined)
+            for group, fit in joined.items()
+        }
     return {
-        group: None if fit is None else _together(decays, model, group, fit, alone)
-        for group, fit in alone.items()
+        group: None if fit is None else _begun_later(decays, model, group, fit)
+        for group, fit in joined.items()
     }
 
 
@@ -97,11 +105,7 @@ def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> GroupF
 
 
 def _together(
-    decays: RingDowns,
-    model: ModalModel,
-    group: ModeGroup,
-    fit: GroupFit,
-    every: Mapping[ModeGroup, GroupFit | None],
+    group: ModeGroup, fit: GroupFit, every: Mapping[ModeGroup, GroupFit | None]
 ) -> GroupFit:
     """Return the fit of a group with the modes of other groups on its joint."""
     others = [
@@ -110,19 +114,26 @@ def _together(
         if other is not group and one is not None
         for number in range(len(one.members))
     ]
+    try:
+        return replace(fit, main=with_others(fit.main, others))
+    except np.linalg.LinAlgError:
+        return fit
+
+
+def _begun_later(
+    decays: RingDowns, model: ModalModel, group: ModeGroup, fit: GroupFit
+) -> GroupFit:
+    """Return the fit with the same from a later start, or from two where it is poor."""
     band = group.band(model, len(fit.members))
     delay = min(_DELAY, _DELAY_SHARE / band.slowest)
+    if decays.samples.shape[2] < _LEAST_DELAYS * delay * decays.sample_rate:
+        return fit
+    main = fit.main.curved.residual_ratio
     try:
-        main = with_others(fit.main, others)
-        if decays.samples.shape[2] < _LEAST_DELAYS * delay * decays.sample_rate:
-            return GroupFit(main, None, fit.members)
-        later = fit_later(decays, band, main, delay)
-        if (
-            main.curved.residual_ratio > _UNEASY
-            and later.curved.residual_ratio < main.curved.residual_ratio
-        ):
-            last = fit_later(decays, band, main, 2 * delay)
+        later = fit_later(decays, band, fit.main, delay)
+        if main > _UNEASY and later.curved.residual_ratio < main:
+            last = fit_later(decays, band, fit.main, 2 * delay)
             return GroupFit(later, last, fit.members)
     except np.linalg.LinAlgError:
         return fit
-    return GroupFit(main, later, fit.members)
+    return GroupFit(fit.main, later, fit.members)

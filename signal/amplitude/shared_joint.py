@@ -53,16 +53,26 @@ def with_others(fit: BandFit, others: Sequence[tuple[BandFit, int]]) -> BandFit:
 
 
 def _levels(other: BandFit, number: int, fit: BandFit) -> FloatArray:
-    """Return L of a mode of another band at the nodes of a fit, 0 at its largest."""
+    """Return L of a mode of another band at the nodes of a fit, 0 at its largest.
+
+    Beyond its own decays, where it is below all noise, it goes on at its last rate.
+    """
     mode = other.curved.modes[number]
-    flow = decays(mode, fit.lines.panels, other.lines.centre, 0)
-    return np.asarray(flow.level - mode.start.max())
+    level = decays(mode, other.lines.panels, other.lines.centre, 0).level
+    time, wanted = other.lines.time, fit.lines.time
+    last = (level[:, -1] - level[:, -2]) / (time[-1] - time[-2])
+    beyond = np.maximum(wanted - time[-1], 0.0)
+    inside = np.stack([np.interp(wanted, time, row) for row in level])
+    return np.asarray(inside + last[:, None] * beyond - mode.start.max())
 
 
 def _beside(mode: ModeState, levels: FloatArray) -> ModeState:
     """Return a mode with the squares of others, largest equal to its own largest."""
+    weights = mode.log_weights
+    if weights.shape[1] != levels.shape[2]:
+        weights = np.full((2, levels.shape[2]), MOST_LIKELY_WEIGHT)
     return replace(
         mode,
         squares=np.exp(2.0 * (levels + mode.start.max())),
-        log_weights=np.full((2, levels.shape[2]), MOST_LIKELY_WEIGHT),
+        log_weights=weights,
     )

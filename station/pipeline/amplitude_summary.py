@@ -101,6 +101,8 @@ def _curve_json(mode: AmplitudeMode) -> dict[str, object] | None:
         "frequency_sd_hz": _list(curve.frequency_sd),
         "damping_ratio": _list(curve.damping_ratio),
         "damping_ratio_sd": _list(curve.damping_sd),
+        "frequency_noise_sd_hz": _list(curve.frequency_noise_sd),
+        "damping_ratio_noise_sd": _list(curve.damping_noise_sd),
     }
 
 

@@ -145,9 +145,11 @@ def _modes_at(
         return PreloadAnalysis(preload, judged_modes(group, settings, run, preload))
     modes, of_run = known
     chain = modes.with_recordings(group)
-    # A results file keeps the modes; their curves are in the hits.
-    curves = amplitude_modes(chain.recordings, chain.result.model)
-    return PreloadAnalysis(preload, replace(chain, amplitude=curves), of_run)
+    if modes.amplitude is None:
+        # Files of earlier versions keep the modes; their curves are in the hits.
+        curves = amplitude_modes(chain.recordings, chain.result.model)
+        chain = replace(chain, amplitude=curves)
+    return PreloadAnalysis(preload, chain, of_run)
 
 
 def _contact(

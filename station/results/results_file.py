@@ -28,6 +28,7 @@ from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.modes import ModalResult
 from jointbench.station.files.input_files import is_session_name
 from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.results.amplitude_results import write_amplitude
 
 SCHEMA = "jointbench-results/1"
 FRF_UNITS = {
@@ -72,7 +73,7 @@ def write_results(path: Path, chain: ModalChain, inputs: Sequence[Path]) -> None
 
 
 def write_modal(group: h5py.Group, chain: ModalChain) -> None:
-    """Write FRF, synthesis, poles of all orders, modes and provenance into a group."""
+    """Write FRF, synthesis, poles of all orders, modes, curves and provenance."""
     _write_frf(group.create_group("frf"), chain.frf)
     _write_frf(group.create_group("synthesis"), chain.result.synthesis)
     write_variable(
@@ -87,6 +88,8 @@ def write_modal(group: h5py.Group, chain: ModalChain) -> None:
     _write_modes(group.create_group("modes"), chain.result.model)
     _write_evidence(group["modes"], chain.result)
     _write_provenance(group.create_group("provenance"), chain)
+    if chain.amplitude:
+        write_amplitude(group.create_group("amplitude"), chain.amplitude)
 
 
 def _write_frf(group: h5py.Group, frf: Frf) -> None:

@@ -24,6 +24,7 @@ from jointbench.acquisition.file_access.netcdf_read import (
 )
 from jointbench.acquisition.records.provenance import Provenance, Step
 from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.kalman.process_models import (
     KalmanModel,
@@ -34,6 +35,7 @@ from jointbench.signal.modal.modal_model import ModalModel, split_residues
 from jointbench.signal.modal.modes import ModalResult, ModalSettings
 from jointbench.signal.modal.stabilisation import Stabilisation
 from jointbench.station.pipeline.chain import ModalChain
+from jointbench.station.results.amplitude_results import read_amplitude
 from jointbench.station.results.results_read import open_result
 
 _KEY = re.compile(r"(?:^|; )(\w+)=")
@@ -49,16 +51,24 @@ class StoredModes:
         frf: as measured.
         result: its modes.
         steps: how both came about.
+        amplitude: modes over amplitude; None where the file has none.
     """
 
     preload: float | None
     frf: Frf
     result: ModalResult
     steps: Provenance
+    amplitude: tuple[AmplitudeMode, ...] | None = None
 
     def with_recordings(self, recordings: Sequence[Recording]) -> ModalChain:
         """Return the chain that these modes are the end of."""
-        return ModalChain(tuple(recordings), self.frf, self.result, self.steps)
+        return ModalChain(
+            tuple(recordings),
+            self.frf,
+            self.result,
+            self.steps,
+            amplitude=self.amplitude or (),
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -143,7 +153,9 @@ def _stored(group: h5py.Group) -> StoredModes:
     )
     preload = read_attribute(group, "preload")
     own = float(preload) if isinstance(preload, int | float) else None
-    return StoredModes(own, frf, result, steps)
+    curves = find_group(group, "amplitude")
+    found = None if curves is None else read_amplitude(curves)
+    return StoredModes(own, frf, result, steps, found)
 
 
 def stored_frf(group: h5py.Group, steps: Provenance = ()) -> Frf:
