@@ -2,7 +2,7 @@
 """Find all distinct solutions of a joint identification, from many starts."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +26,10 @@ _OPEN = 1e-5
 _STILL_FALLS = 1e-3
 # ... or than this share of it.
 _STILL_FALLS_SHARE = 1e-3
+# Relative change of unknowns and of chi2 that ends a search from a start, ...
+_ROUGH = 1e-6, 1e-8
+# ... and the one that continues it from each distinct optimum.
+_FINE = 1e-12, 1e-14
 # Two optima are one if their distance in standard deviations is below this ...
 _SAME_DISTANCE = 1.0
 # ... or if all stiffnesses agree to this, whatever the uncertainty.
@@ -79,17 +83,29 @@ def find_optima(
     Raises:
         BadData: the model has too few oscillating modes at every start.
     """
-    found = [
-        optimum
-        for start in _starts(problem, starts, seed)
-        if (optimum := _descend(problem, start)) is not None
-    ]
-    if not found:
+    rough = _descents(problem, _starts(problem, starts, seed), _ROUGH)
+    if not rough:
         raise BadData(
             f"mode {problem.mode_numbers.max() + 1} was measured, but the model has "
             "fewer oscillating modes for every stiffness tried; "
             "link a body to the ground, or narrow the band"
         )
+    distinct = [one.unknowns for one in _distinct(problem, rough)]
+    return _distinct(problem, _descents(problem, distinct, _FINE))
+
+
+def _descents(
+    problem: JointProblem, starts: Sequence[FloatArray], ends: tuple[float, float]
+) -> list[LinkOptimum]:
+    """Return the optima reached from starts at which the model can be evaluated."""
+    reached = (_descend(problem, start, ends) for start in starts)
+    return [optimum for optimum in reached if optimum is not None]
+
+
+def _distinct(
+    problem: JointProblem, found: Sequence[LinkOptimum]
+) -> tuple[LinkOptimum, ...]:
+    """Return the best optimum, and all others that the data separate, by chi2."""
     kept: list[LinkOptimum] = []
     ranked = sorted(found, key=lambda one: one.chi2)
     for optimum in [ranked[0], *(one for one in ranked[1:] if one.arrived)]:
@@ -134,8 +150,16 @@ def _stiffness_range(problem: JointProblem) -> tuple[float, float]:
     return low, math.log(max(mass) * omega.max() ** 2 * _START_SPREAD)
 
 
-def _descend(problem: JointProblem, start: FloatArray) -> LinkOptimum | None:
-    """Return the optimum reached from one start, or None if it cannot be evaluated."""
+def _descend(
+    problem: JointProblem, start: FloatArray, ends: tuple[float, float]
+) -> LinkOptimum | None:
+    """Return the optimum reached from one start, or None if it cannot be evaluated.
+
+    Args:
+        problem: unknowns and measured modes.
+        start: shape (size,).
+        ends: relative changes of the unknowns and of chi2 that end the search [-].
+    """
     first = residuals(problem, start)
     if first is None:
         return None
@@ -161,8 +185,8 @@ def _descend(problem: JointProblem, start: FloatArray) -> LinkOptimum | None:
         jac=slopes,
         bounds=(lower, upper),
         x_scale="jac",
-        xtol=1e-12,
-        ftol=1e-14,
+        xtol=ends[0],
+        ftol=ends[1],
         gtol=1e-12,
         max_nfev=200,
     )

@@ -3,18 +3,27 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, read_only
 from jointbench.signal.fractal.levelling_loss import levelling_loss
-from jointbench.signal.fractal.self_affine import TIP_TOLERANCE, SeenSurface, rolled_off
+from jointbench.signal.fractal.self_affine import (
+    TIP_TOLERANCE,
+    SeenForm,
+    SeenSurface,
+    form_of,
+    rolled_off,
+)
 from jointbench.signal.fractal.structure_covariance import Seen, structure_covariance
 from jointbench.signal.surface.structure_function import StructureFunction
 
 PLANE_LOSS = 0.5
 """Loss by a mean plane over that by a mean line: between 0 and 1, unknown [-]."""
 
+_RECENT = 8
+"""Forms that are kept: more than a search has parameters [-]."""
 INDEPENDENT_ROWS = 8.0
 """Rows farther apart than this are independent profiles [samples]."""
 
@@ -29,29 +38,38 @@ class FractalProblem:
         tolerance: relative model error allowed at each lag in addition to its scatter
             [-].
         lag: lags of the estimate [samples], shape (n_lags,).
+        pivot: geometric middle of the lags [samples].
+        axes: directions in which the instrument acts: 2 on a map with related rows.
+        least: smallest value of the structure function [m^2].
+        form_of: form of the structure function at the lags; a search moves one
+            parameter at a time, and most of them leave the form as it is.
+        unit_loss: loss by levelling at the lags, for an exponent.
     """
 
     estimate: StructureFunction
     covariance_of: Callable[[Seen], FloatArray]
     tolerance: float = 0.0
     lag: FloatArray = field(init=False)
+    pivot: float = field(init=False)
+    axes: int = field(init=False)
+    least: float = field(init=False)
+    form_of: Callable[[SeenForm], FloatArray] = field(init=False)
+    unit_loss: Callable[[float], FloatArray] = field(init=False)
 
     def __post_init__(self) -> None:
         """Work out the lags once: a search looks at them thousands of times."""
-        lag = self.estimate.lag / self.estimate.spacing
-        object.__setattr__(self, "lag", read_only(lag))
-
-    @property
-    def pivot(self) -> float:
-        """Geometric middle of the lags [samples]."""
-        return float(np.sqrt(self.lag[0] * self.lag[-1]))
-
-    @property
-    def axes(self) -> int:
-        """Directions in which the instrument acts: 2 on a map with related rows."""
-        sampling = self.estimate.samplings[0]
-        hangs_together = sampling.row_distance < INDEPENDENT_ROWS * sampling.spacing
-        return 2 if sampling.profiles > 1 and hangs_together else 1
+        lag = read_only(self.estimate.lag / self.estimate.spacing)
+        share = lag / float(self.estimate.points)
+        object.__setattr__(self, "lag", lag)
+        object.__setattr__(self, "pivot", float(np.sqrt(lag[0] * lag[-1])))
+        object.__setattr__(self, "axes", _axes(self.estimate))
+        object.__setattr__(self, "least", float(self.estimate.value.min()))
+        object.__setattr__(
+            self, "form_of", lru_cache(_RECENT)(lambda form: form_of(lag, form))
+        )
+        object.__setattr__(
+            self, "unit_loss", lru_cache(_RECENT)(lambda s: levelling_loss(share, s))
+        )
 
     def loss(self, seen: SeenSurface) -> FloatArray:
         """Return the loss of S by levelling at the fit's lags [m^2].
@@ -61,7 +79,7 @@ class FractalProblem:
         """
         points = float(self.estimate.points)
         part = 1.0 if self.estimate.separate else PLANE_LOSS
-        unit = levelling_loss(self.lag / points, seen.exponent)
+        unit = self.unit_loss(seen.exponent)
         power = seen.amplitude * points**seen.exponent
         if np.isfinite(seen.corner):
             ceiling = seen.amplitude * seen.corner**seen.exponent
@@ -72,7 +90,8 @@ class FractalProblem:
 
     def predicted(self, seen: SeenSurface) -> FloatArray:
         """Return the expected structure function of the levelled surface [m^2]."""
-        predicted: FloatArray = seen.seen(self.lag) - self.loss(seen)
+        shape = self.form_of(seen.form)
+        predicted: FloatArray = seen.seen_of(self.lag, shape) - self.loss(seen)
         return predicted
 
     @property
@@ -132,3 +151,10 @@ class FractalProblem:
 def pose(estimate: StructureFunction, *, tolerance: float = 0.0) -> FractalProblem:
     """Prepare the fit of a structure function at its lags."""
     return FractalProblem(estimate, structure_covariance(estimate), tolerance)
+
+
+def _axes(estimate: StructureFunction) -> int:
+    """Return 2 for a map with related rows, 1 for profiles and independent rows."""
+    sampling = estimate.samplings[0]
+    hangs_together = sampling.row_distance < INDEPENDENT_ROWS * sampling.spacing
+    return 2 if sampling.profiles > 1 and hangs_together else 1

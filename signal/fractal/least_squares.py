@@ -6,6 +6,7 @@ weights from the full covariance reach the precision that the data allow. The co
 depends on the surface, so it is recalculated with the fitted one.
 """
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -205,17 +206,17 @@ def _unpack(
     problem: FractalProblem, model: Model, parameters: FloatArray
 ) -> SeenSurface:
     """Return the surface and instrument of a parameter vector."""
-    exponent, level, *rest = (float(value) for value in parameters)
+    exponent, level, *rest = parameters.tolist()
     instrument = model.instrument
     noise = rest.pop(0) if instrument.has_noise else 0.0
     return SeenSurface(
         exponent=exponent,
-        amplitude=float(np.exp(level - exponent * np.log(problem.pivot))),
-        noise=0.5 * noise * float(problem.estimate.value.min()),
+        amplitude=math.exp(level - exponent * math.log(problem.pivot)),
+        noise=0.5 * noise * problem.least,
         psf_width=rest.pop(0) if instrument.has_psf else 0.0,
         axes=problem.axes,
         band_limited=instrument is InstrumentModel.BAND_LIMIT,
-        corner=float(np.exp(rest.pop(0))) if model.rolls_off else np.inf,
+        corner=math.exp(rest.pop(0)) if model.rolls_off else np.inf,
         quantum=problem.estimate.quantum,
         traced=instrument.is_traced,
     )

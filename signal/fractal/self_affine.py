@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Structure function of a self-affine profile as an instrument measures it."""
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -35,24 +36,28 @@ class InstrumentModel(StrEnum):
     @property
     def has_noise(self) -> bool:
         """Whether white height noise is among the parameters."""
-        return self in {
-            InstrumentModel.NOISE,
-            InstrumentModel.PSF_AND_NOISE,
-            InstrumentModel.STYLUS_AND_NOISE,
-        }
+        return self in _WITH_NOISE
 
     @property
     def has_psf(self) -> bool:
         """Whether the width of a blur is among the parameters."""
-        return self.is_traced or self in {
-            InstrumentModel.PSF,
-            InstrumentModel.PSF_AND_NOISE,
-        }
+        return self in _WITH_PSF
 
     @property
     def is_traced(self) -> bool:
         """Whether the blur is that of a round tip's path."""
-        return self in {InstrumentModel.STYLUS, InstrumentModel.STYLUS_AND_NOISE}
+        return self in _TRACED
+
+
+_WITH_NOISE = frozenset(
+    (
+        InstrumentModel.NOISE,
+        InstrumentModel.PSF_AND_NOISE,
+        InstrumentModel.STYLUS_AND_NOISE,
+    )
+)
+_TRACED = frozenset((InstrumentModel.STYLUS, InstrumentModel.STYLUS_AND_NOISE))
+_WITH_PSF = _TRACED | {InstrumentModel.PSF, InstrumentModel.PSF_AND_NOISE}
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,18 +102,51 @@ class SeenSurface:
             lag: [samples], any shape; 0 gives 0.
         """
         lag = np.abs(np.asarray(lag, dtype=np.float64))
-        if self.psf_width > 0 and self.traced:
-            shape = traced_power(lag, self.exponent, self.psf_width)
-        elif self.psf_width > 0:
-            shape = blurred_power(lag, self.exponent, self.psf_width, self.axes)
-        elif self.band_limited:
-            shape = band_limited_power(lag, self.exponent, self.axes)
-        else:
-            shape = lag**self.exponent
-        if np.isfinite(self.corner):
+        return self.seen_of(lag, form_of(lag, self.form))
+
+    @property
+    def form(self) -> "SeenForm":
+        """What the form of the structure function depends on."""
+        return (
+            self.exponent,
+            self.psf_width,
+            self.axes,
+            self.band_limited,
+            self.traced,
+        )
+
+    def seen_of(self, lag: FloatArray, shape: FloatArray) -> FloatArray:
+        """Return the structure function of a form.
+
+        Args:
+            lag: [samples], not negative, any shape.
+            shape: the form at these lags, see `form_of`.
+        """
+        if self.corner < math.inf:
             shape = rolled_off(shape, self.corner**self.exponent)
         seen: FloatArray = self.amplitude * shape + np.where(lag > 0, 2 * self.noise, 0)
         return _rounded(seen, self.quantum) if self.quantum > 0 else seen
+
+
+SeenForm = tuple[float, float, int, bool, bool]
+"""Exponent, width of the blur, axes, band limit, path of a tip; see `SeenSurface`."""
+
+
+def form_of(lag: FloatArray, form: SeenForm) -> FloatArray:
+    """Return the structure function of a surface of amplitude 1 without noise.
+
+    Args:
+        lag: [samples], not negative, any shape.
+        form: what it depends on.
+    """
+    exponent, width, axes, band_limited, traced = form
+    if width > 0 and traced:
+        return traced_power(lag, exponent, width)
+    if width > 0:
+        return blurred_power(lag, exponent, width, axes)
+    if band_limited:
+        return band_limited_power(lag, exponent, axes)
+    return np.asarray(lag**exponent)
 
 
 def _rounded(value: FloatArray, quantum: float) -> FloatArray:

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -24,14 +25,26 @@ def jointbench(*words: object) -> subprocess.CompletedProcess[str]:
     )
 
 
-def refused(*words: object) -> str:
-    """Run a command that must fail on bad data; return its one line of error."""
-    done = jointbench(*words)
-    assert done.returncode == 3, done.stderr
-    lines = done.stderr.strip().splitlines()
-    assert len(lines) == 1, done.stderr
-    assert lines[0].startswith("jointbench: error: ")
-    return lines[0]
+Refused = Callable[..., str]
+
+
+@pytest.fixture
+def refused(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> Refused:
+    """Run a command that must fail on bad data; return its one line of error.
+
+    Standard error is taken as the process writes it, libraries in C included.
+    """
+
+    def run(*words: object) -> str:
+        monkeypatch.setattr(sys, "argv", ["jointbench", *map(str, words)])
+        assert exit_code(app, debug=False) == 3
+        (line,) = capfd.readouterr().err.strip().splitlines()
+        assert line.startswith("jointbench: error: ")
+        return line
+
+    return run
 
 
 def hit_table(path: Path, *, rows: int = 400) -> Path:
@@ -44,11 +57,17 @@ def hit_table(path: Path, *, rows: int = 400) -> Path:
 
 
 def test_a_missing_file_is_one_line_and_code_three(tmp_path: Path) -> None:
-    """The line names the file."""
-    assert "gone.h5" in refused("modal", tmp_path / "gone.h5")
+    """The line names the file; in a process of its own."""
+    done = jointbench("modal", tmp_path / "gone.h5")
+    assert done.returncode == 3, done.stderr
+    (line,) = done.stderr.strip().splitlines()
+    assert line.startswith("jointbench: error: ")
+    assert "gone.h5" in line
 
 
-def test_a_table_without_units_is_refused_with_what_to_type(tmp_path: Path) -> None:
+def test_a_table_without_units_is_refused_with_what_to_type(
+    refused: Refused, tmp_path: Path
+) -> None:
     """Units are never guessed."""
     path = hit_table(tmp_path / "hit.csv")
     line = refused("import", path, "--out", tmp_path / "s.h5")
@@ -56,7 +75,7 @@ def test_a_table_without_units_is_refused_with_what_to_type(tmp_path: Path) -> N
     assert not (tmp_path / "s.h5").exists()
 
 
-def test_a_wrong_unit_is_refused(tmp_path: Path) -> None:
+def test_a_wrong_unit_is_refused(refused: Refused, tmp_path: Path) -> None:
     """A force in metres is no force."""
     path = hit_table(tmp_path / "hit.csv")
     wrong = "time:s,force:m,acceleration:m/s^2"
@@ -72,7 +91,9 @@ def test_a_wrong_unit_is_refused(tmp_path: Path) -> None:
         ("time that runs backwards", lambda t: "\n".join(t.splitlines()[::-1])),
     ],
 )
-def test_a_damaged_table_is_refused(name: str, edit: "object", tmp_path: Path) -> None:
+def test_a_damaged_table_is_refused(
+    name: str, edit: "object", refused: Refused, tmp_path: Path
+) -> None:
     """Unequal columns, NaN and a clock that runs backwards never get in."""
     path = hit_table(tmp_path / "hit.csv")
     assert callable(edit)
@@ -98,20 +119,12 @@ def test_an_empty_or_truncated_session_is_refused(
     kept: int,
     tmp_path: Path,
     whole_session: bytes,
-    monkeypatch: pytest.MonkeyPatch,
-    capfd: pytest.CaptureFixture[str],
+    refused: Refused,
 ) -> None:
-    """Whatever is asked of it, a cut session file is one line and code three.
-
-    Standard error is taken as the process writes it, libraries in C included.
-    """
+    """Whatever is asked of it, a cut session file is one line and code three."""
     cut = tmp_path / "cut.h5"
     cut.write_bytes(whole_session[:kept])
-    monkeypatch.setattr(sys, "argv", ["jointbench", command, str(cut)])
-    assert exit_code(app, debug=False) == 3
-    (line,) = capfd.readouterr().err.strip().splitlines()
-    assert line.startswith("jointbench: error: ")
-    assert "cut.h5" in line
+    assert "cut.h5" in refused(command, cut)
 
 
 def test_an_unknown_option_is_a_usage_error() -> None:
@@ -132,13 +145,12 @@ def test_import_reports_channels_and_records_as_json(tmp_path: Path) -> None:
     assert list(content["records"]) == ["hit"]
 
 
-def test_inspect_shows_what_import_brought_in(tmp_path: Path) -> None:
+def test_inspect_shows_what_import_brought_in(
+    tmp_path: Path, whole_session: bytes
+) -> None:
     """The file speaks for itself."""
     session = tmp_path / "s.h5"
-    path = hit_table(tmp_path / "hit.csv")
-    assert (
-        jointbench("import", path, "--out", session, "--columns", HITS).returncode == 0
-    )
+    session.write_bytes(whole_session)
     shown = jointbench("inspect", session)
     assert shown.returncode == 0
     assert "hit" in shown.stdout

@@ -20,7 +20,7 @@ from jointbench.station.archive.reprocess import (
 )
 from jointbench.station.screen.exit_codes import EXIT_INSTRUMENT, code_of
 
-SESSIONS = 24
+SESSIONS = 12
 Ends = Callable[[], None]
 
 

@@ -45,6 +45,11 @@ def gap(source: Path | str, target: Path, **options: Any) -> dict[str, Any]:
     return content
 
 
+def all_but(*names: str) -> str:
+    """Return the other names of the catalogue, as an option takes them."""
+    return ",".join(sorted({e.effect.name for e in CATALOGUE} - set(names)))
+
+
 def typed(monkeypatch: pytest.MonkeyPatch, *words: str) -> int:
     """Return the exit code of what a user types."""
     monkeypatch.setattr(sys, "argv", ["jointbench", *words])
@@ -119,11 +124,11 @@ def test_a_glancing_hit_among_levels_is_left_out_and_reported(
 
 
 def test_a_url_is_recorded_and_what_it_hides_is_named(tmp_path: Path) -> None:
-    """A delay of the top's channel, from URL to name; friction effects are slow."""
+    """A delay of the top's channel, from URL to name, among what resembles it."""
     url = f"{URL}&hide=delay&size=0.2"
-    friction = "iwan,bouc_wen,jenkins,coulomb"
+    others = all_but("delay", "sensor_lowpass", "added_mass", "maxwell", "gain_error")
     page = tmp_path / "g.html"
-    found = gap(url, tmp_path / "g.json", report=page, without=friction)
+    found = gap(url, tmp_path / "g.json", report=page, without=others)
     assert [effect["name"] for effect in found["effects"]] == ["delay"]
     truth = open_runs(url).truth
     assert truth is not None
@@ -223,7 +228,8 @@ def test_hits_of_one_level_are_not_judged(tmp_path: Path) -> None:
     """A plain stream is a single run; the verdict states what it lacks."""
     path = tmp_path / "s.h5"
     record_session_file(
-        "sim:two-body?seed=4&hits=5&level_scatter=0.02&double_rate=0&overload_rate=0",
+        "sim:two-body?seed=4&hits=5&level_scatter=0.02&double_rate=0&overload_rate=0"
+        "&interval=0.5&sample_rate=6400",
         path,
     )
     session = read_session(path)
@@ -231,8 +237,7 @@ def test_hits_of_one_level_are_not_judged(tmp_path: Path) -> None:
     assert session.recordings[0].preload == session.joint.preload == 25e3
     model = tmp_path / "bench.toml"
     model.write_text(open_runs(URL).model or "")
-    few = {"added_mass", "delay", "cubic_stiffness"}  # others are not asked for
-    others = ",".join(sorted({e.effect.name for e in CATALOGUE} - few))
+    others = all_but("added_mass", "delay", "cubic_stiffness")  # are not asked for
     found = gap(path, tmp_path / "g.json", model=model, without=others)
     assert found["verdict"] == "unknown"
     assert "one level" in found["reason"]
