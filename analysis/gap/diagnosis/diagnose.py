@@ -101,6 +101,10 @@ def conclude(
         shown = outcome.level
     best = outcome.best if outcome.acceptance.passed else base
     held = hold_out(base, bench)
+    held_after = held
+    if best.candidates:
+        rivals = _close_rivals(outcome, bench, best)
+        held_after = hold_out(best, bench, held, rivals)
     evidence = make_evidence(bench, base, outcome, finding)
     if verdict.step:
         evidence = replace(evidence, advice="")
@@ -109,7 +113,7 @@ def conclude(
         effects=_effects(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
         gap_before=_gap(bench, base, held),
-        gap_after=_gap(bench, best, hold_out(best, bench, held)),
+        gap_after=_gap(bench, best, held_after),
         prior_deviations={
             name: (float(b), float(a))
             for name, b, a in zip(
@@ -145,6 +149,13 @@ def conclude(
     return found
 
 
+def _close_rivals(outcome: SearchOutcome, bench: Bench, best: Fit) -> tuple[Fit, ...]:
+    """Return the fits that may be chosen when a condition is held out."""
+    near = score(bench, best) + DIAGNOSIS.held_out_score
+    close = [f for f in outcome.ranked if f is not best and score(bench, f) < near]
+    return tuple(close[: DIAGNOSIS.held_out_rivals])
+
+
 def _labels(fit: Fit) -> tuple[str, ...]:
     return tuple(c.label for c in fit.candidates) or ("none",)
 
@@ -155,6 +166,7 @@ def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
         held.chi2_per_dof,
         float(np.abs(fit.prior_deviations).max()),
         bench.views(fit),
+        held.words,
     )
 
 

@@ -31,7 +31,7 @@ def scatter_found(bench: LumpedBench) -> ScatterFound:
             for record, value in enumerate(scatter.values[:, column]):
                 far = size > 0.0 and abs(value) > limit * size
                 if far or (record, column) in scatter.outstanding:
-                    # The model minus the measurement was fitted: the hit is the reverse.
+                    # Of the model minus the measurement; the hit is the reverse.
                     off = -float(value) * direction.scale
                     hits.append(HitFound(record, direction.name, off, usual))
     return ScatterFound(tuple(directions), scatter.rho, tuple(hits))
