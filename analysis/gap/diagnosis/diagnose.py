@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.compiled import announced
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
@@ -79,7 +80,9 @@ def diagnose(
         acceptance criteria are those of `jointbench.analysis.gap.judgement.naming`.
     """
     bench = make_bench(campaign, without=without, entries=entries, policy=policy)
-    outcome = investigate(bench, progress or (lambda line: None))
+    report = progress or (lambda line: None)
+    with announced(report):
+        outcome = investigate(bench, report)
     final = outcome.bench
     if not isinstance(final, LumpedBench):
         raise TypeError("the search must return a bench of the type it was given")

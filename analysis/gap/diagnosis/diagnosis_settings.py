@@ -103,6 +103,12 @@ class DiagnosisSettings:
         "most rivals that compete again",
         "computing time",
     )
+    outstanding_sd: float = numerical(
+        4.0,
+        "sd",
+        "deviation of a hit, in sd of its direction, above which it is listed",
+        "closed form: one hit in 16,000 by chance",
+    )
     repeat_share: float = numerical(
         0.3,
         "of the residual",

@@ -22,7 +22,7 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
 def scatter_found(bench: LumpedBench) -> ScatterFound:
     """Return sizes and outstanding hits of the scatter of a bench."""
-    scatter, limit = bench.noise.scatter, bench.policy.outstanding_sd
+    scatter, limit = bench.noise.scatter, DIAGNOSIS.outstanding_sd
     directions, hits = [], []
     for direction, size in zip(scatter.directions, scatter.size, strict=True):
         usual = float(size) * direction.scale
