@@ -9,7 +9,8 @@ as numbers, from any file. Numba's cache checks only the file of the function it
 import ast
 import hashlib
 import importlib.util
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -18,6 +19,32 @@ from numba import njit
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 F = TypeVar("F", bound=Callable[..., Any])
+COMPILING = (
+    "compiling the time integration: 10 to 20 s, once; later runs load it from the "
+    "cache"
+)
+_LISTENERS: list[Callable[[str], None]] = []
+
+
+@contextmanager
+def announced(listener: Callable[[str], None]) -> Iterator[None]:
+    """Report to a listener, once, when a function has to be compiled first.
+
+    Args:
+        listener: receives one line before the compilation begins.
+    """
+    _LISTENERS.append(listener)
+    try:
+        yield
+    finally:
+        if listener in _LISTENERS:
+            _LISTENERS.remove(listener)
+
+
+def _announce() -> None:
+    """Report to every listener, to none of them twice."""
+    while _LISTENERS:
+        _LISTENERS.pop()(COMPILING)
 
 
 def compiled(**options: Any) -> Callable[[F], F]:
@@ -50,6 +77,13 @@ class _Cache(FunctionCache):
             filename_base=self._impl.filename_base,
             source_stamp=digest_of(function.__module__),
         )
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load a compiled function; announce the compilation if there is none."""
+        found = super().load_overload(sig, target_context)  # type: ignore[no-untyped-call]
+        if found is None:
+            _announce()
+        return found
 
 
 @cache

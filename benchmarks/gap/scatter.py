@@ -14,24 +14,43 @@ is not run again. `page` prints docs/gap-scatter.md.
 
 import argparse
 import json
+import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scattered_campaigns import SIZES, WAYS, Scatter, draw_scatter, scattered_null
+from outcomes import NAMEABLE, share_text, word_of
+from scattered_campaigns import (
+    LARGEST_DELAY,
+    SIZES,
+    WAYS,
+    Scatter,
+    draw_scatter,
+    heavy_noise,
+    scattered_null,
+)
 
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.model.diagnosis_record import diagnosis_json
 from jointbench.simulators.campaigns.campaign_records import (
     SimulatedCampaign,
-    make_campaign,
+    size_to_margin,
 )
 from jointbench.simulators.campaigns.write_campaign import write_campaign
-from jointbench.simulators.hidden.effect_draws import CATALOGUE
+from jointbench.simulators.detectability.expected_margin import (
+    expected_margin,
+    margin_scale,
+)
+from jointbench.simulators.hidden.campaign_design import CampaignDesign, draw_design
+from jointbench.simulators.hidden.campaign_response import simulate_records
+from jointbench.simulators.hidden.campaign_sampling import FORCE_NOISE
+from jointbench.simulators.hidden.effect_draws import CATALOGUE, draw_effect
+from jointbench.simulators.hidden.hit_deviations import ScatterWays
 
 Run = dict[str, Any]
 CORRELATED = ("wander",)
@@ -73,25 +92,51 @@ def judge_null(way: str, size: float, seed: int) -> Run:
 def judge_single(way: str, size: float, seed: int) -> Run:
     """Judge one campaign with one effect over a scatter of its hits."""
     rng = np.random.default_rng([seed, 7])
+    plain = draw_design(seed)
+    scatter = draw_scatter(way, size, len(plain.conditions), rng)
+    design = scattered_design(plain, way, size, scatter)
+    scale = margin_scale(design)
     name = CATALOGUE[seed % len(CATALOGUE)]
-    campaign = make_campaign(
-        seed,
-        effects=(name,),
-        margin=(50.0, 1e4),
-        hits=lambda count: drawn_hits(draw_scatter(way, size, count, rng)),
-    )
+    wanted = float(np.exp(rng.uniform(np.log(NAMEABLE), np.log(1e4))))
+    effect = size_to_margin(scale, draw_effect(name, scale.scales, rng), wanted)
+    margin = expected_margin(scale, effect)
+    force, acceleration = simulate_records(design, [effect])
+    force = force + FORCE_NOISE * design.noise * heavy_noise(rng, force.shape)
+    acceleration = acceleration + design.noise * heavy_noise(rng, acceleration.shape)
+    campaign = SimulatedCampaign(design, (effect,), (margin,), force, acceleration)
     facts: Run = {"kind": "single", "way": way, "size": size, "seed": seed}
-    facts |= {
-        "truth": [name],
-        "sites": [e.site for e in campaign.effects],
-        "margins": [float(m.margin) for m in campaign.margins],
-    }
+    facts |= {"truth": [name], "sites": [effect.site], "margins": [margin.margin]}
     return judged(campaign, facts)
 
 
-def drawn_hits(scatter: Scatter) -> Any:
-    """Return a scatter of this benchmark for the simulator."""
-    raise NotImplementedError(scatter)
+def scattered_design(
+    design: CampaignDesign, way: str, size: float, scatter: Scatter
+) -> CampaignDesign:
+    """Return a design whose hits deviate, and whose margins count that."""
+    hits = tuple(
+        replace(
+            condition,
+            channel_gain=(float(gain[0]), float(gain[1])),
+            force_delay=float(delay),
+            joint_factor=float(joint),
+        )
+        for condition, gain, delay, joint in zip(
+            design.conditions, scatter.gain, scatter.delay, scatter.joint, strict=True
+        )
+    )
+    late = LARGEST_DELAY * size / max(SIZES) if way == "delay" else 0.0
+    gains = 0.0 if way == "delay" else size / 10.0 if way == "bad" else size
+    settling = size / 10.0 if way == "joint" else 0.0
+    ways = ScatterWays(channel=gains, delay=late)
+    return replace(design, conditions=hits, ways=ways, hit_scatter=settling)
+
+
+def single_cells(seed: int, count: int) -> Iterator[tuple[str, float, int]]:
+    """Yield way, size and seed of each campaign with one effect, in turns."""
+    cells = [(way, size) for size in SIZES for way in WAYS]
+    for k in range(count):
+        way, size = cells[k % len(cells)]
+        yield way, size, seed + k
 
 
 def key_of(run: Run) -> tuple[str, str, float, int]:
@@ -106,6 +151,99 @@ def read_runs(path: Path) -> list[Run]:
     return [json.loads(line) for line in path.read_text().splitlines()]
 
 
+def page(runs: Sequence[Run]) -> str:
+    """Return docs/gap-scatter.md."""
+    nulls = [r for r in runs if r["kind"] == "null"]
+    singles = [r for r in runs if r["kind"] == "single"]
+    named = [r for r in nulls if r["found"]["verdict"] in {"named", "ambiguous"}]
+    apart = [r for r in nulls if r["way"] not in CORRELATED]
+    lines = [
+        "# Gap engine on hits that scatter",
+        "",
+        "Made by `benchmarks/gap/scatter.py`. The hits scatter in ways and sizes that "
+        "the engine does not share (`benchmarks/gap/scattered_campaigns.py`); counts "
+        "with 95 % Wilson intervals in %.",
+        "",
+        "## Nothing missing",
+        "",
+        "| way | " + " | ".join(f"{100 * s:g} %" for s in SIZES) + " |",
+        "|---|" + "---|" * len(SIZES),
+    ]
+    for way in WAYS:
+        cells = []
+        for size in SIZES:
+            own = [r for r in nulls if (r["way"], r["size"]) == (way, size)]
+            cells.append(f"{len([r for r in own if is_none(r)])}/{len(own)}")
+        lines.append(f"| {way} | " + " | ".join(cells) + " |")
+    lines += [
+        "",
+        f"None: {_share(nulls, is_none)}; without the correlated ones "
+        f"{_share(apart, is_none)}. A name where nothing is missing: "
+        f"{share_text(len(named), len(nulls))}.",
+        "",
+        "## One effect, expected margin of 50 or more over that scatter",
+        "",
+        "| size | right | wrong name | n |",
+        "|---|---|---|---|",
+    ]
+    good = [r for r in singles if min(r["margins"]) >= NAMEABLE]
+    for size in SIZES:
+        own = [r for r in good if r["size"] == size]
+        words = [word_of(r) for r in own]
+        right, wrong = words.count("right"), words.count("wrong name")
+        lines.append(f"| {100 * size:g} % | {right} | {wrong} | {len(own)} |")
+    words = [word_of(r) for r in good]
+    lines += [
+        "",
+        f"Right: {share_text(words.count('right'), len(words))}; wrong name: "
+        f"{share_text(words.count('wrong name'), len(words))}.",
+        "",
+        "## Time",
+        "",
+        f"Nothing missing: {_times(nulls)}. One effect: {_times(singles)}. CPU time of "
+        "one core of a machine that was also busy with other work.",
+        "",
+        "## Other verdicts",
+        "",
+        "| kind | truth | way | size | seed | verdict | reason |",
+        "|---|---|---|---|---|---|---|",
+        *(_other(r) for r in [*nulls, *good] if not _expected(r)),
+    ]
+    return "\n".join([*lines, ""])
+
+
+def is_none(run: Run) -> bool:
+    """Return whether the verdict is none."""
+    return bool(run["found"]["verdict"] == "none")
+
+
+def _expected(run: Run) -> bool:
+    return is_none(run) if run["kind"] == "null" else word_of(run) == "right"
+
+
+def _share(runs: Sequence[Run], test: Callable[[Run], bool]) -> str:
+    return share_text(len([r for r in runs if test(r)]), len(runs))
+
+
+def _times(runs: Sequence[Run]) -> str:
+    seconds = sorted(r["seconds"] for r in runs) or [0.0]
+    return f"median {seconds[len(seconds) // 2]:.1f} s, worst {seconds[-1]:.1f} s"
+
+
+def _other(run: Run) -> str:
+    named = " or ".join(e["name"] for e in run["found"].get("effects", []))
+    cells = (
+        run["kind"],
+        " ".join(run["truth"]) or "none",
+        run["way"],
+        f"{100 * run['size']:g} %",
+        str(run["seed"]),
+        f"{run['found']['verdict']} {named}".strip(),
+        run["found"]["reason"],
+    )
+    return f"| {' | '.join(cells)} |"
+
+
 def main() -> None:
     """Run the benchmark, or print its page."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -116,11 +254,21 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200)
     arguments = parser.parse_args()
     runs = read_runs(arguments.runs)
+    if arguments.what == "page":
+        sys.stdout.write(page(runs))
+        return
     done = {key_of(run) for run in runs}
+    nulls = arguments.what == "nulls"
+    cells = (
+        null_cells(arguments.seed, arguments.rounds)
+        if nulls
+        else single_cells(arguments.seed, arguments.count)
+    )
+    judge = judge_null if nulls else judge_single
     with arguments.runs.open("a", encoding="utf-8") as out:
-        for way, size, seed in null_cells(arguments.seed, arguments.rounds):
-            if ("null", way, size, seed) not in done:
-                out.write(json.dumps(judge_null(way, size, seed)) + "\n")
+        for way, size, seed in cells:
+            if (arguments.what[:-1], way, size, seed) not in done:
+                out.write(json.dumps(judge(way, size, seed)) + "\n")
                 out.flush()
 
 

@@ -28,6 +28,7 @@ from jointbench.simulators.hidden.effect_draws import (
     specimen_scales,
 )
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
+from jointbench.simulators.hidden.hit_deviations import ScatterWays
 
 MARGIN_RANGE = (1.0, 1e4)
 _CLOSE = 0.15  # relative tolerance of the size of an effect
@@ -81,6 +82,7 @@ def make_campaign(
     grid: str | None = None,
     noise: float | None = None,
     hit_scatter: float = 0.0,
+    ways: ScatterWays | None = None,
 ) -> SimulatedCampaign:
     """Draw a campaign with hidden effects.
 
@@ -95,6 +97,7 @@ def make_campaign(
         noise: of each acceleration [m/s^2]; None draws it.
         hit_scatter: relative standard deviation between hits [-]; 0.001 to 0.002 is a
             good operator.
+        ways: further scatter of the hits; None for none.
 
     Returns:
         The campaign. An effect that cannot reach its margin at a physical size has the
@@ -108,7 +111,9 @@ def make_campaign(
         raise UsageError(f"effects {names} name one twice; hide each of them once")
     for name in names:
         require_effect(name)
-    design = draw_design(seed, grid=grid, noise=noise, hit_scatter=hit_scatter)
+    design = draw_design(
+        seed, grid=grid, noise=noise, hit_scatter=hit_scatter, ways=ways
+    )
     hidden: tuple[HiddenEffect, ...] = ()
     margins: tuple[Margin, ...] = ()
     if effects:
@@ -129,6 +134,7 @@ def quick_campaign(
     grid: str | None = None,
     noise: float | None = None,
     hit_scatter: float = 0.0,
+    ways: ScatterWays | None = None,
 ) -> SimulatedCampaign:
     """Draw a campaign as `make_campaign` does, without margins.
 
@@ -141,13 +147,16 @@ def quick_campaign(
         grid: of hits, one of `GRIDS`; None draws it.
         noise: of each acceleration [m/s^2]; None draws it.
         hit_scatter: relative standard deviation between hits [-].
+        ways: further scatter of the hits; None for none.
 
     Raises:
         UsageError: an effect is unknown, or named twice.
     """
     if len(set(effects)) < len(effects):
         raise UsageError(f"effects {effects} name one twice; hide each of them once")
-    design = draw_design(seed, grid=grid, noise=noise, hit_scatter=hit_scatter)
+    design = draw_design(
+        seed, grid=grid, noise=noise, hit_scatter=hit_scatter, ways=ways
+    )
     rng = np.random.default_rng([seed, 12])
     scales = specimen_scales(design)
     hidden = tuple(

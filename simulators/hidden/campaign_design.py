@@ -2,12 +2,17 @@
 """The design of a two-body hammer campaign: specimen, hits and noise, seeded."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.hidden.campaign_sampling import PRETRIGGER, SAMPLE_RATE
+from jointbench.simulators.hidden.hit_deviations import (
+    HitDeviations,
+    ScatterWays,
+    draw_deviations,
+)
 from jointbench.simulators.measuring.hammer import Pulse
 
 BASE_NAMES = ("m1", "m2", "k0", "c0", "kj", "cj")
@@ -45,6 +50,8 @@ class CampaignCondition:
         force_factor: acting over measured force, the scatter of the operator [-].
         joint_factor: joint stiffness over its mean, the scatter of the joint [-].
         phase: of any hum at the start of the record [rad].
+        channel_gain: of each acceleration in this hit over its true one [-].
+        force_delay: of the recorded force [s].
     """
 
     level: float
@@ -57,6 +64,8 @@ class CampaignCondition:
     force_factor: float
     joint_factor: float
     phase: float
+    channel_gain: tuple[float, float] = (1.0, 1.0)
+    force_delay: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +80,7 @@ class CampaignDesign:
         noise: standard deviation of each acceleration [m/s^2].
         hit_scatter: relative standard deviation between hits [-].
         conditions: of the records, in order.
+        ways: scatter beyond that of strength and joint.
     """
 
     seed: int
@@ -80,6 +90,7 @@ class CampaignDesign:
     noise: float
     hit_scatter: float
     conditions: tuple[CampaignCondition, ...]
+    ways: ScatterWays = field(default_factory=ScatterWays)
 
 
 # (hit dof, level [N], preload over the reference)
@@ -125,6 +136,7 @@ def draw_design(
     grid: str | None = None,
     noise: float | None = None,
     hit_scatter: float = 0.0,
+    ways: ScatterWays | None = None,
 ) -> CampaignDesign:
     """Draw a specimen, its nominal parameters and its hits.
 
@@ -135,6 +147,7 @@ def draw_design(
         noise: of each acceleration [m/s^2]; None draws it from 0.02 to 0.5.
         hit_scatter: relative standard deviation of force and joint stiffness from
             hit to hit [-].
+        ways: further scatter; None for none.
 
     Returns:
         The design.
@@ -157,6 +170,9 @@ def draw_design(
     chosen = drawn_grid if grid is None else grid
     if chosen not in GRIDS:
         raise UsageError(f"unknown grid {chosen!r}; there are {', '.join(GRIDS)}")
+    conditions = _conditions(GRIDS[chosen], reference, hit_scatter, rng)
+    further = ScatterWays() if ways is None else ways
+    deviations = draw_deviations(seed, len(conditions), further)
     return CampaignDesign(
         seed=seed,
         nominal=nominal,
@@ -164,7 +180,24 @@ def draw_design(
         preload_reference=reference,
         noise=drawn_noise if noise is None else noise,
         hit_scatter=hit_scatter,
-        conditions=_conditions(GRIDS[chosen], reference, hit_scatter, rng),
+        conditions=deviating(conditions, deviations),
+        ways=further,
+    )
+
+
+def deviating(
+    conditions: tuple[CampaignCondition, ...], deviations: HitDeviations
+) -> tuple[CampaignCondition, ...]:
+    """Return the conditions with gains and delays of their hits."""
+    return tuple(
+        replace(
+            condition,
+            channel_gain=(float(gain[0]), float(gain[1])),
+            force_delay=float(delay),
+        )
+        for condition, gain, delay in zip(
+            conditions, deviations.gain, deviations.delay, strict=True
+        )
     )
 
 

@@ -113,10 +113,13 @@ def _stream(
         body=condition.hit_dof,
         time_step=1 / rate,
     )
+    seen = force[:-1:2]
+    if condition.force_delay:
+        seen = pulse_force([condition.pulse], time[:-1:2] - condition.force_delay)
     sensed = distort_signals(
-        acceleration[:2],
+        np.array(condition.channel_gain)[:, None] * acceleration[:2],
         [(effect.name, effect.parameters) for effect in effects],
         rate=rate,
         condition=condition,
     )
-    return force[:-1:2], sensed
+    return seen, sensed

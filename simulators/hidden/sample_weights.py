@@ -65,8 +65,27 @@ def sample_weights(
         bend = design.hit_scatter / np.sqrt(2) * joint_curve
         blur = design.hit_scatter * np.stack((responses, joint_slope, bend), axis=-1)
         directions = (inverse[..., None] * blur).reshape(count, -1, 3)
+    further = _further(design, responses)
+    if further.shape[-1]:
+        more = (inverse[..., None] * further).reshape(count, responses[0].size, -1)
+        directions = np.concatenate([directions, more], axis=-1)
     blurred, size, _ = np.linalg.svd(directions, full_matrices=False)
     return SampleWeights(inverse, np.asarray(blurred), 1 / np.sqrt(1 + size**2))
+
+
+def _further(design: CampaignDesign, responses: FloatArray) -> FloatArray:
+    """Return one sd of gains and delay, shape (n_records, 2, n, n_directions)."""
+    ways, found = design.ways, []
+    if ways.channel > 0.0:
+        for channel in range(responses.shape[1]):
+            alone = np.zeros_like(responses)
+            alone[:, channel] = ways.channel * responses[:, channel]
+            found.append(alone)
+    if ways.delay > 0.0:
+        found.append(ways.delay * SAMPLE_RATE * np.gradient(responses, axis=2))
+    if not found:
+        return np.zeros((*responses.shape, 0))
+    return np.stack(found, axis=-1)
 
 
 def weigh(weights: SampleWeights, change: FloatArray) -> FloatArray:

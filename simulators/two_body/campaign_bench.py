@@ -21,6 +21,7 @@ from jointbench.simulators.campaigns.campaign_records import (
 from jointbench.simulators.hidden.campaign_design import GRIDS
 from jointbench.simulators.hidden.campaign_sampling import SAMPLE_RATE
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
+from jointbench.simulators.hidden.hit_deviations import ScatterWays
 
 _BETWEEN_RUNS = 20.0  # [s] from hit to hit of an operator
 
@@ -79,6 +80,11 @@ class CampaignBench:
         noise: of each accelerometer, standard deviation [m/s^2].
         hit_scatter: relative standard deviation from hit to hit [-].
         size: of each hidden effect, as a share of its largest physical size [-].
+        channel_scatter: sd of the gain of each channel in each hit [-].
+        delay_scatter: sd of the delay of the force in each hit [us].
+        scatter_tail: degrees of freedom of Student's t of these two; 0 for normal.
+        scatter_memory: correlation of these two between successive hits [-].
+        bad_hit: deviation of the gain of one hit, drawn among all [-].
     """
 
     seed: int = 1
@@ -87,6 +93,11 @@ class CampaignBench:
     noise: float = 0.05
     hit_scatter: float = 0.001
     size: float = 0.02
+    channel_scatter: float = 0.0
+    delay_scatter: float = 0.0
+    scatter_tail: float = 0.0
+    scatter_memory: float = 0.0
+    bad_hit: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse values out of range, before anything is simulated."""
@@ -107,6 +118,7 @@ class CampaignBench:
             )
         for effect in self.hidden:
             HiddenEffect(effect, {})
+        _ = self.ways
 
     @property
     def name(self) -> str:
@@ -128,6 +140,17 @@ class CampaignBench:
         """Names of the hidden effects."""
         return tuple(word.strip() for word in self.hide.split(",") if word.strip())
 
+    @property
+    def ways(self) -> ScatterWays:
+        """Scatter of the hits beyond strength and joint stiffness."""
+        return ScatterWays(
+            self.channel_scatter,
+            1e-6 * self.delay_scatter,
+            self.scatter_tail,
+            self.scatter_memory,
+            self.bad_hit,
+        )
+
     def simulate(self) -> SimulatedCampaign:
         """Simulate the campaign: its records, nominal parameters and truth."""
         return quick_campaign(
@@ -137,6 +160,7 @@ class CampaignBench:
             grid=self.grid,
             noise=self.noise,
             hit_scatter=self.hit_scatter,
+            ways=self.ways,
         )
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.compiled import announced
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
@@ -79,7 +80,9 @@ def diagnose(
         acceptance criteria are those of `jointbench.analysis.gap.judgement.naming`.
     """
     bench = make_bench(campaign, without=without, entries=entries, policy=policy)
-    outcome = investigate(bench, progress or (lambda line: None))
+    report = progress or (lambda line: None)
+    with announced(report):
+        outcome = investigate(bench, report)
     final = outcome.bench
     if not isinstance(final, LumpedBench):
         raise TypeError("the search must return a bench of the type it was given")
@@ -101,6 +104,10 @@ def conclude(
         shown = outcome.level
     best = outcome.best if outcome.acceptance.passed else base
     held = hold_out(base, bench)
+    held_after = held
+    if best.candidates:
+        rivals = _close_rivals(outcome, bench, best)
+        held_after = hold_out(best, bench, held, rivals)
     evidence = make_evidence(bench, base, outcome, finding)
     if verdict.step:
         evidence = replace(evidence, advice="")
@@ -109,7 +116,7 @@ def conclude(
         effects=_effects(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
         gap_before=_gap(bench, base, held),
-        gap_after=_gap(bench, best, hold_out(best, bench, held)),
+        gap_after=_gap(bench, best, held_after),
         prior_deviations={
             name: (float(b), float(a))
             for name, b, a in zip(
@@ -145,6 +152,13 @@ def conclude(
     return found
 
 
+def _close_rivals(outcome: SearchOutcome, bench: Bench, best: Fit) -> tuple[Fit, ...]:
+    """Return the fits that may be chosen when a condition is held out."""
+    near = score(bench, best) + DIAGNOSIS.held_out_score
+    close = [f for f in outcome.ranked if f is not best and score(bench, f) < near]
+    return tuple(close[: DIAGNOSIS.held_out_rivals])
+
+
 def _labels(fit: Fit) -> tuple[str, ...]:
     return tuple(c.label for c in fit.candidates) or ("none",)
 
@@ -155,6 +169,7 @@ def _gap(bench: LumpedBench, fit: Fit, held: HeldOut) -> Gap:
         held.chi2_per_dof,
         float(np.abs(fit.prior_deviations).max()),
         bench.views(fit),
+        held.words,
     )
 
 

@@ -90,6 +90,25 @@ class DiagnosisSettings:
         "steps of the time integration on parts of a record that no fit has seen",
         "Silverbox",
     )
+    held_out_score: float = numerical(
+        200.0,
+        "chi2",
+        "score difference within which a rival competes again when a condition is held "
+        "out",
+        "a condition holds a tenth of the records, and of a difference of 2,000",
+    )
+    held_out_rivals: int = numerical(
+        2,
+        "fits",
+        "most rivals that compete again",
+        "computing time",
+    )
+    outstanding_sd: float = numerical(
+        4.0,
+        "sd",
+        "deviation of a hit, in sd of its direction, above which it is listed",
+        "closed form: one hit in 16,000 by chance",
+    )
     repeat_share: float = numerical(
         0.3,
         "of the residual",

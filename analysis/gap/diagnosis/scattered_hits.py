@@ -22,7 +22,7 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
 def scatter_found(bench: LumpedBench) -> ScatterFound:
     """Return sizes and outstanding hits of the scatter of a bench."""
-    scatter, limit = bench.noise.scatter, bench.policy.outstanding_sd
+    scatter, limit = bench.noise.scatter, DIAGNOSIS.outstanding_sd
     directions, hits = [], []
     for direction, size in zip(scatter.directions, scatter.size, strict=True):
         usual = float(size) * direction.scale
@@ -31,7 +31,7 @@ def scatter_found(bench: LumpedBench) -> ScatterFound:
             for record, value in enumerate(scatter.values[:, column]):
                 far = size > 0.0 and abs(value) > limit * size
                 if far or (record, column) in scatter.outstanding:
-                    # Model minus measurement was fitted: the hit is the reverse.
+                    # Of the model minus the measurement; the hit is the reverse.
                     off = -float(value) * direction.scale
                     hits.append(HitFound(record, direction.name, off, usual))
     return ScatterFound(tuple(directions), scatter.rho, tuple(hits))

@@ -3,12 +3,16 @@
 
 At the minimum of a fit, leaving out a group moves the parameters by one Newton step,
 whose matrices are known; the residual of the group after that step is, to first order,
-that of a refit without the group. If the step is long, this approximation fails, and
-the refit is computed. An effect that only the held-out group shows (the only hits that
-slip, the only other preload) cannot be predicted from the other groups, so it is left
-out of the prediction.
+that of a refit without the group. The step keeps what the group has contributed to the
+noise estimate and to the choice of the effect. It is therefore checked where it moves
+most: noise, scatter and parameters are estimated again without that group, and its
+rivals compete again. If the two disagree, further groups are refitted in the same way,
+and the result states it. An effect that only the held-out group shows (the only hits
+that slip, the only other preload) cannot be predicted from the other groups, so it is
+left out of the prediction.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -19,12 +23,14 @@ from jointbench.analysis.gap.model.effect_parameter import Transform
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.evaluation_resolutions import (
     FINE,
+    FULL,
     MIDDLE,
     Resolution,
 )
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.joint_fit import FitProblem, make_problem
 from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.selection_round import score
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,10 +40,15 @@ class HeldOut:
     Attributes:
         chi2: shape (n_groups,).
         dof: residuals with weight in each group, shape (n_groups,).
+        refitted: groups that were refitted without their records.
+        discrepancy: largest difference between step and refit, relative to the refit
+            [-]; None if no group was checked.
     """
 
     chi2: FloatArray
     dof: FloatArray
+    refitted: tuple[int, ...] = ()
+    discrepancy: float | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -53,8 +64,25 @@ class HeldOut:
         """sqrt(max(0, chi2/dof - 1)) [-]."""
         return float(np.sqrt(max(0.0, self.chi2_per_dof - 1.0)))
 
+    @property
+    def words(self) -> str:
+        """How the conditions were held out, in one clause."""
+        count = len(self.chi2)
+        if self.discrepancy is None:
+            return f"{count} conditions held out by one step each"
+        return (
+            f"{len(self.refitted)} of {count} conditions held out by a refit with "
+            "noise and choice of effect, the others by one step; step and refit differ "
+            f"by {100 * self.discrepancy:.2g} % at most"
+        )
 
-def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
+
+def hold_out(
+    fit: Fit,
+    bench: Bench,
+    bare: HeldOut | None = None,
+    rivals: Sequence[Fit] = (),
+) -> HeldOut:
     """Hold out each condition in turn, including its repeats.
 
     A single condition is predicted from the priors alone.
@@ -63,7 +91,14 @@ def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
         fit: a minimum.
         bench: on which it was found.
         bare: result for the fit without effects, used where all effects are left out.
+        rivals: fits that compete with it again without the held-out condition.
     """
+    stepped = _stepped(fit, bench, bare)
+    return _checked(stepped, fit, bench, rivals)
+
+
+def _stepped(fit: Fit, bench: Bench, bare: HeldOut | None) -> HeldOut:
+    """Hold out each condition by one step, or by a fit where the step is long."""
     blocks = bench.blocks
     condition = conditions_of(blocks)
     hessian = fit.jacobian.T @ fit.jacobian + np.diag(fit.prior)
@@ -85,6 +120,59 @@ def hold_out(fit: Fit, bench: Bench, bare: HeldOut | None = None) -> HeldOut:
             left = _fitted_without(fit, bench, rows, exclusive)
             chi2[c] = float(left @ left)
     return HeldOut(np.array(chi2), np.array(dof))
+
+
+def _checked(
+    stepped: HeldOut, fit: Fit, bench: Bench, rivals: Sequence[Fit]
+) -> HeldOut:
+    """Check the step where it moves most, and refit more conditions if it fails."""
+    condition = conditions_of(bench.blocks)
+    if len(stepped.chi2) < JUDGEMENT.least_conditions:
+        return stepped
+    own = np.bincount(condition[bench.blocks.group], weights=fit.residual**2)
+    order = np.argsort(own - stepped.chi2)
+    chi2, refitted, largest = stepped.chi2.copy(), list[int](), 0.0
+    for c in order[: JUDGEMENT.most_refits].tolist():
+        held = np.flatnonzero(condition == c)
+        chi2[c] = _refitted(fit, bench, rivals, held)
+        refitted.append(c)
+        # The noise of chi2 is no disagreement.
+        noise = JUDGEMENT.refit_noise_sd * np.sqrt(2.0 * stepped.dof[c])
+        apart = abs(float(chi2[c] - stepped.chi2[c]))
+        largest = max(largest, apart / max(float(chi2[c]), 1e-300))
+        if apart < noise + JUDGEMENT.refit_tolerance * chi2[c]:
+            break
+    return HeldOut(chi2, stepped.dof.copy(), tuple(refitted), largest)
+
+
+def _refitted(fit: Fit, bench: Bench, rivals: Sequence[Fit], held: IntArray) -> float:
+    """Return chi2 of held-out groups by a refit that has not seen them.
+
+    Noise and scatter are estimated without them, and the rivals compete without them.
+    """
+    rows = np.isin(bench.blocks.group, held)
+    without = held.tolist()
+    seen = bench.refine(fit.base, fit.terms, without=without)
+    found = [_minimum_without(seen, f, rows) for f in (fit, *rivals)]
+    best = min(found, key=lambda f: score(seen, f))
+    seen = seen.refine(best.base, best.terms, without=without)
+    again = _minimum_without(seen, best, rows)
+    left = seen.residual(again.base, again.terms, FULL)[rows]
+    return float(left @ left)
+
+
+def _minimum_without(bench: Bench, fit: Fit, rows: BoolArray) -> Fit:
+    """Return the minimum of a fit's effects with some rows held out."""
+    whole = make_problem(bench, fit.candidates)
+    known = {f.name: getattr(whole, f.name) for f in fields(whole)}
+    return minimise(
+        _Without(**known, hidden=rows),
+        fit.x,
+        FULL,
+        iterations=JUDGEMENT.refit_iterations,
+        jacobian_resolution=MIDDLE,
+        exact_slopes=False,
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

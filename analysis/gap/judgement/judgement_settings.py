@@ -56,6 +56,30 @@ class JudgementSettings:
         "steps",
         "most steps of that fit",
     )
+    least_conditions: int = numerical(
+        3,
+        "conditions",
+        "number of conditions below which a step is not checked by a refit",
+        "two conditions: the other one alone determines nothing",
+    )
+    most_refits: int = numerical(
+        4,
+        "conditions",
+        "most conditions that are refitted without their records",
+        "computing time: a refit takes as long as a judgement",
+    )
+    refit_noise_sd: float = numerical(
+        3.0,
+        "sd",
+        "difference of step and refit, in sd of chi2, that is noise",
+        "closed form",
+    )
+    refit_tolerance: float = numerical(
+        0.05,
+        "of chi2",
+        "difference of step and refit up to which the step is used elsewhere",
+        "a gap is printed with two digits",
+    )
     shown_sd: float = numerical(
         4.0,
         "sd",

@@ -94,12 +94,14 @@ class Gap:
         chi2_per_dof: held out [-].
         prior_deviation: largest of the base parameters [sd].
         views: distribution of the gap over levels, channels, frequency ...
+        held_out: how the conditions were held out, in words.
     """
 
     value: float
     chi2_per_dof: float
     prior_deviation: float
     views: tuple[View, ...] = ()
+    held_out: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,6 +189,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "gap_before": d.gap_before.value,
         "gap_after": d.gap_after.value,
         "shrink": d.shrink,
+        "held_out": {"before": d.gap_before.held_out, "after": d.gap_after.held_out},
         "chi2_per_dof": [d.gap_before.chi2_per_dof, d.gap_after.chi2_per_dof],
         "pulls": {
             name: {"before": before, "after": after}

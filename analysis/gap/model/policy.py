@@ -173,13 +173,6 @@ class Policy:
         "400 nulls, 210 of them without scatter (docs/gap-confusion.md); hidden 95054",
         "-30 %: 0 of 16; +30 %: 0 of 16",
     )
-    outstanding_sd: float = decision(
-        4.0,
-        "sd",
-        "deviation of a hit, in sd of its direction, above which it is listed",
-        "closed form: one hit in 16,000 by chance",
-        "",
-    )
     outstanding_chance: float = decision(
         1e-5,
         "-",

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import scipy.linalg
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.converter_edge import with_converter_edge
@@ -17,6 +17,7 @@ from jointbench.analysis.gap.residuals.hit_scatter import (
     HitsSeen,
     estimate_scatter,
     repeat_groups,
+    with_unseen_hits,
 )
 from jointbench.analysis.gap.residuals.joint_settling import (
     hit_stiffness,
@@ -56,6 +57,7 @@ def refine_noise(
     terms: Sequence[Term],
     *,
     diverged: bool = False,
+    without: Sequence[int] = (),
 ) -> SomeBench:
     """Return the bench with its noise estimated at a solution.
 
@@ -65,16 +67,18 @@ def refine_noise(
         terms: of the solution.
         diverged: expand about the settling of the hits even if the solution is far
             from the records.
+        without: records that are held out of the estimate.
     """
+    seen = ~np.isin(np.arange(len(bench.campaign.hit)), without)
     at = with_converter_edge(_centred(bench, base, terms), base, terms)
     model = at.response(base, terms)
     residual = model - bench.campaign.response
     bench.mask(residual)
-    sigma = _channel_noise(at, model, residual)
+    sigma = _channel_noise(at, model, residual, seen)
     columns = _force_columns(bench, base, sigma)
     at = replace(at, noise=replace(bench.noise, sigma=sigma))
     ways = scatter_columns(at, base, terms, model)
-    scatter = _scatter(at, residual, ways, columns, terms)
+    scatter = _scatter(at, residual, ways, columns, terms, seen)
     refined = _with_noise(at, replace(at.noise, scatter=scatter), columns, ways)
     lost = np.linalg.norm(residual) > RESIDUALS.uninformative_share * np.linalg.norm(
         model
@@ -104,8 +108,9 @@ def _scatter(
     ways: FloatArray,
     columns: list[FloatArray],
     terms: Sequence[Term],
+    seen: BoolArray,
 ) -> HitScatter:
-    """Estimate the scatter of the hits from the residual of a solution."""
+    """Estimate the scatter of all hits from the residual of those that are seen."""
     campaign = bench.campaign
     directions = directions_of(bench)
     if campaign.repeatability is not None:
@@ -118,11 +123,20 @@ def _scatter(
         settled = np.zeros(records.along.shape)
         settled[:, 1] = np.log((np.exp(known) + rise) / (1.0 + rise))
         records = records.moved(settled)
-    seen = HitsSeen(
-        _patterns(campaign),
-        tuple(repeat_groups(campaign.hit, campaign.level, campaign.preload)),
+    kept = np.flatnonzero(seen)
+    known_hits = HitsSeen(
+        _patterns(campaign)[:, kept],
+        tuple(
+            repeat_groups(
+                campaign.hit[kept], campaign.level[kept], campaign.preload[kept]
+            )
+        ),
     )
-    return estimate_scatter(records, directions, seen, bench.blocks.dof, bench.policy)
+    dof = bench.blocks.dof * kept.size // seen.size
+    found = estimate_scatter(
+        records.some(kept), directions, known_hits, dof, bench.policy
+    )
+    return found if seen.all() else with_unseen_hits(found, records, kept)
 
 
 def _compressed(
@@ -155,11 +169,11 @@ def _centred(bench: SomeBench, base: FloatArray, terms: Sequence[Term]) -> SomeB
 
 
 def _channel_noise(
-    bench: SomeBench, model: FloatArray, residual: FloatArray
+    bench: SomeBench, model: FloatArray, residual: FloatArray, seen: BoolArray
 ) -> FloatArray:
     """Return the noise of each record and channel, (n_records, n_channels)."""
     peak = np.abs(model).max(axis=2)
-    sigma = channel_sigma(residual[:, :, bench.campaign.lead : -TAIL], peak)
+    sigma = channel_sigma(residual[:, :, bench.campaign.lead : -TAIL], peak, seen)
     if bench.campaign.repeatability is not None:
         sigma = np.hypot(sigma, bench.campaign.repeatability * peak)
     return sigma

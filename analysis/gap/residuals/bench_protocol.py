@@ -68,7 +68,12 @@ class Bench(Scaled, Protocol):
         ...
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        diverged: bool = False,
+        without: Sequence[int] = (),
     ) -> "Bench":
         """Return the bench with its noise estimated at a solution.
 
@@ -77,6 +82,7 @@ class Bench(Scaled, Protocol):
             terms: of the solution.
             diverged: use the estimated scatter of the hits even if the solution is far
                 from the records, since the scatter may be the cause.
+            without: groups of rows that are held out of the estimate.
         """
         ...
 

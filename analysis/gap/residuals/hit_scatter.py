@@ -31,7 +31,7 @@ from jointbench.analysis.gap.residuals.scatter_sizes import (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HitsSeen:
-    """What is known of the hits, to tell scatter from trends.
+    """What is known of the hits, to distinguish scatter from trends.
 
     Attributes:
         patterns: possible trends over the records, shape (n_patterns, n_records).
@@ -102,6 +102,24 @@ def estimate_scatter(
         problem, outstanding = replace(problem, rho=0.0), ()
     sd, values = _each_hit(problem, size, outstanding)
     return HitScatter(directions, size, problem.rho, sd, values, outstanding)
+
+
+def with_unseen_hits(
+    found: HitScatter, records: CompressedRecords, kept: IntArray
+) -> HitScatter:
+    """Return the scatter of all hits by the sizes of those that were seen.
+
+    Args:
+        found: of the hits seen.
+        records: all of them, compressed.
+        kept: hits that were seen, shape (n_seen,).
+    """
+    direction = direction_of_columns(found.directions)
+    sd = np.tile(found.size[direction], (len(records.along), 1))
+    sd[kept] = found.sd
+    hits = tuple((int(kept[record]), column) for record, column in found.outstanding)
+    values = weigh(records, sd**2, found.rho).predicted
+    return replace(found, sd=sd, values=values, outstanding=hits)
 
 
 def _intercepts(shape: tuple[int, ...]) -> FloatArray:

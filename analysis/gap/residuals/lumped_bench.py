@@ -40,10 +40,15 @@ class LumpedBench(LumpedResidual):
         return self.campaign.model.spread
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        diverged: bool = False,
+        without: Sequence[int] = (),
     ) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
-        return refine_noise(self, base, terms, diverged=diverged)
+        return refine_noise(self, base, terms, diverged=diverged, without=without)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return the residual of a fit by view."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.residuals.scatter_record import HitScatter
 
@@ -46,22 +46,27 @@ def high_band_sigma(residual: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(power / np.sum(taper**2)))
 
 
-def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
+def channel_sigma(
+    residual: FloatArray, peak: FloatArray, seen: BoolArray | None = None
+) -> FloatArray:
     """Pool the noise over records, with growth with the response if significant.
 
     Args:
         residual: shape (n_records, n_channels, n_samples).
         peak: largest response, shape (n_records, n_channels).
+        seen: records that count, shape (n_records,); None for all.
 
     Returns:
-        Standard deviation, shape (n_records, n_channels).
+        Standard deviation, shape (n_records, n_channels), also of records that do not
+        count.
     """
-    variance = high_band_sigma(residual) ** 2
+    used = np.ones(len(peak), dtype=bool) if seen is None else seen
+    variance = high_band_sigma(residual[used]) ** 2
     n = residual.shape[-1]
     relative = np.sqrt(2.0 / ((RESIDUALS.noise_band[1] - RESIDUALS.noise_band[0]) * n))
-    pooled = np.empty_like(variance)
+    pooled = np.empty_like(peak)
     for c in range(variance.shape[1]):
-        v, x = variance[:, c], peak[:, c] ** 2
+        v, x = variance[:, c], peak[used, c] ** 2
         flat = float(np.median(v)) if v.max() > 3 * v.min() else float(v.mean())
         pooled[:, c] = flat
         if v.size < 4 or np.ptp(x) <= 0:
@@ -71,7 +76,7 @@ def channel_sigma(residual: FloatArray, peak: FloatArray) -> FloatArray:
         (floor, slope), *_ = np.linalg.lstsq(design, v * weight, rcond=None)
         sd = np.sqrt(np.linalg.pinv(design.T @ design)[1, 1])
         if slope > 6 * sd and floor > 0:
-            pooled[:, c] = floor + slope * x
+            pooled[:, c] = floor + slope * peak[:, c] ** 2
     return np.sqrt(pooled)
 
 

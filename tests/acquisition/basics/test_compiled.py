@@ -35,6 +35,15 @@ for pair in {pairs}:
     result = import_module(f"{{pair}}.outer").result
     print(result(1), sum(result.stats.cache_hits.values()))
 """
+ANNOUNCED = """
+from jointbench.acquisition.basics.compiled import announced
+from always.outer import result
+heard = []
+with announced(heard.append):
+    result(1)
+    result(1.0)
+print(len(heard), heard[0].split(":")[0] if heard else "")
+"""
 
 
 def asked(folder: Path) -> list[str]:
@@ -99,3 +108,18 @@ def test_the_digest_of_an_integration_counts_what_is_inlined(
     monkeypatch.undo()
     digest_of.cache_clear()
     assert digest_of(f"{package}.force_integration") == before
+
+
+def test_a_compilation_is_announced_once_and_a_cached_function_is_not(
+    tmp_path: Path,
+) -> None:
+    """Two signatures are compiled after one line; from the cache there is none."""
+    write(tmp_path, "outer.py", OUTER)
+    write(tmp_path, "inner.py", INNER)
+    write(tmp_path, "constants.py", "FACTOR = 2\n")
+    command = [sys.executable, "-c", ANNOUNCED]
+    for expected in ("1 compiling the time integration", "0"):
+        run = subprocess.run(
+            command, cwd=tmp_path, capture_output=True, text=True, check=True
+        )
+        assert run.stdout.strip() == expected

@@ -81,7 +81,12 @@ class Curve:
         return []
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        diverged: bool = False,
+        without: Sequence[int] = (),
     ) -> "Curve":
         """The noise is known."""
         return self
@@ -265,7 +270,12 @@ class Overestimated(Curve):
     refined: bool = False
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        diverged: bool = False,
+        without: Sequence[int] = (),
     ) -> "Overestimated":
         """Set the noise to its true size."""
         return replace(self, refined=True)
@@ -298,7 +308,12 @@ class Alternating(Curve):
     rounds: list[bool] = field(default_factory=list)
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        diverged: bool = False,
+        without: Sequence[int] = (),
     ) -> "Alternating":
         """Change the noise once more."""
         self.rounds.append(not self.quiet)
