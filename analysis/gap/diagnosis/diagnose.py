@@ -13,6 +13,7 @@ from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence import make_evidence
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
+from jointbench.analysis.gap.diagnosis.partial_verdict import under_model_error
 from jointbench.analysis.gap.diagnosis.scattered_hits import scatter_found
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
 from jointbench.analysis.gap.judgement.amplitudes import weakest
@@ -80,22 +81,29 @@ def diagnose(
         acceptance criteria are those of `jointbench.analysis.gap.judgement.naming`.
     """
     bench = make_bench(campaign, without=without, entries=entries, policy=policy)
-    report = progress or (lambda line: None)
+    report = progress or _silent
     with announced(report):
         outcome = investigate(bench, report)
     final = outcome.bench
     if not isinstance(final, LumpedBench):
         raise TypeError("the search must return a bench of the type it was given")
-    return conclude(outcome, final, limits=campaign_limits(campaign, policy))
+    limits = campaign_limits(campaign, policy)
+    return conclude(outcome, final, limits=limits, progress=progress)
 
 
 def conclude(
-    outcome: SearchOutcome, bench: LumpedBench, *, limits: str = ""
+    outcome: SearchOutcome,
+    bench: LumpedBench,
+    *,
+    limits: str = "",
+    progress: Progress | None = None,
 ) -> Diagnosis:
     """Derive the diagnosis from the outcome of a search."""
     base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
     outcome = replace(outcome, base=base)
-    verdict = verdict_on(outcome, bench, limits)
+    verdict, partial = under_model_error(
+        verdict_on(outcome, bench, limits), bench, base, progress or _silent
+    )
     finding = verdict.finding
     shown: Sequence[Fit] = ()
     if finding is Finding.NAMED:
@@ -146,6 +154,7 @@ def conclude(
         ),
         policy=bench.policy,
         scatter=scatter_found(bench),
+        partial=partial,
     )
     if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)
@@ -157,6 +166,10 @@ def _close_rivals(outcome: SearchOutcome, bench: Bench, best: Fit) -> tuple[Fit,
     near = score(bench, best) + DIAGNOSIS.held_out_score
     close = [f for f in outcome.ranked if f is not best and score(bench, f) < near]
     return tuple(close[: DIAGNOSIS.held_out_rivals])
+
+
+def _silent(line: str) -> None:
+    """Show no progress."""
 
 
 def _labels(fit: Fit) -> tuple[str, ...]:
