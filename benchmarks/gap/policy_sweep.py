@@ -34,6 +34,9 @@ from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_digest
 from jointbench.analysis.gap.model.setting import Setting, settings_of
+from jointbench.analysis.gap.model_error.model_error_settings import (
+    MODEL_ERROR_SETTINGS,
+)
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.gap.search.search_settings import SEARCH
@@ -58,8 +61,11 @@ PARTS: Mapping[str, Any] = {
     "search": SEARCH,
     "judgement": JUDGEMENT,
     "diagnosis": DIAGNOSIS,
+    "model error": MODEL_ERROR_SETTINGS,
 }
 """The numerical settings by part of the engine."""
+UNDER_MODEL_ERROR = ("mostly_", "open_")
+"""Decision settings that no campaign of the sweep reaches: see model_error.py."""
 AS_IT_IS = "none"
 """Name of the run with the standard policy."""
 
@@ -229,7 +235,7 @@ def page(runs: Sequence[Run]) -> str:
         "| setting | value | unit | what it does | how it was set | effect of -30 %; "
         "+30 % |",
         "|---|---|---|---|---|---|",
-        *(_row(s, effect_of(s.name, runs)) for s in settings_of(STANDARD)),
+        *(_row(s, _effect(s, runs)) for s in settings_of(STANDARD)),
         "",
         "## Numerical settings",
         "",
@@ -246,6 +252,12 @@ def page(runs: Sequence[Run]) -> str:
             *(_row(s) for s in settings_of(record)),
         ]
     return "\n".join([*lines, ""])
+
+
+def _effect(setting: Setting, runs: Sequence[Run]) -> str:
+    """Return the effect of a setting: of these runs, or as its record states it."""
+    apart = setting.name.startswith(UNDER_MODEL_ERROR)
+    return setting.effect if apart else effect_of(setting.name, runs)
 
 
 def _row(setting: Setting, *more: str) -> str:

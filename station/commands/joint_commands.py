@@ -84,7 +84,8 @@ def gap_command(
     """Find the effect that is missing from a model.
 
     The verdict is 'named', 'none', 'ambiguous' with an experiment that separates the
-    candidates, or 'unknown'.
+    candidates, 'mostly' with the family of a law that explains most of the gap, or
+    'unknown'. The exit code is 0 for each of them.
 
     Examples:
         jointbench gap session.h5 --model bench.toml --report gap.html

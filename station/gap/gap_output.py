@@ -7,6 +7,7 @@ from rich.console import Console
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding
 from jointbench.station.report.gap_numbers import percent, short, sure
+from jointbench.station.report.gap_partial_section import partial_lines
 from jointbench.station.report.gap_sentences import (
     PRIORS,
     SMALL_GAP,
@@ -54,6 +55,8 @@ def show_on(screen: Console, found: Diagnosis) -> None:
         _say(screen, "where", found.evidence.where)
         if found.verdict is Finding.UNKNOWN:
             _say(screen, "looks", *found.evidence.look)
+    for label, words in partial_lines(found.partial):
+        _say(screen, label, words)
     _say(screen, "limits", _limit_words(found))
     where = _where(found)
     if where:

@@ -11,6 +11,7 @@ from jointbench.station.report.gap_figures import (
     response_function,
 )
 from jointbench.station.report.gap_numbers import percent, short, sure
+from jointbench.station.report.gap_partial_section import partial_section
 from jointbench.station.report.gap_policy_section import policy_section
 from jointbench.station.report.gap_sentences import (
     SMALL_GAP,
@@ -46,6 +47,7 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
     sections = [
         Section("picture", "Evidence", _picture(found)),
         Section("effects", "Conclusion", _effects(found)),
+        partial_section(found.partial),
         Section("where", "Location of the gap", _where(found)),
         Section("candidates", "Explanations tried", _candidates(found)),
         Section("limits", "Tests, noise and repeatability", _limits(found)),
@@ -101,7 +103,7 @@ def _tried(found: Diagnosis) -> str:
     if found.evidence is None or not found.evidence.tried:
         return ""
     words = effect_words(found.evidence.tried)
-    refused = found.verdict is Finding.UNKNOWN
+    refused = found.verdict in (Finding.UNKNOWN, Finding.MOSTLY)
     return f"best fit: {words} (rejected)" if refused else f"with {words}"
 
 

@@ -47,6 +47,8 @@ def headline(found: Diagnosis) -> str:
         return "Nothing is missing: the model explains every record within its noise"
     if found.verdict is Finding.UNKNOWN:
         return _unknown(found)
+    if found.verdict is Finding.MOSTLY:
+        return _mostly(found)
     names = _names(found)
     text = f"{names[:1].upper()}{names[1:]} {_explains(found)}"
     if found.verdict is Finding.AMBIGUOUS:
@@ -67,11 +69,25 @@ def _unknown(found: Diagnosis) -> str:
             "Several explanations fit equally well; these records cannot "
             "distinguish them"
         )
+    if found.partial is not None and found.partial.nonlinear:
+        return f"Nonlinear {place(found.partial.site)}, family open"
     if found.explanations:
         return "These records cannot show whether an effect is missing, or which"
     if found.gap_before.value < SMALL_GAP:
         return "Nominal parameters and records disagree; no effect explains it"
     return "An effect is missing that is not in the catalogue"
+
+
+def _mostly(found: Diagnosis) -> str:
+    partial = found.partial
+    if partial is None:
+        return _unknown(found)
+    where = place(partial.site)
+    return (
+        f"{partial.family.capitalize()} {where} explains most of the gap "
+        f"({percent(partial.share)} of the residual power, held out); the model is "
+        "not true to the noise"
+    )
 
 
 def _explains(found: Diagnosis) -> str:
@@ -132,11 +148,12 @@ def why_lost(one: Ranked, found: Diagnosis) -> str:
     best = found.candidates[0]
     if found.verdict is Finding.NONE and one.effects == ("none",):
         return "nothing more is needed"
-    if one is best and found.verdict is not Finding.UNKNOWN:
+    lost = found.verdict in (Finding.UNKNOWN, Finding.MOSTLY)
+    if one is best and not lost:
         return "the best" if not faults else "the best, but " + faults
     if faults:
         return faults
-    if found.verdict is Finding.UNKNOWN:
+    if lost:
         return _not_distinguished(one, found)
     if one.effects in found.explanations:
         return "not distinguishable from the best"

@@ -12,6 +12,7 @@ from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence import make_evidence
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
+from jointbench.analysis.gap.diagnosis.partial_verdict import under_model_error
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
@@ -77,20 +78,27 @@ def diagnose(
         acceptance criteria are those of `jointbench.analysis.gap.judgement.naming`.
     """
     bench = make_bench(campaign, without=without, entries=entries, policy=policy)
-    outcome = investigate(bench, progress or (lambda line: None))
+    outcome = investigate(bench, progress or _silent)
     final = outcome.bench
     if not isinstance(final, LumpedBench):
         raise TypeError("the search must return a bench of the type it was given")
-    return conclude(outcome, final, limits=campaign_limits(campaign, policy))
+    limits = campaign_limits(campaign, policy)
+    return conclude(outcome, final, limits=limits, progress=progress)
 
 
 def conclude(
-    outcome: SearchOutcome, bench: LumpedBench, *, limits: str = ""
+    outcome: SearchOutcome,
+    bench: LumpedBench,
+    *,
+    limits: str = "",
+    progress: Progress | None = None,
 ) -> Diagnosis:
     """Derive the diagnosis from the outcome of a search."""
     base = minimise(make_problem(bench, ()), outcome.base.x, FULL, iterations=6)
     outcome = replace(outcome, base=base)
-    verdict = verdict_on(outcome, bench, limits)
+    verdict, partial = under_model_error(
+        verdict_on(outcome, bench, limits), bench, base, progress or _silent
+    )
     finding = verdict.finding
     shown: Sequence[Fit] = ()
     if finding is Finding.NAMED:
@@ -136,10 +144,15 @@ def conclude(
             _labels(f) for f in outcome.level if outcome.acceptance.passed
         ),
         policy=bench.policy,
+        partial=partial,
     )
     if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)
     return found
+
+
+def _silent(line: str) -> None:
+    """Show no progress."""
 
 
 def _labels(fit: Fit) -> tuple[str, ...]:

@@ -23,14 +23,17 @@ class DiagnosisVerdict:
     """The verdict on a search outcome.
 
     Attributes:
-        finding: none, named, ambiguous or unknown.
+        finding: none, named, ambiguous, mostly or unknown.
         reason: in one line.
         step: what to do next; empty where the residual's signature decides.
+        unexplained: whether no effect explains the records, although the campaign is
+            sufficient and no record is faulty.
     """
 
     finding: Finding
     reason: str
     step: str
+    unexplained: bool = False
 
 
 def verdict_on(
@@ -82,7 +85,7 @@ def _unknown(outcome: SearchOutcome, bench: LumpedBench) -> DiagnosisVerdict:
     )
     if outcome.given_up:
         reason += "; the search for a further effect reached its effort limit"
-    return DiagnosisVerdict(Finding.UNKNOWN, reason, "")
+    return DiagnosisVerdict(Finding.UNKNOWN, reason, "", unexplained=True)
 
 
 def _way_out(reason: str) -> str:

@@ -9,15 +9,20 @@ from typing import Any
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import GapEvidence, evidence_json
+from jointbench.analysis.gap.model.partial_records import (
+    PartialExplanation,
+    partial_json,
+)
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_json
 
 
 class Finding(StrEnum):
-    """The four verdicts."""
+    """The five verdicts."""
 
     NONE = "none"
     NAMED = "named"
     AMBIGUOUS = "ambiguous"
+    MOSTLY = "mostly"
     UNKNOWN = "unknown"
 
 
@@ -106,7 +111,7 @@ class Diagnosis:
     """Verdict and evidence.
 
     Attributes:
-        verdict: none, named, ambiguous or unknown.
+        verdict: none, named, ambiguous, mostly or unknown.
         effects: effects found; the rivals if the verdict is ambiguous.
         candidates: explanations tried, best first.
         gap_before: of the base, refitted with its priors.
@@ -122,6 +127,8 @@ class Diagnosis:
         explanations: labels of the effects of each accepted explanation that cannot
             be distinguished from the best, best first; ("none",) is the base alone.
         policy: thresholds of the verdict.
+        partial: what the best force law explains under model error; None unless the
+            verdict is mostly, or unknown with a nonlinear joint.
     """
 
     verdict: Finding
@@ -138,6 +145,7 @@ class Diagnosis:
     evidence: GapEvidence | None = None
     explanations: tuple[tuple[str, ...], ...] = ()
     policy: Policy = STANDARD
+    partial: PartialExplanation | None = None
 
     @property
     def predicted(self) -> bool:
@@ -196,6 +204,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "reason": d.reason,
         "exhibit": None if d.evidence is None else evidence_json(d.evidence),
         "policy": policy_json(d.policy),
+        "mostly": None if d.partial is None else partial_json(d.partial),
     }
 
 

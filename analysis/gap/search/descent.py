@@ -58,6 +58,7 @@ def minimise(
     rival: float | None = None,
     jacobian_resolution: Resolution | None = None,
     exact_slopes: bool = True,
+    least_drop: float = 0.0,
 ) -> Fit:
     """Minimise the cost from one start.
 
@@ -71,6 +72,8 @@ def minimise(
         jacobian_resolution: coarser resolution for the slopes, or None for the same.
         exact_slopes: difference the slopes once more at the end, which intermediate
             fits do not need.
+        least_drop: drop of the cost below which the descent ends, for a fit that need
+            not converge to a fraction of a unit of chi2.
     """
 
     def slopes(x: FloatArray, r: FloatArray) -> FloatArray:
@@ -92,10 +95,10 @@ def minimise(
             j, age, damping = slopes(x, r), 0, 1e-3
             continue
         drop = cost - moved[2]
-        small = (
-            drop
-            < SEARCH.excess_tolerance * _excess(problem, cost)
-            + SEARCH.absolute_tolerance
+        small = drop < max(
+            least_drop,
+            SEARCH.excess_tolerance * _excess(problem, cost)
+            + SEARCH.absolute_tolerance,
         )
         guessed = _predicted_drop(problem, x, r, j, moved[0])
         change, before = moved[0] - x, r

@@ -28,8 +28,10 @@ from jointbench.station.report.gap_sentences import (
 from jointbench.station.screen.page import render
 from jointbench.station.screen.page_parts import DataTable, Plot
 
-VERDICTS = ("none", "named", "ambiguous", "unknown")
+VERDICTS = ("none", "named", "ambiguous", "mostly", "unknown")
 LATE = ("delay", "channel:a1", [4e-5])
+CUBIC = ("cubic_stiffness", "link:joint", [1.5e16])
+MODE = ("hidden_mode", "body:m2", [0.02, 700.0, 0.01])
 LOWPASS, DELAY = ("sensor_lowpass", "channel:a1"), ("delay", "channel:a1")
 
 
@@ -40,6 +42,7 @@ def found(verdict: str) -> Diagnosis:
         "none": ([], (), 1),
         "named": ([LATE], (DELAY, LOWPASS), 1),
         "ambiguous": ([LATE], (DELAY, LOWPASS), 2),
+        "mostly": ([CUBIC, MODE], (("extra_damping", "body:m2"),), 1),
         "unknown": ([LATE], (("extra_damping", "body:m2"),), 1),
     }[verdict]
     outcome, bench = outcomes.outcome_of(hidden, *tried, rivals=rivals)
