@@ -139,9 +139,17 @@ class ModalBench:
         return r.ravel()
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        diverged: bool = False,
+        without: Sequence[int] = (),
     ) -> "ModalBench":
-        """Return the bench with its noise estimated at a solution."""
+        """Return the bench with its noise estimated at a solution.
+
+        The noise of a record comes from that record alone, whatever is held out.
+        """
         model = self.response(base, terms, FULL.oversampling)
         residual = (model - self.data.measured) * self.data.scored
         return replace(self, sigma=noise_of(self.given, self.data, residual, model))

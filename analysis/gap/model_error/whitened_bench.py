@@ -81,7 +81,12 @@ class WhitenedBench:
         return []
 
     def refine(
-        self, base: FloatArray, terms: Sequence[Term], *, diverged: bool = False
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        *,
+        diverged: bool = False,
+        without: Sequence[int] = (),
     ) -> "WhitenedBench":
         """Return the bench unchanged; `law_race` estimates its discrepancy."""
         return self
