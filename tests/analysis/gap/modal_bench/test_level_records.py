@@ -1,4 +1,4 @@
-"""Records at several levels: base of modes, response at ports, verdict, left-out levels."""
+"""Records at several levels: base of modes, response at ports, left-out levels."""
 
 from dataclasses import replace
 
