@@ -7,6 +7,7 @@ curves that explain the decays better than all linear modes of the group are kep
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -42,7 +43,10 @@ from jointbench.signal.amplitude.dependence_test import (
     decide,
     score_chance,
 )
-from jointbench.signal.amplitude.level_comparison import compare_levels
+from jointbench.signal.amplitude.level_comparison import (
+    compare_levels,
+    spectra_near_modes,
+)
 from jointbench.signal.amplitude.mode_groups import (
     ModeGroup,
     mode_groups,
@@ -50,8 +54,7 @@ from jointbench.signal.amplitude.mode_groups import (
 )
 from jointbench.signal.amplitude.ring_downs import RingDowns, ring_downs
 from jointbench.signal.hits.find_hits import accepted_hits
-from jointbench.signal.hits.hit_spectra import HitSpectra, hit_spectra
-from jointbench.signal.hits.windows import choose_window, join_windows
+from jointbench.signal.hits.hit_spectra import ForcesOfHits
 from jointbench.signal.modal.modal_model import ModalModel
 
 # A finding must stay when the decays start later by this [s], or by this share of the
@@ -100,8 +103,8 @@ def amplitude_modes(
         BadData: no hit was accepted.
     """
     judged = [r for r in recordings if accepted_hits(r)]
-    decays = ring_downs(judged)
-    spectra = hit_spectra(judged, join_windows([choose_window(r) for r in judged]))
+    decays = cache(lambda: ring_downs(judged))  # few sessions need them
+    spectra = spectra_near_modes(judged, model)
     groups = mode_groups(model)
     found: list[AmplitudeMode] = []
     for number, group in enumerate(groups):
@@ -112,7 +115,10 @@ def amplitude_modes(
 
 
 def _resolved(
-    decays: RingDowns, spectra: HitSpectra, model: ModalModel, group: ModeGroup
+    decays: Callable[[], RingDowns],
+    spectra: ForcesOfHits,
+    model: ModalModel,
+    group: ModeGroup,
 ) -> list[AmplitudeMode]:
     """Return the modes of one group, merged where curves explain more than poles."""
     levels = {i: _levels_at(spectra, model, i) for i in group.members}
@@ -120,7 +126,7 @@ def _resolved(
     if head is None or head > CHANCE:
         return [_not_fitted(model, i, *levels[i]) for i in group.members]
     try:
-        fitted = _fit_group(decays, model, group)
+        fitted = _fit_group(decays(), model, group)
     except np.linalg.LinAlgError:
         words = "the joint fit is singular"
         return [_undecided(model, i, words) for i in group.members]
@@ -128,12 +134,12 @@ def _resolved(
     for number, member in enumerate(fitted.members):
         others = [i for i in group.members if i not in fitted.members]
         own = (member, *others) if member == group.members[0] else (member,)
-        modes.append(_judged(decays, model, fitted, number, own, levels[member]))
+        modes.append(_judged(decays(), model, fitted, number, own, levels[member]))
     return modes
 
 
 def _levels_at(
-    spectra: HitSpectra, model: ModalModel, member: int
+    spectra: ForcesOfHits, model: ModalModel, member: int
 ) -> tuple[float | None, str]:
     frequency, ratio = model.natural_frequency[member], model.damping_ratio[member]
     return compare_levels(spectra, float(frequency), float(ratio))

@@ -88,7 +88,7 @@ def estimate_pair(
 
 def floored_power(force_power: FloatArray) -> FloatArray:
     """Return the power of a force, at least a share of the largest that it has."""
-    return np.maximum(force_power, _LEAST_POWER * force_power.max())
+    return np.asarray(np.maximum(force_power, _LEAST_POWER * force_power.max()))
 
 
 def pair_of_sums(
