@@ -2,7 +2,7 @@
 """Checks of arrays and numbers at the creation of records."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,19 @@ from numpy.typing import NDArray
 from jointbench.acquisition.basics.errors import ShapeError
 
 
-def require_shape(name: str, array: NDArray[Any], shape: Sequence[int | None]) -> None:
+class Shaped(Protocol):
+    """An array, or what stands for one."""
+
+    @property
+    def ndim(self) -> int:
+        """Number of axes."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Length of each axis."""
+
+
+def require_shape(name: str, array: Shaped, shape: Sequence[int | None]) -> None:
     """Raise `ShapeError` unless `array` has `shape`; `None` means any length."""
     if len(shape) != array.ndim or any(
         want is not None and want != got

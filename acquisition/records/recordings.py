@@ -16,6 +16,10 @@ from jointbench.acquisition.basics.array_checks import (
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import ChannelMissing, ShapeError
 from jointbench.acquisition.records.provenance import Provenance
+from jointbench.acquisition.records.stored_samples import StoredSamples
+
+Samples = FloatArray | StoredSamples
+"""An array, or what is indexed like one and stays in its file."""
 
 
 class Quantity(StrEnum):
@@ -94,7 +98,8 @@ class Recording:
 
     Attributes:
         name: unique within a session.
-        samples: values in SI units, shape (n_channels, n_samples), finite.
+        samples: values in SI units, shape (n_channels, n_samples), finite; those of a
+            large session stay in its file, see `StoredSamples`.
         sample_rate: [Hz].
         channels: one for each row of `samples`.
         start_time: time of the first sample since the session began [s].
@@ -105,7 +110,7 @@ class Recording:
     """
 
     name: str
-    samples: FloatArray
+    samples: Samples
     sample_rate: float
     channels: tuple[Channel, ...]
     start_time: float = 0.0
@@ -116,14 +121,15 @@ class Recording:
     def __post_init__(self) -> None:
         """Check shapes once and make the samples read-only."""
         require_shape("samples", self.samples, (len(self.channels), None))
-        require_finite("samples", self.samples)
+        if not isinstance(self.samples, StoredSamples):
+            require_finite("samples", self.samples)
+            freeze(self, "samples")
         require_positive("sample_rate", self.sample_rate)
         if self.preload is not None:
             require_positive("preload", self.preload)
         names = [channel.name for channel in self.channels]
         if len(set(names)) != len(names):
             raise ShapeError(f"channel names must be unique, got {names}")
-        freeze(self, "samples")
 
     def rows(self, quantity: Quantity) -> tuple[int, ...]:
         """Return the indices of the channels that measure `quantity`."""

@@ -14,7 +14,7 @@ Results are written to a separate file, so that raw data can be made read-only. 
 `streams` and `extras` for the groups.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -24,9 +24,13 @@ from jointbench.acquisition.basics.errors import BadData, FormatError
 from jointbench.acquisition.file_access.create_netcdf import new_file
 from jointbench.acquisition.file_access.file_lock import locked
 from jointbench.acquisition.file_access.hdf5_guards import open_guarded
-from jointbench.acquisition.file_access.netcdf_read import read_attribute
+from jointbench.acquisition.file_access.netcdf_read import (
+    read_array,
+    read_attribute,
+)
 from jointbench.acquisition.file_access.netcdf_write import write_attributes
 from jointbench.acquisition.file_access.quoting import named, shown
+from jointbench.acquisition.records.recordings import Samples
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.live_read import read_live
 from jointbench.acquisition.session_file.live_write import LIVE_SCHEMA
@@ -112,7 +116,7 @@ def read_session(path: Path | str) -> Session:
         if read_attribute(file, "schema") == LIVE_SCHEMA:
             return session_from_live(file, read_live(file))
         require_schema(file, SESSION_SCHEMA, path)
-        return _read(file)
+        return read_content(file)
 
 
 @contextmanager
@@ -149,7 +153,15 @@ def require_schema(file: h5py.File, schema: str, path: Path | str) -> None:
     )
 
 
-def _read(file: h5py.File) -> Session:
+def read_content(
+    file: h5py.File, samples: Callable[[h5py.Dataset], Samples] = read_array
+) -> Session:
+    """Read an open session.
+
+    Args:
+        file: of the layout `SESSION_SCHEMA`.
+        samples: reads the samples of a recording, or stands for them.
+    """
     steps = read_provenance(file)
     texts = {name: str(read_attribute(file, name) or "") for name in _TEXTS}
     return Session(
@@ -161,6 +173,7 @@ def _read(file: h5py.File) -> Session:
                 file,
                 group,
                 steps.get(("recording", str(read_attribute(group, "name"))), ()),
+                samples,
             )
             for group in in_order(file, "stream")
         ),

@@ -15,7 +15,7 @@ the attribute `sample_rate`. Samples are doubles, or single precision if that is
 lossless.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import h5py
@@ -48,6 +48,7 @@ from jointbench.acquisition.records.recordings import (
     Hit,
     Quantity,
     Recording,
+    Samples,
     Verdict,
 )
 from jointbench.acquisition.session_file.record_groups import (
@@ -66,7 +67,7 @@ def write_recording(file: h5py.File, recording: Recording, position: int) -> Non
     if recording.samples.size == 0:
         raise BadData(f"recording {recording.name!r} holds no samples; leave it out")
     group = _begin_recording(file, recording, position, recording.samples.shape[1])
-    values = narrowest(recording.samples)
+    values = narrowest(np.asarray(recording.samples))
     _make_samples(group, values.shape, values.dtype)[...] = values
     _end_recording(file, group, recording)
 
@@ -149,12 +150,15 @@ def _end_recording(file: h5py.File, group: h5py.Group, recording: Recording) -> 
 
 
 def recording_from_group(
-    file: h5py.File, group: h5py.Group, provenance: Provenance
+    file: h5py.File,
+    group: h5py.Group,
+    provenance: Provenance,
+    samples: Callable[[h5py.Dataset], Samples] = read_array,
 ) -> Recording:
     """Read a recording and its hits, bit for bit as written."""
     return Recording(
         name=str(read_attribute(group, "name")),
-        samples=read_array(group["samples"]),
+        samples=samples(group["samples"]),
         sample_rate=float(number(group, "sample_rate")),
         channels=read_channels(group),
         start_time=float(number(group, "start_time")),

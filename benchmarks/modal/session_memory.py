@@ -13,14 +13,18 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+if TYPE_CHECKING:
+    from jointbench.acquisition.records.recordings import Recording
+
 RATE, SECONDS = 51_200.0, 2.0
-SIZES = ((8, 10, 1), (16, 20, 2), (16, 40, 3), (32, 40, 4))
+SIZES = ((8, 10, 1), (16, 20, 2), (16, 50, 3), (32, 40, 4), (64, 200, 5))
 """Channels, hits, seed."""
 _MODES = np.linspace(150.0, 2600.0, 8)
 _DAMPING = 0.006
@@ -31,8 +35,8 @@ _MODAL = "from jointbench.station.main import run; run()"
 _FLOOR = """
 import sys
 import scipy.fft
-from jointbench.acquisition.session_file.store import read_session
-for recording in read_session(sys.argv[1]).recordings:
+from jointbench.acquisition.session_file.open_session import open_session
+for recording in open_session(sys.argv[1], most_whole=0).recordings:
     for row in recording.samples:
         scipy.fft.rfft(row)
 """
@@ -52,12 +56,39 @@ class Cost:
 
 
 def make_session(path: Path, channels: int, hits: int, seed: int) -> None:
-    """Write a session of one hit a recording, its force on channel 1."""
-    from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
-    from jointbench.acquisition.records.session import new_session
-    from jointbench.acquisition.session_file.store import write_session
+    """Write a session of one hit a recording, its force on channel 1.
 
-    rng = np.random.default_rng(seed)
+    Samples are in single precision, as those of a converter; one recording is in memory
+    at a time.
+    """
+    from jointbench.acquisition.file_access.create_netcdf import new_file
+    from jointbench.acquisition.records.session import new_session
+    from jointbench.acquisition.session_file.store import (
+        SESSION_SCHEMA,
+        SESSION_TITLE,
+        write_head,
+    )
+    from jointbench.acquisition.session_file.streams import write_recording
+    from jointbench.acquisition.session_file.surfaces_and_setup import write_provenance
+
+    session = new_session(source="made", simulated=True)
+    made = _recordings(channels, hits, np.random.default_rng(seed))
+    with new_file(
+        path, schema=SESSION_SCHEMA, title=SESSION_TITLE, memory=False
+    ) as file:
+        write_head(file, session)
+        for position, recording in enumerate(made):
+            write_recording(file, recording, position)
+            file.flush()
+        write_provenance(file, session)
+
+
+def _recordings(
+    channels: int, hits: int, rng: np.random.Generator
+) -> Iterator["Recording"]:
+    """Yield recordings of one hit each."""
+    from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
+
     count, trigger = round(RATE * SECONDS), 512
     time = np.arange(count - trigger) / RATE
     omega = 2.0 * np.pi * _MODES
@@ -69,16 +100,14 @@ def make_session(path: Path, channels: int, hits: int, seed: int) -> None:
         for i in range(1, channels)
     ]
     pulse = np.sin(np.pi * np.arange(1, 16) / 16.0)
-    recordings = []
     for number in range(hits):
         level = 200.0 * (1.0 + 0.3 * rng.random())
         samples = _NOISE * rng.standard_normal((channels, count))
         samples[0] *= 10.0
         samples[0, trigger : trigger + pulse.size] += level * pulse
         samples[1:, trigger + 8 :] += level / 200.0 * motion[:, : motion.shape[1] - 8]
-        recordings.append(Recording(f"hit{number}", samples, RATE, tuple(sensors)))
-    session = new_session(source="made", simulated=True, recordings=recordings)
-    write_session(session, path)
+        samples = samples.astype(np.float32).astype(np.float64)
+        yield Recording(f"hit{number}", samples, RATE, tuple(sensors))
 
 
 def cost_of(code: str, *arguments: str) -> Cost:
@@ -123,7 +152,7 @@ HEAD = (
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure the sizes asked for, print and write their rows."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--sizes", default="0,1,2,3")
+    parser.add_argument("--sizes", default="0,1,2,3,4")
     parser.add_argument("--page", type=Path)
     given = parser.parse_args(arguments)
     rows = [HEAD]

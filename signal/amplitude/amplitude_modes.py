@@ -36,12 +36,14 @@ from jointbench.signal.amplitude.dependence_test import (
     score_chance,
 )
 from jointbench.signal.amplitude.group_fits import GroupFit, fit_groups
-from jointbench.signal.amplitude.level_comparison import compare_levels
+from jointbench.signal.amplitude.level_comparison import (
+    compare_levels,
+    spectra_near_modes,
+)
 from jointbench.signal.amplitude.mode_groups import ModeGroup, mode_groups
 from jointbench.signal.amplitude.ring_downs import RingDowns, ring_downs
 from jointbench.signal.hits.find_hits import accepted_hits
-from jointbench.signal.hits.hit_spectra import HitSpectra, hit_spectra
-from jointbench.signal.hits.windows import choose_window, join_windows
+from jointbench.signal.hits.hit_spectra import ForcesOfHits
 from jointbench.signal.modal.modal_model import ModalModel
 
 # Above this residual ratio no curve is given.
@@ -73,8 +75,7 @@ def amplitude_modes(
         BadData: no hit was accepted.
     """
     judged = [r for r in recordings if accepted_hits(r)]
-    decays = ring_downs(judged)
-    spectra = hit_spectra(judged, join_windows([choose_window(r) for r in judged]))
+    spectra = spectra_near_modes(judged, model)
     levels = {
         i: _levels_at(spectra, model, i) for i in range(model.natural_frequency.size)
     }
@@ -85,13 +86,27 @@ def amplitude_modes(
             found += [_not_fitted(model, i, *levels[i]) for i in group.members]
         else:
             asked.append(group)
+    if asked:  # few sessions need their decays
+        found += _fitted_modes(ring_downs(judged), model, asked, levels, progress)
+    return tuple(sorted(found, key=lambda mode: mode.replaces[0]))
+
+
+def _fitted_modes(
+    decays: RingDowns,
+    model: ModalModel,
+    asked: Sequence[ModeGroup],
+    levels: _Levels,
+    progress: Talk | None,
+) -> list[AmplitudeMode]:
+    """Return the modes of the groups whose decays are fitted."""
+    found = []
     for group, fitted in fit_groups(decays, model, asked, progress).items():
         if fitted is None:
             words = "the joint fit is singular"
             found += [_undecided(model, i, words) for i in group.members]
         else:
             found += _resolved(decays, model, group, fitted, levels)
-    return tuple(sorted(found, key=lambda mode: mode.replaces[0]))
+    return found
 
 
 def _resolved(
@@ -111,7 +126,7 @@ def _resolved(
 
 
 def _levels_at(
-    spectra: HitSpectra, model: ModalModel, member: int
+    spectra: ForcesOfHits, model: ModalModel, member: int
 ) -> tuple[float | None, str]:
     frequency, ratio = model.natural_frequency[member], model.damping_ratio[member]
     return compare_levels(spectra, float(frequency), float(ratio))

@@ -5,20 +5,73 @@ No model of the decay enters: a neighbour that was left out, a transient, a wron
 level are the same for hard and soft hits. What differs between them depends on level.
 """
 
+from collections.abc import Sequence
+
+import numpy as np
+
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.basics.tail_probabilities import f_above
-from jointbench.signal.frf.linearity import check_linearity
-from jointbench.signal.hits.hit_spectra import HitSpectra
+from jointbench.acquisition.records.recordings import Recording
+from jointbench.signal.frf.linearity import check_linearity, level_range
+from jointbench.signal.hits.hit_spectra import ForcesOfHits, hit_forces
+from jointbench.signal.hits.windows import choose_window, join_windows
+from jointbench.signal.modal.modal_model import ModalModel
 
 # Lines around the mode that are compared, in halves of the half-power width.
 _HALF_WIDTHS = 6.0
 _LEAST_LINES = 6
 # Levels closer than this factor are one level: aim and pulse differ as much.
 _LEAST_FACTOR = 1.5
+# Spectral values around all modes that are kept (0.4 GB); above, hits are transformed
+# again for each mode.
+_MOST_VALUES = 25_000_000
+
+
+def spectra_near_modes(
+    recordings: Sequence[Recording], model: ModalModel
+) -> ForcesOfHits:
+    """Transform hits for `compare_levels` of the modes of a model.
+
+    Args:
+        recordings: with accepted hits.
+        model: of the modes.
+
+    Returns:
+        The forces, and the responses at the lines around the modes where the levels of
+        the hits differ enough for a comparison.
+    """
+    window = join_windows([choose_window(r) for r in recordings])
+    forces = hit_forces(recordings, window)
+    near = np.zeros(forces.frequency.size, bool)
+    pairs = zip(model.natural_frequency, model.damping_ratio, strict=True)
+    for low, high in (_band(forces, float(f), float(z)) for f, z in pairs):
+        inside = (forces.frequency >= low) & (forces.frequency <= high)
+        if _factor(forces, (low, high)) >= _LEAST_FACTOR:
+            near |= inside
+    size = len(forces.points) * len(forces.labels[0]) * np.count_nonzero(near)
+    return forces.at(near) if 0 < size <= _MOST_VALUES else forces
+
+
+def _band(
+    spectra: ForcesOfHits, frequency: float, damping_ratio: float
+) -> tuple[float, float]:
+    """Return the band around a mode in which hits are compared [Hz]."""
+    step = float(np.diff(spectra.frequency).min())
+    half = max(_HALF_WIDTHS * damping_ratio * frequency, _LEAST_LINES * step)
+    return frequency - half, frequency + half
+
+
+def _factor(spectra: ForcesOfHits, band: tuple[float, float]) -> float:
+    """Return by how much the levels of the hits of a pair differ; 0 for too few."""
+    try:
+        low, high = level_range(spectra, band)
+    except BadData:
+        return 0.0
+    return high / low
 
 
 def compare_levels(
-    spectra: HitSpectra, frequency: float, damping_ratio: float
+    spectra: ForcesOfHits, frequency: float, damping_ratio: float
 ) -> tuple[float | None, str]:
     """Test whether the FRF around a mode changes with the level of the hits.
 
@@ -35,15 +88,13 @@ def compare_levels(
         The chance that a linear structure shows as much, and an empty text; or None
         and why it could not be asked.
     """
-    step = float(spectra.frequency[1] - spectra.frequency[0])
-    half = max(_HALF_WIDTHS * damping_ratio * frequency, _LEAST_LINES * step)
-    try:
-        found = check_linearity(spectra, (frequency - half, frequency + half))
-    except BadData:
+    band = _band(spectra, frequency, damping_ratio)
+    factor = _factor(spectra, band)
+    if factor == 0.0:
         return None, _why_not("")
-    factor = found.levels[1] / found.levels[0]
     if factor < _LEAST_FACTOR:
         return None, _why_not(f", here by {factor:.2g}")
+    found = check_linearity(spectra, band)
     freedom = max(2.0 * (found.hits - 2 * len(set(spectra.points))), 1.0)
     return f_above(found.f_value, 2.0, freedom), ""
 

@@ -24,6 +24,8 @@ from jointbench.signal.hits.windows import choose_window, quiet_mean
 _PULSE_OVER = 0.2
 # Hits whose record is shorter than this share of the usual one are left out.
 _SHORT = 0.5
+# Samples of all decays that are held at a time, and hits that are kept of more.
+_MOST_SAMPLES, _LEAST_HITS = 25_000_000, 24
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +76,9 @@ def ring_downs(recordings: Sequence[Recording]) -> RingDowns:
     """Cut the ring-downs of all accepted hits out of recordings.
 
     Hits are kept that have the channels which most hits have and whose record is not
-    much shorter than that of the others; all are cut to the shortest that is left.
+    much shorter than that of the others; all are cut to the shortest that is left. Of a
+    session beyond 0.2 GB, hits spread over the levels and the strongest channels are
+    kept.
 
     Args:
         recordings: with judged hits, samples as recorded (no smoother, no window).
@@ -97,8 +101,15 @@ def ring_downs(recordings: Sequence[Recording]) -> RingDowns:
     long = lengths >= _SHORT * np.median(lengths)
     size = int(lengths[long].min())
     kept = [pair for pair, good in zip(chosen, long, strict=True) if good]
+    kept, rows = _within_memory(kept, size)
+    usual = tuple(usual[row] for row in rows)
+    samples = np.empty((len(kept), len(rows), size))
+    for number, (recording, hit) in enumerate(kept):
+        start = starts[id(recording)]
+        samples[number] = _decay(recording, hit, start, size, rows)
+    samples.flags.writeable = False  # or the record would copy them
     return RingDowns(
-        samples=np.array([_decay(r, hit, starts[id(r)], size) for r, hit in kept]),
+        samples=samples,
         sample_rate=kept[0][0].sample_rate,
         derivatives=KIND_OF_RESPONSE[quantity].derivatives,
         unit=_UNITS[quantity],
@@ -106,6 +117,34 @@ def ring_downs(recordings: Sequence[Recording]) -> RingDowns:
         points=tuple(hit.point for _, hit in kept),
         impulse=np.array([_impulse(r, hit, starts[id(r)]) for r, hit in kept]),
     )
+
+
+def _within_memory(
+    chosen: list[tuple[Recording, Hit]], size: int
+) -> tuple[list[tuple[Recording, Hit]], list[int]]:
+    """Return hits spread over all levels, and channels, that fit into memory.
+
+    Args:
+        chosen: hits with equal channels.
+        size: samples of each decay.
+
+    Returns:
+        The hits in their order, and the numbers of the responses in theirs.
+    """
+    channels = len(response_rows(chosen[0][0]))
+    if len(chosen) * channels * size <= _MOST_SAMPLES:
+        return chosen, list(range(channels))
+    by_level = np.argsort([hit.peak_force for _, hit in chosen], kind="stable")
+    number = min(len(chosen), _LEAST_HITS)
+    spread = np.linspace(0, len(chosen) - 1, number).round().astype(int)
+    hits = [chosen[i] for i in sorted(by_level[spread].tolist())]
+    recording, hardest = chosen[int(by_level[-1])]
+    power = [
+        float(np.mean(recording.samples[row, hardest.trigger : hardest.stop] ** 2))
+        for row in response_rows(recording)
+    ]
+    fitting = max(1, _MOST_SAMPLES // (number * size))
+    return hits, sorted(np.argsort(power)[::-1][:fitting].tolist())
 
 
 def _labels(recording: Recording) -> tuple[str, ...]:
@@ -119,14 +158,18 @@ def _pulse_over(recording: Recording) -> int:
     return int(np.ceil(_PULSE_OVER * width * recording.sample_rate))
 
 
-def _decay(recording: Recording, hit: Hit, start: int, size: int) -> FloatArray:
-    rows = list(response_rows(recording))
+def _decay(
+    recording: Recording, hit: Hit, start: int, size: int, rows: Sequence[int]
+) -> FloatArray:
+    responses = response_rows(recording)
     first = hit.trigger + start
-    return recording.samples[rows, first : first + size]
+    return recording.samples[[responses[row] for row in rows], first : first + size]
 
 
 def _impulse(recording: Recording, hit: Hit, start: int) -> float:
-    force = recording.samples[recording.row(Quantity.FORCE)]
-    offset = quiet_mean(force[hit.start : hit.stop], hit.trigger - hit.start)
-    pulse = force[hit.trigger : hit.trigger + start] - offset
+    trigger = hit.trigger - hit.start
+    past = max(hit.stop, hit.trigger + start)
+    force = recording.samples[recording.row(Quantity.FORCE), hit.start : past]
+    offset = quiet_mean(force[: hit.stop - hit.start], trigger)
+    pulse = force[trigger : trigger + start] - offset
     return float(pulse.sum() / recording.sample_rate)

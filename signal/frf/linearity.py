@@ -106,16 +106,7 @@ def check_linearity(
     low, high = band or excited_band(spectra)
     inside = (spectra.frequency >= low) & (spectra.frequency <= high)
     impulse = _levels(spectra, inside)
-    outputs, inputs, pairs = pair_up(spectra)
-    groups = [
-        p for p in pairs if _spread(impulse[p.hits]) and p.hits.size >= _LEAST_HITS
-    ]
-    if not groups:
-        raise BadData(
-            f"linearity needs {_LEAST_HITS} accepted hits at one point whose levels "
-            f"differ by a factor of {_LEAST_SPAN} or more; none of {len(outputs)} x "
-            f"{len(inputs)} pairs has them: alternate soft and hard hits"
-        )
+    groups = _comparable(spectra, impulse)
     fits = [_regress(spectra, pair, impulse[pair.hits], inside) for pair in groups]
     slope_power = np.sum([f.slope_power for f in fits], axis=0)
     noise_power = np.sum([f.noise_power for f in fits], axis=0)
@@ -132,6 +123,39 @@ def check_linearity(
         levels=(float(used.min()), float(used.max())),
         hits=int(np.unique(np.concatenate([p.hits for p in groups])).size),
     )
+
+
+def level_range(
+    spectra: ForcesOfHits, band: tuple[float, float]
+) -> tuple[float, float]:
+    """Return lowest and highest level of the hits that a test would use [N s].
+
+    Args:
+        spectra: of accepted hits; no response is asked for.
+        band: lowest and highest frequency [Hz].
+
+    Raises:
+        BadData: as `check_linearity`.
+    """
+    inside = (spectra.frequency >= band[0]) & (spectra.frequency <= band[1])
+    impulse = _levels(spectra, inside)
+    used = np.concatenate([impulse[p.hits] for p in _comparable(spectra, impulse)])
+    return float(used.min()), float(used.max())
+
+
+def _comparable(spectra: ForcesOfHits, impulse: FloatArray) -> list[Pair]:
+    """Return the pairs with enough hits at different levels."""
+    outputs, inputs, pairs = pair_up(spectra)
+    groups = [
+        p for p in pairs if _spread(impulse[p.hits]) and p.hits.size >= _LEAST_HITS
+    ]
+    if not groups:
+        raise BadData(
+            f"linearity needs {_LEAST_HITS} accepted hits at one point whose levels "
+            f"differ by a factor of {_LEAST_SPAN} or more; none of {len(outputs)} x "
+            f"{len(inputs)} pairs has them: alternate soft and hard hits"
+        )
+    return groups
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,7 +181,7 @@ def _regress(
     spectra: ForcesOfHits, pair: Pair, impulse: FloatArray, inside: BoolArray
 ) -> _Fit:
     force = spectra.force[pair.hits][:, inside]
-    response = spectra.responses(pair)[:, inside]
+    response = spectra.responses(pair, inside)
     frf, weight = response / force, np.abs(force) ** 2
     # Weighted by |F|^2: the noise of a hit's FRF is response noise over force.
     total = weight.sum(axis=0)

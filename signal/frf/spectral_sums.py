@@ -10,11 +10,10 @@ Source:
     Identification (1999), sec. 11.2 (recursive least squares).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.records.recordings import Quantity, Recording
@@ -23,7 +22,7 @@ from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
     SpectraPlan,
     plan_spectra,
-    windowed_hit,
+    transformed,
 )
 from jointbench.signal.hits.windows import HammerWindow
 
@@ -112,7 +111,7 @@ class _Adder:
     def add(
         self,
         force: ComplexArray,
-        response: ComplexArray,
+        response: Iterable[ComplexArray],
         labels: Sequence[str],
         point: str,
     ) -> None:
@@ -145,13 +144,8 @@ def sum_hits(recordings: Sequence[Recording], window: HammerWindow) -> SpectralS
     plan = plan_spectra(recordings)
     adder = _Adder(np.zeros(plan.frequency.size))
     for (recording, hit), labels in zip(plan.chosen, plan.labels, strict=True):
-        force, response = windowed_hit(recording, hit, window, plan.block)
-        adder.add(
-            scipy.fft.rfft(force) / plan.rate,
-            scipy.fft.rfft(response, overwrite_x=True) / plan.rate,
-            labels,
-            hit.point,
-        )
+        force, responses = transformed(recording, hit, window, plan.block)
+        adder.add(force, responses, labels, hit.point)
     return _sums(adder, plan)
 
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Spectra of hammer hits on one common block."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import (
     ChannelMissing,
     NoHitFound,
@@ -22,10 +22,16 @@ from jointbench.acquisition.records.recordings import (
     common_response,
     response_rows,
 )
+from jointbench.acquisition.records.stored_samples import remembered
 from jointbench.signal.hits.block_length import choose_block
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_pairs import LabelledHits, Pair
-from jointbench.signal.hits.windows import HammerWindow, apply_window
+from jointbench.signal.hits.windows import (
+    HammerWindow,
+    apply_window,
+    quiet_mean,
+    window_weights,
+)
 
 # A filtered constant still varies by this share of itself.
 _ROUNDING = 1e-12
@@ -55,9 +61,9 @@ class HitSpectra:
     block: int
     block_reason: str
 
-    def responses(self, pair: Pair) -> ComplexArray:
-        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
-        return np.asarray(self.response[pair.hits, pair.rows])
+    def responses(self, pair: Pair, inside: BoolArray) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_inside)."""
+        return np.asarray(self.response[pair.hits, pair.rows][:, inside])
 
 
 def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpectra:
@@ -81,9 +87,10 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
     force = np.empty((len(plan.chosen), lines), complex)
     response = np.empty((len(plan.chosen), rows, lines), complex)
     for number, (recording, hit) in enumerate(plan.chosen):
-        one, other = windowed_hit(recording, hit, window, plan.block)
-        force[number] = scipy.fft.rfft(one) / plan.rate
-        response[number] = scipy.fft.rfft(other, overwrite_x=True) / plan.rate
+        one, others = transformed(recording, hit, window, plan.block)
+        force[number] = one
+        for row, other in enumerate(others):
+            response[number, row] = other
     return HitSpectra(
         frequency=plan.frequency,
         force=force,
@@ -171,15 +178,41 @@ class HitForces:
     plan: SpectraPlan
     window: HammerWindow
 
-    def responses(self, pair: Pair) -> ComplexArray:
-        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
-        found = np.empty((pair.hits.size, self.frequency.size), complex)
+    def responses(self, pair: Pair, inside: BoolArray) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_inside)."""
+        found = np.empty((pair.hits.size, np.count_nonzero(inside)), complex)
         for place, (number, row) in enumerate(zip(pair.hits, pair.rows, strict=True)):
             recording, hit = self.plan.chosen[number]
             rows = response_rows(recording)[row : row + 1]
-            _, one = windowed_hit(recording, hit, self.window, self.plan.block, rows)
-            found[place] = scipy.fft.rfft(one[0], overwrite_x=True) / self.plan.rate
+            _, (one,) = transformed(
+                recording, hit, self.window, self.plan.block, rows=rows
+            )
+            found[place] = one[inside]
         return found
+
+    def at(self, lines: BoolArray) -> HitSpectra:
+        """Return the spectra of all responses at some lines, read once.
+
+        Args:
+            lines: which, shape (n_lines,).
+        """
+        plan = self.plan
+        size = len(plan.chosen), len(plan.labels[0]), np.count_nonzero(lines)
+        response = np.empty(size, complex)
+        for number, (recording, hit) in enumerate(plan.chosen):
+            _, others = transformed(recording, hit, self.window, plan.block)
+            for row, other in enumerate(others):
+                response[number, row] = other[lines]
+        return HitSpectra(
+            frequency=plan.frequency[lines],
+            force=self.force[:, lines],
+            response=response,
+            labels=plan.labels,
+            points=plan.points,
+            quantity=plan.quantity,
+            block=plan.block,
+            block_reason=plan.block_reason,
+        )
 
 
 def hit_forces(recordings: Sequence[Recording], window: HammerWindow) -> HitForces:
@@ -190,8 +223,7 @@ def hit_forces(recordings: Sequence[Recording], window: HammerWindow) -> HitForc
     plan = plan_spectra(recordings)
     force = np.empty((len(plan.chosen), plan.frequency.size), complex)
     for number, (recording, hit) in enumerate(plan.chosen):
-        one, _ = windowed_hit(recording, hit, window, plan.block, ())
-        force[number] = scipy.fft.rfft(one, overwrite_x=True) / plan.rate
+        force[number], _ = transformed(recording, hit, window, plan.block, rows=())
     return HitForces(plan.frequency, force, plan.labels, plan.points, plan, window)
 
 
@@ -206,8 +238,8 @@ class ForcesOfHits(LabelledHits, Protocol):
     def force(self) -> ComplexArray:
         """[N s], shape (n_hits, n_lines)."""
 
-    def responses(self, pair: Pair) -> ComplexArray:
-        """Return the response spectra of a pair, shape (n_hits of it, n_lines)."""
+    def responses(self, pair: Pair, inside: BoolArray) -> ComplexArray:
+        """Return the response spectra of a pair, shape (n_hits of it, n_inside)."""
 
 
 def join_spectra(parts: Sequence[HitSpectra]) -> HitSpectra:
@@ -236,15 +268,9 @@ def require_alive(recording: Recording, hit: Hit) -> None:
     Raises:
         ChannelMissing: a response is constant throughout; the message names all such.
     """
-    rows = list(response_rows(recording))
-    samples = recording.samples[rows, hit.start : hit.stop]
-    size = np.abs(samples).max(axis=1)
-    dead = np.flatnonzero(np.ptp(samples, axis=1) <= _ROUNDING * size)
-    if dead.size:
-        names = ", ".join(
-            f"{recording.channels[rows[i]].name!r} (always {samples[i, 0]:.4g})"
-            for i in dead
-        )
+    dead = dead_channels(recording, hit)
+    if dead:
+        names = ", ".join(f"{name!r} (always {value:.4g})" for name, value in dead)
         raise ChannelMissing(
             f"recording {recording.name!r}: no signal from {names} in the hit at "
             f"{hit.trigger / recording.sample_rate:.4g} s; check the cable and the "
@@ -252,14 +278,27 @@ def require_alive(recording: Recording, hit: Hit) -> None:
         )
 
 
-def windowed_hit(
+@remembered
+def dead_channels(recording: Recording, hit: Hit) -> tuple[tuple[str, float], ...]:
+    """Return name and value of each response that is constant throughout a hit."""
+    found = []
+    for row in response_rows(recording):
+        samples = recording.samples[row, hit.start : hit.stop]
+        size = max(abs(float(samples.max())), abs(float(samples.min())))
+        if float(np.ptp(samples)) <= _ROUNDING * size:
+            found.append((recording.channels[row].name, float(samples[0])))
+    return tuple(found)
+
+
+def transformed(
     recording: Recording,
     hit: Hit,
     window: HammerWindow,
     block: int,
+    *,
     rows: Sequence[int] | None = None,
-) -> tuple[FloatArray, FloatArray]:
-    """Cut a hit out of its recording and window it.
+) -> tuple[ComplexArray, Iterator[ComplexArray]]:
+    """Window a hit and transform it, one channel at a time.
 
     Args:
         recording: holds the hit.
@@ -269,6 +308,36 @@ def windowed_hit(
         rows: of the responses to transform, None for all.
 
     Returns:
+        Spectra of the force [N s] and, one after the other, of the responses, shape
+        (n_lines,) each.
+    """
+    rate, stop = recording.sample_rate, min(hit.stop, hit.start + block)
+    trigger = hit.trigger - hit.start
+    weights = window_weights(window, stop - hit.start, trigger, rate)
+    force = recording.samples[recording.row(Quantity.FORCE), hit.start : stop]
+    force = (force - quiet_mean(force, trigger)) * weights[0]
+
+    def responses() -> Iterator[ComplexArray]:
+        for row in response_rows(recording) if rows is None else rows:
+            one = recording.samples[row, hit.start : stop]
+            one = (one - one.mean()) * weights[1]
+            yield np.asarray(scipy.fft.rfft(one, block, overwrite_x=True) / rate)
+
+    return scipy.fft.rfft(force, block) / rate, responses()
+
+
+def windowed_hit(
+    recording: Recording, hit: Hit, window: HammerWindow, block: int
+) -> tuple[FloatArray, FloatArray]:
+    """Cut a hit out of its recording and window it.
+
+    Args:
+        recording: holds the hit.
+        hit: which.
+        window: to apply.
+        block: number of samples; a shorter hit is padded with zeros.
+
+    Returns:
         Force, shape (block,), and responses, shape (n_responses, block).
     """
     stop = min(hit.stop, hit.start + block)
@@ -276,7 +345,7 @@ def windowed_hit(
     force, response = apply_window(
         window,
         samples[recording.row(Quantity.FORCE)],
-        samples[list(response_rows(recording) if rows is None else rows)],
+        samples[list(response_rows(recording))],
         trigger=hit.trigger - hit.start,
         sample_rate=recording.sample_rate,
     )

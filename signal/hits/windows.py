@@ -22,6 +22,7 @@ from jointbench.acquisition.records.recordings import (
     Recording,
     response_rows,
 )
+from jointbench.acquisition.records.stored_samples import remembered
 from jointbench.signal.hits.find_hits import accepted_hits
 
 # The pulse ends where the force falls below this share of its peak.
@@ -93,6 +94,7 @@ def requested_window(
     return replace(chosen, **given, reason=f"{words}; {chosen.reason}")
 
 
+@remembered
 def choose_window(recording: Recording) -> HammerWindow:
     """Choose the windows from the accepted hits of a recording.
 
@@ -158,18 +160,32 @@ def apply_window(
         Force without its pre-trigger mean and response without its mean over the
         segment (which changes line 0 only), both windowed; new arrays.
     """
+    on_force, on_response = window_weights(window, force.size, trigger, sample_rate)
     force = force - quiet_mean(force, trigger)
     response = response - response.mean(axis=1, keepdims=True)
-    time = (np.arange(force.size) - trigger) / sample_rate
+    return force * on_force, response * on_response
+
+
+def window_weights(
+    window: HammerWindow, count: int, trigger: int, sample_rate: float
+) -> tuple[FloatArray, FloatArray]:
+    """Return what a window multiplies force and responses with, shape (n,) each.
+
+    Args:
+        window: what to apply.
+        count: samples of the segment.
+        trigger: index of the trigger in the segment.
+        sample_rate: [Hz].
+    """
+    time = (np.arange(count) - trigger) / sample_rate
+    both = np.ones(count)
     if window.lead is not None:
-        ours = time >= -window.lead
-        force, response = force * ours, response * ours
-    if window.force_width is not None:
-        force = force * _keep_then_taper(time, window.force_width)
+        both *= time >= -window.lead
     if window.decay_rate is not None:
-        decay = np.exp(-window.decay_rate * time)
-        force, response = force * decay, response * decay
-    return force, response
+        both *= np.exp(-window.decay_rate * time)
+    if window.force_width is None:
+        return both, both
+    return both * _keep_then_taper(time, window.force_width), both
 
 
 def quiet_mean(force: FloatArray, trigger: int) -> float:
@@ -195,6 +211,7 @@ def _pulse_length(recording: Recording, hit: Hit) -> int:
     return peak + (int(low[0]) if low.size else 0) - trigger + 1
 
 
+@remembered
 def left_at_end(recording: Recording, hit: Hit, length: int | None = None) -> float:
     """Return the rms of the last tenth over that of the first, largest response.
 

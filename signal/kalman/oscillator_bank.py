@@ -20,6 +20,7 @@ from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.records.provenance import step
 from jointbench.acquisition.records.recordings import Recording, response_rows
+from jointbench.acquisition.records.stored_samples import remembered
 from jointbench.signal.kalman.process_models import StateModel
 
 # Constant samples in a row: the least number of a drop-out, and the number used before
@@ -89,17 +90,29 @@ def find_dropouts(recording: Recording) -> BoolArray:
     """
     lost = np.zeros(recording.samples.shape, bool)
     for row in response_rows(recording):
-        samples = recording.samples[row]
-        still = np.diff(samples) == 0.0
-        if np.mean(~still) < _MOVING:
-            continue
-        runs, least = _runs(still), _least_still(still)
-        for first, last in runs:
-            if last - first >= least:
-                # The first of equal samples may be the last good one; zero is not.
-                begin = first if samples[first] == 0.0 else first + 1
-                lost[row, begin : last + 1] = True
+        for begin, past in _lost_spans(recording.samples[row]):
+            lost[row, begin:past] = True
     return lost
+
+
+@remembered
+def has_dropouts(recording: Recording) -> bool:
+    """Return whether `find_dropouts` finds a lost sample."""
+    return any(_lost_spans(recording.samples[r]) for r in response_rows(recording))
+
+
+def _lost_spans(samples: FloatArray) -> list[tuple[int, int]]:
+    """Return first and one past the last of each run of lost samples of a channel."""
+    still = np.diff(samples) == 0.0
+    if np.mean(~still) < _MOVING:
+        return []
+    runs, least = _runs(still), _least_still(still)
+    # The first of equal samples may be the last good one; zero is not.
+    return [
+        (int(first) + int(samples[first] != 0.0), int(last) + 1)
+        for first, last in runs
+        if last - first >= least
+    ]
 
 
 def _runs(still: BoolArray) -> IntArray:
@@ -153,6 +166,8 @@ def repair_dropouts(
         np.asarray(damping_ratio, np.float64),
     )
     _require_inside(own, ratio, recording.sample_rate)
+    if lost is None and not has_dropouts(recording):
+        return recording
     missing = find_dropouts(recording) if lost is None else lost
     samples, filled = recording.samples.copy(), {}
     for row in response_rows(recording):

@@ -26,6 +26,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import ChannelMissing
 from jointbench.acquisition.records.provenance import Step, step
 from jointbench.acquisition.records.recordings import Recording
+from jointbench.acquisition.records.stored_samples import remembered
 from jointbench.signal.kalman.process_models import (
     KalmanModel,
     KalmanSettings,
@@ -53,6 +54,8 @@ __all__ = [
     "state_model",
 ]
 
+_WHOLE, _STRETCHES, _STRETCH = 2**16, 4, 2**13
+"""Samples that are filtered whole; number and length of stretches of longer ones."""
 # The median of the square of a standard normal number.
 _MEDIAN_CHI2 = 0.45493642311957283
 
@@ -92,17 +95,28 @@ def measurement_noise(model: StateModel, samples: FloatArray) -> FloatArray:
     Returns:
         Variance [sample unit squared], shape (n_channels,).
     """
-    gain, _ = gains(*_parts(model), samples.shape[1])
+    # One by one: states and innovations take three times a row.
+    return np.array([_noise_of(model, [row]) for row in samples])
+
+
+def _noise_of(model: StateModel, stretches: Sequence[FloatArray]) -> float:
+    """Return the noise variance of one channel from stretches of equal length."""
+    gain, _ = gains(*_parts(model), stretches[0].size)
     # With measurement noise 1 the innovation variance is 1 / (1 - observed gain).
     observed = gain @ model.observation
-    scale = np.ones(samples.shape[1]) - observed[-1]
+    scale = np.ones(stretches[0].size) - observed[-1]
     scale[: observed.size] = 1.0 - observed
-    found = []
-    for row in samples:  # one by one: states and innovations take three times a row
-        power = _forward(model, row[None], gain)[1][0] ** 2
-        power *= scale
-        found.append(np.median(power, overwrite_input=True))
-    return np.array(found) / _MEDIAN_CHI2
+    power = [scale * _forward(model, x[None], gain)[1][0] ** 2 for x in stretches]
+    median = np.median(np.concatenate(power), overwrite_input=True)
+    return float(median) / _MEDIAN_CHI2
+
+
+def _stretches(count: int) -> tuple[slice, ...]:
+    """Return the samples from which the noise of a channel is estimated."""
+    if count <= _WHOLE:
+        return (slice(0, count),)
+    first = np.linspace(0, count - _STRETCH, _STRETCHES).astype(int).tolist()
+    return tuple(slice(begin, begin + _STRETCH) for begin in first)
 
 
 def smooth_recording(
@@ -140,8 +154,12 @@ def smooth_recording(
     )
 
 
+@remembered
 def observe_noise(recording: Recording, settings: KalmanSettings | None = None) -> Step:
     """Run the Kalman stage for the noise that it sees; samples stay as they are.
+
+    Of a long recording stretches are filtered, spread over all of it: their 32,768
+    samples give the standard deviation of the noise to 0.7 %.
 
     Filtered alike on all channels, the stage multiplies force and response by one gain,
     which cancels in the FRF.
@@ -155,7 +173,13 @@ def observe_noise(recording: Recording, settings: KalmanSettings | None = None) 
     """
     settings = settings or KalmanSettings()
     model = state_model(settings, recording.sample_rate)
-    noise = measurement_noise(model, recording.samples)
+    stretches = _stretches(recording.samples.shape[1])
+    noise = np.array(
+        [
+            _noise_of(model, [recording.samples[row, part] for part in stretches])
+            for row in range(len(recording.channels))
+        ]
+    )
     return _stage_step(settings, recording, [c.name for c in recording.channels], noise)
 
 

@@ -28,7 +28,8 @@ from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.quoting import named
 from jointbench.acquisition.file_access.text_files import file_digest, file_size
 from jointbench.acquisition.records.session import Session, software_version
-from jointbench.acquisition.session_file.store import damage_named, read_session
+from jointbench.acquisition.session_file.open_session import open_session
+from jointbench.acquisition.session_file.store import damage_named
 from jointbench.station.pipeline.code_version import stage_version
 from jointbench.station.pipeline.process_session import process_session
 from jointbench.station.pipeline.stage_store import StageStore
@@ -227,7 +228,7 @@ def mark_of(path: Path) -> _Mark:
 
 def _unchanged_session(path: Path, before: _Mark) -> Session:
     """Read a session whose digest was taken when it had the mark `before`."""
-    session = read_session(path)
+    session = open_session(path)
     if mark_of(path) != before:
         raise OSError(errno.EBUSY, "it changed while it was read")
     return session

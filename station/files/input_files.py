@@ -14,6 +14,7 @@ from jointbench.acquisition.formats.samples.read_samples import read_samples
 from jointbench.acquisition.formats.samples.sample_format import SampleOptions
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.surfaces import Surface
+from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.acquisition.session_file.store import read_session
 
 SESSION_SUFFIXES = (".h5", ".hdf5")
@@ -88,7 +89,7 @@ def read_recordings(
     found: list[Recording] = []
     for path in files:
         if is_session_name(path):
-            found += read_session(path).recordings
+            found += open_session(path).recordings
         else:
             samples = read_samples(path, SampleOptions(columns, point))
             found += samples or (read_recording(path, columns=columns, point=point),)

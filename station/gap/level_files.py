@@ -126,7 +126,7 @@ def _decimated(recording: Recording, factor: int) -> Recording:
 
 def _record(model: LevelsModel, level: LevelTable, recording: Recording) -> LevelRecord:
     table = model.records
-    samples: FloatArray = recording.samples
+    samples: FloatArray = np.asarray(recording.samples)
     if table.remove_mean:
         samples = samples - samples.mean(axis=1, keepdims=True)
     record = LevelRecord(

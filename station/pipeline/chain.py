@@ -11,7 +11,7 @@ Every command and every recipe runs these stages, each through a store
 (`stage_store`) that keeps what it gives, or nothing.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from jointbench.acquisition.basics.errors import NoModeFound
@@ -43,6 +43,7 @@ from jointbench.station.pipeline.judge_again import (
 )
 from jointbench.station.pipeline.recordings_by_preload import at_words
 from jointbench.station.pipeline.stage_store import StageRun
+from jointbench.station.pipeline.survey import survey
 
 # A gap spoils the modes that fill it; what a second round leaves is below the noise.
 _REPAIRS = 2
@@ -123,7 +124,13 @@ def judge_hits(
     Raises:
         NoHitFound: there is no hit in a recording, and none was judged before.
     """
-    found = hits_stage(recordings, settings.hits, StoredHits(), run or StageRun())
+    found = hits_stage(
+        recordings,
+        settings.hits,
+        StoredHits(),
+        run or StageRun(),
+        each=lambda recording: survey(recording, settings.kalman),
+    )
     return tuple(
         with_hits(recording, one)
         for recording, one in zip(recordings, found, strict=True)
@@ -222,6 +229,7 @@ def hits_stage(
     criteria: HitCriteria,
     stored: StoredHits,
     run: StageRun,
+    each: Callable[[Recording], None] | None = None,
 ) -> tuple[FoundHits, ...]:
     """Return the hits of each recording, see `judge_again`; none for no recordings."""
     if not recordings:
@@ -231,7 +239,7 @@ def hits_stage(
         "hits",
         run.stages.key("hits", [criteria, stored], source),
         tuple[FoundHits, ...],
-        lambda: judge_again(recordings, criteria, stored),
+        lambda: judge_again(recordings, criteria, stored, each),
     )
 
 
@@ -264,6 +272,8 @@ def _frf_stage(
     judged: Sequence[Recording], settings: ChainSettings, run: StageRun, at: str
 ) -> Frf:
     """Estimate the FRF of recordings with judged hits, and the noise in each."""
+    for recording in judged:
+        survey(recording, settings.kalman)
     stages = run.stages
     keys = [
         stages.key("kalman", settings.kalman, *run.source(r.name, _recorded(r)))

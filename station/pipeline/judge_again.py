@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Hits of recordings found and judged, or kept as stored, and changed verdicts."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from jointbench.acquisition.basics.errors import NoHitFound
@@ -68,7 +68,10 @@ class VerdictChange:
 
 
 def judge_again(
-    recordings: Sequence[Recording], criteria: HitCriteria, stored: StoredHits
+    recordings: Sequence[Recording],
+    criteria: HitCriteria,
+    stored: StoredHits,
+    each: Callable[[Recording], None] | None = None,
 ) -> tuple[FoundHits, ...]:
     """Find and judge the hits of recordings, or keep those that were found before.
 
@@ -80,6 +83,7 @@ def judge_again(
         recordings: as stored.
         criteria: of fresh hits.
         stored: what becomes of the hits that are there.
+        each: is called with each recording as soon as its hits are found.
 
     Returns:
         The hits of each recording; none for a quiet stretch between others.
@@ -93,6 +97,8 @@ def judge_again(
     for recording in recordings:
         try:
             found.append(_found(recording, criteria, stored))
+            if each is not None:
+                each(replace(recording, hits=found[-1].hits))
         except NoHitFound as error:
             if stored.all_struck and not some:
                 raise

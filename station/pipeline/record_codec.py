@@ -18,6 +18,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from jointbench.acquisition.basics.errors import FormatError
+from jointbench.acquisition.records.stored_samples import StoredSamples
 
 Record = TypeVar("Record")
 _TEXT = "record"
@@ -76,6 +77,8 @@ def _require_stored(data: bytes) -> None:
 
 
 def _plain(value: Any, arrays: dict[str, np.ndarray[Any, Any]]) -> Any:
+    if isinstance(value, StoredSamples):
+        value = np.asarray(value)
     if isinstance(value, np.ndarray):
         name = f"a{len(arrays)}"
         arrays[name] = value

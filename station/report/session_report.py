@@ -7,7 +7,7 @@ from pathlib import Path
 from jointbench.acquisition.basics.registry import Registry
 from jointbench.acquisition.records.provenance import Step
 from jointbench.acquisition.records.recordings import Verdict
-from jointbench.acquisition.session_file.store import read_session
+from jointbench.acquisition.session_file.open_session import open_session
 from jointbench.analysis.contact.model_catalogue import contact_law_package
 from jointbench.analysis.lumped.identified import JointParameter
 from jointbench.station.files.output_paths import check_outputs
@@ -70,7 +70,7 @@ def run_report(
     if is_frf_input(session):
         analysis = analyse_frfs(session, results, run)
     else:
-        content = read_session(session)
+        content = open_session(session)
         stored = stored_results(session, content.recordings, results)
         analysis = analyse_session(content, bench, stored, run)
     write_report(compose(analysis, bench, title=session.stem, geometry=points), target)
