@@ -187,7 +187,7 @@ def _pairs(rows: Sequence[Row]) -> str:
     said = len(rows) - len(given) + sum(right)
     return (
         "## Two modes on one joint, 3 to 8 % apart (wanted: ratio within 2 %, f within "
-        "500 ppm, zeta within 5 %, or not resolved and said so)\n\nThree laws, changes "
+        "500 ppm, zeta within 5 %, or not decided)\n\nThree laws, changes "
         "of 0.03 to 1 % where the joint moves most. Resolved: "
         f"{_share(rows, [bool(row.get('resolved')) for row in rows])}; of these within "
         f"the limits: {wilson(sum(right), len(right))}. Right, or said not to be "

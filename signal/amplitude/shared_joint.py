@@ -57,7 +57,7 @@ def with_others(
 def _levels(other: BandFit, number: int, fit: BandFit) -> FloatArray:
     """Return L of a mode of another band at the nodes of a fit, 0 at its largest.
 
-    Beyond its own decays, where it is below all noise, it goes on at its last rate.
+    Beyond its own decays, where it is below all noise, it continues at its last rate.
     """
     mode = other.curved.modes[number]
     level = decays(mode, other.lines.panels, other.lines.centre, 0).level
