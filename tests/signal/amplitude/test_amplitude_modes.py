@@ -167,7 +167,7 @@ def test_hits_of_one_level_decide_nothing() -> None:
 
 
 def test_two_modes_on_a_cubic_joint_have_the_curves_of_harmonic_balance() -> None:
-    """Far apart, one joint: f within 200 ppm where known to 100, but at the hard end."""
+    """Far apart, one joint: f within 200 ppm where known to 100, hard end left out."""
     structure = chain(np.random.default_rng(4), 2)
     omega, shapes = structure.modes()
     size = np.abs(structure.direction @ shapes * shapes[0]) / omega
