@@ -5,7 +5,7 @@ Usage: OMP_NUM_THREADS=1 python benchmarks/modal/amplitude.py --log LOG.jsonl
     [--minutes 20] [--first 0] [--parts linear ...]
     [--page docs/modal-amplitude-coverage.md]
 
-The four parts (or those named) take turns until the time is up; each draw is one line
+The parts (or those named) take turns until the time is up; each draw is one line
 of the log, and a later run continues where the log ends. Part and seed define a draw.
 A part ends early once the Wilson interval of its share is past the bar.
 """
@@ -18,12 +18,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from amplitude_cases import LAWS, Case, draw, linear_draw
+from amplitude_cases import LAWS, Case, draw, linear_draw, pair_draw
 from amplitude_peers import PEERS, peer_curve
 from jointed_masses import true_curve
 
 from jointbench.acquisition.basics.errors import JointbenchError
-from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
+from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode, Dependence
 from jointbench.signal.amplitude.ring_downs import ring_downs
 from jointbench.station.pipeline.chain import ChainSettings, ModalChain, judged_modes
 
@@ -38,6 +38,7 @@ FAMILY = {
     "clearance": "elastic",
     "quadratic damping": "quadratic",
 }
+PAIR_LAWS = ("micro-slip", "cubic", "quadratic damping")
 DECIBELS = (40.0, 60.0, 80.0)
 SOFTENING = (0.002, 0.005, 0.01, 0.02, 0.04)
 Row = dict[str, Any]
@@ -207,11 +208,67 @@ def families(seed: int) -> Row:
     }
 
 
+def pairs(seed: int) -> Row:
+    """Two modes on one joint, 3 to 8 % apart: resolved, and right where they are."""
+    rng = np.random.default_rng(50_000 + seed)
+    law = PAIR_LAWS[seed % len(PAIR_LAWS)]
+    change = float(10 ** rng.uniform(-3.5, -2.0))
+    decibel = float(rng.choice(DECIBELS))
+    case = pair_draw(50_000 + seed, law=law, softening=change, decibel=decibel)
+    chain = _chain(case)
+    every = case.structure.modes()[0] / 2 / np.pi
+    near = [
+        min(chain.amplitude, key=lambda m, one=one: abs(m.soft.frequency - one))
+        for one in every
+    ]
+    resolved = all(
+        mode.curve is not None and mode.dependence is not Dependence.NOT_DECIDED
+        for mode in near
+    )
+    row: Row = {
+        "law": law,
+        "change": change,
+        "decibel": decibel,
+        "apart": float(every[1] / every[0] - 1.0),
+        "outcomes": [mode.dependence.value for mode in near],
+        "resolved": resolved and near[0] is not near[1],
+    }
+    if not row["resolved"]:
+        return row
+    errors = np.array([_pair_errors(case, k, mode) for k, mode in enumerate(near)])
+    softs = [mode.soft.frequency for mode in near]
+    return row | {
+        "f_ppm": float(errors[:, 0].max()),
+        "z_percent": float(errors[:, 1].max()),
+        "ratio_percent": float(
+            100 * abs(softs[1] / softs[0] / (every[1] / every[0]) - 1)
+        ),
+    }
+
+
+def _pair_errors(case: Case, number: int, mode: AmplitudeMode) -> tuple[float, float]:
+    """Return rms error of f [ppm] and median of zeta [%] where bands are narrow."""
+    curve = mode.curve
+    assert curve is not None
+    sizes = case.joint_amplitude * np.geomspace(1e-4, 3.0, 50)
+    mass = int(curve.channel.split("@")[1]) - 1
+    truth = true_curve(case.structure, number, sizes)
+    f, z = truth.at(mass, curve.amplitude)
+    known = (curve.frequency_sd < 250e-6 * f) & (curve.damping_sd < 0.025 * z)
+    if not known.any():
+        return 0.0, 0.0
+    return (
+        float(1e6 * np.sqrt(np.mean((curve.frequency / f - 1)[known] ** 2))),
+        float(100 * np.median(np.abs(curve.damping_ratio / z - 1)[known])),
+    )
+
+
 PARTS: dict[str, tuple[Callable[[int], Row], int]] = {
     "curves": (curves, 300),
     "softening": (softening, 300),
     "linear": (linear, 400),
     "families": (families, 60),
+    "pairs": (pairs, 60),
 }
 
 

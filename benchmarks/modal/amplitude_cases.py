@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import scipy.linalg
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
 from jointed_masses import (
@@ -173,6 +174,56 @@ def draw(
     structure, mode, size = jointed(rng, bodies, law, softening)
     recording, masses = record(rng, structure, decibel=decibel)
     return Case(structure, mode, size, masses, recording, law)
+
+
+def pair_draw(seed: int, *, law: str, softening: float, decibel: float) -> Case:
+    """Return two oscillators 3 to 8 % apart with one joint between them.
+
+    Args:
+        seed: of the draw.
+        law: of the joint.
+        softening: change of frequency that the joint's largest motion would cause in
+            the mode that it works on most [-].
+        decibel: rms of the hardest hit over the noise [dB].
+    """
+    rng = np.random.default_rng(seed)
+    mass = np.array([1.0, rng.uniform(0.5, 1.5)])
+    own = mass * (2 * np.pi * 80.0) ** 2
+    # Tuned apart by `detuned`, the link brings the modes to the wanted distance.
+    wanted, link = float(rng.uniform(0.03, 0.08)), 0.005 * own[0]
+    arm = np.array([1.0, -1.0])
+    detuned = np.linspace(0.0, 0.12, 601)
+    apart = [
+        _distance(mass, own * [1.0, (1.0 + d) ** 2], link, arm)[0] for d in detuned
+    ]
+    at = int(np.argmin(np.abs(np.array(apart) - wanted)))
+    stiffness = own * [1.0, (1.0 + detuned[at]) ** 2]
+    _, omega, shapes = _distance(mass, stiffness, link, arm)
+    base, ratio = np.diag(mass) @ shapes, rng.uniform(0.003, 0.008, 2)
+    structure = Structure(
+        mass,
+        np.diag(stiffness) + link * np.outer(arm, arm),
+        base @ np.diag(2 * ratio * omega) @ base.T,
+        arm,
+        Joint(),
+    )
+    stretch = np.abs(arm @ shapes * shapes[0]) / omega
+    mode, size = int(np.argmax(stretch)), float(stretch.sum())
+    lost = 2.0 * softening * omega[mode] ** 2 / float(arm @ shapes[:, mode]) ** 2
+    joint = _joint(rng, law, lost, size, omega[mode])
+    stuck = with_joint(structure, joint, float(joint.slider_stiffness.sum()))
+    recording, masses = record(rng, stuck, decibel=decibel)
+    return Case(stuck, mode, size, masses, recording, law)
+
+
+def _distance(
+    mass: Floats, own: Floats, link: float, arm: Floats
+) -> tuple[float, Floats, Floats]:
+    """Return the relative distance of two modes, their omega [rad/s] and shapes."""
+    matrix = np.diag(own) + link * np.outer(arm, arm)
+    squared, shapes = scipy.linalg.eigh(matrix, np.diag(mass))
+    omega = np.sqrt(squared)
+    return float(omega[1] / omega[0] - 1.0), omega, shapes
 
 
 def linear_draw(seed: int) -> tuple[Recording, int]:

@@ -24,7 +24,7 @@ def page(done: Mapping[tuple[str, int], Row]) -> str:
     """Return the page for all draws of a log."""
     parts = {
         name: [row for (part, _), row in sorted(done.items()) if part == name]
-        for name in ("curves", "softening", "linear", "families")
+        for name in ("curves", "softening", "linear", "families", "pairs")
     }
     blocks = [
         HEAD,
@@ -32,6 +32,7 @@ def page(done: Mapping[tuple[str, int], Row]) -> str:
         _softening(parts["softening"]),
         _linear(parts["linear"]),
         _families(parts["families"]),
+        _pairs(parts["pairs"]),
     ]
     return "\n".join(blocks)
 
@@ -175,3 +176,20 @@ def _families(rows: Sequence[Row]) -> str:
         "gone to quadratic damping."
     )
     return "\n".join(lines) + "\n"
+
+
+def _pairs(rows: Sequence[Row]) -> str:
+    given = [row for row in rows if row.get("resolved")]
+    right = [
+        row["f_ppm"] <= 500 and row["z_percent"] <= 5 and row["ratio_percent"] <= 2
+        for row in given
+    ]
+    said = len(rows) - len(given) + sum(right)
+    return (
+        "## Two modes on one joint, 3 to 8 % apart (wanted: ratio within 2 %, f within "
+        "500 ppm, zeta within 5 %, or not decided)\n\nThree laws, changes "
+        "of 0.03 to 1 % where the joint moves most. Resolved: "
+        f"{_share(rows, [bool(row.get('resolved')) for row in rows])}; of these within "
+        f"the limits: {wilson(sum(right), len(right))}. Right, or said not to be "
+        f"resolved: {wilson(said, len(rows))}.\n"
+    )

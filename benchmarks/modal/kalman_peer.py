@@ -82,6 +82,9 @@ def _smoothed(samples, step, omega, start, noises):  # type: ignore[no-untyped-d
         left = np.eye(4) - np.outer(gain, slope)
         cov = left @ cov @ left.T + noise * np.outer(gain, gain)
         likelihood -= 0.5 * (np.log(spread) + rest**2 / spread)
+        # A filter that diverged is no peer.
+        if not (np.isfinite(cov).all() and np.isfinite(state).all() and spread > 0.0):
+            return -np.inf, known[:0]
         known[i], known_cov[i] = state, cov
     for i in range(n - 2, -1, -1):
         back = known_cov[i] @ moves[i + 1].T @ np.linalg.inv(ahead_cov[i + 1])

@@ -29,6 +29,7 @@ from jointbench.signal.amplitude.curve_of_fit import (
 )
 from jointbench.signal.amplitude.dependence_test import (
     CHANCE,
+    LARGEST_RESIDUAL_RATIO,
     Change,
     DependenceEvidence,
     change_of,
@@ -45,9 +46,6 @@ from jointbench.signal.amplitude.ring_downs import RingDowns, ring_downs
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_spectra import ForcesOfHits
 from jointbench.signal.modal.modal_model import ModalModel
-
-# Above this residual ratio no curve is given.
-_NO_CURVE = 3.0
 
 Talk = Callable[[str, float], None]
 _Levels = Mapping[int, tuple[float | None, str]]
@@ -161,7 +159,7 @@ def _judged(
     nothing = np.zeros(curve.level.size)
     shift = (nothing, nothing) if after is None else shift_between(curve, after)
     shown = amplitude_curve(curve, decays, shift)
-    if main.curved.residual_ratio > _NO_CURVE:
+    if main.curved.residual_ratio > LARGEST_RESIDUAL_RATIO:
         shown = None
     depends = outcome is Dependence.DEPENDS and shown is not None
     family, ratio = family_of(change) if depends and change else ("", float("nan"))

@@ -107,13 +107,19 @@ def _fit_group(decays: RingDowns, model: ModalModel, group: ModeGroup) -> GroupF
 def _together(
     group: ModeGroup, fit: GroupFit, every: Mapping[ModeGroup, GroupFit | None]
 ) -> GroupFit:
-    """Return the fit of a group with the modes of other groups on its joint."""
-    others = [
-        (one.main, number)
+    """Return the fit of a group with all other modes on its joint."""
+    everyone = [
+        (other, one.main, number)
         for other, one in every.items()
-        if other is not group and one is not None
+        if one is not None
         for number in range(len(one.members))
     ]
+    others = [
+        [(one, k) for other, one, k in everyone if (other, k) != (group, number)]
+        for number in range(len(fit.members))
+    ]
+    if not others[0]:
+        return fit
     try:
         return replace(fit, main=with_others(fit.main, others))
     except np.linalg.LinAlgError:

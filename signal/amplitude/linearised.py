@@ -16,6 +16,9 @@ from jointbench.signal.amplitude.band_lines import BandLines
 from jointbench.signal.amplitude.mode_state import ModeState, mode_slices
 from jointbench.signal.amplitude.slow_flow import decays
 
+# Signals in units of the noise: what is larger is no decay that was measured.
+_LARGEST = 1e30
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LinearBand:
@@ -45,7 +48,8 @@ def linearised(lines: BandLines, modes: Sequence[ModeState], power: int) -> Line
     rows = [_rows(lines, mode, power) for mode in modes]
     total = mode_slices(modes)[-1].hits.stop
     normal, gradient = np.zeros((total, total)), np.zeros(total)
-    if not all(np.isfinite(row).all() for row in rows):
+    # Not a number compares as False; products of larger ones overflow.
+    if not all(np.abs(row).max() < _LARGEST for row in rows):
         return LinearBand(lines.data, normal, gradient, np.inf)
     residual = lines.data.copy()
     for mode, row in zip(modes, rows, strict=True):

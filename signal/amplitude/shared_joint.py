@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Modes far apart that work the same joint: each sees the amplitude of all.
+"""Modes that work the same joint: each sees the amplitude of all.
 
 A joint's stiffness and loss for one mode depend on its whole motion. With two modes far
 apart in frequency the first harmonics are nearly those of an amplitude S with
@@ -31,21 +31,23 @@ def displacement(fit: BandFit, number: int) -> float:
     return float(size * np.exp(mode.start.max()) / fit.lines.centre**fit.power)
 
 
-def with_others(fit: BandFit, others: Sequence[tuple[BandFit, int]]) -> BandFit:
-    """Refit the curves of a band with the amplitudes of modes in other bands.
+def with_others(
+    fit: BandFit, others: Sequence[Sequence[tuple[BandFit, int]]]
+) -> BandFit:
+    """Refit the curves of a band with the amplitudes of other modes.
 
     Args:
-        fit: of the band alone.
-        others: fits of other bands of the same decays, and which mode of each.
+        fit: of the band.
+        others: for each of its modes, fits of the same decays and which mode of each.
 
     Returns:
         The fit with other modes where it explains more, else `fit`.
     """
-    largest = sorted(others, key=lambda one: -displacement(*one))[:_MOST_OTHERS]
-    if not largest:
-        return fit
-    levels = np.stack([_levels(one, number, fit) for one, number in largest], axis=2)
-    modes = tuple(_beside(mode, levels) for mode in fit.curved.modes)
+    modes = []
+    for mode, beside in zip(fit.curved.modes, others, strict=True):
+        largest = sorted(beside, key=lambda one: -displacement(*one))[:_MOST_OTHERS]
+        levels = [_levels(one, number, fit) for one, number in largest]
+        modes.append(_beside(mode, np.stack(levels, axis=2)) if levels else mode)
     curved = fit_jointly(fit.lines, modes, fit.power)
     if criterion(curved) < criterion(fit.curved):
         return replace(fit, curved=curved)
@@ -55,7 +57,7 @@ def with_others(fit: BandFit, others: Sequence[tuple[BandFit, int]]) -> BandFit:
 def _levels(other: BandFit, number: int, fit: BandFit) -> FloatArray:
     """Return L of a mode of another band at the nodes of a fit, 0 at its largest.
 
-    Beyond its own decays, where it is below all noise, it goes on at its last rate.
+    Beyond its own decays, where it is below all noise, it continues at its last rate.
     """
     mode = other.curved.modes[number]
     level = decays(mode, other.lines.panels, other.lines.centre, 0).level

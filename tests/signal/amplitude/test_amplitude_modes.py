@@ -164,3 +164,26 @@ def test_hits_of_one_level_decide_nothing() -> None:
     _, found = resolved(struck(structure, np.ones(4), 60.0))
     assert all(mode.dependence is Dependence.NOT_DECIDED for mode in found)
     assert "hit softly and hard" in found[0].reason
+
+
+def test_two_modes_on_a_cubic_joint_have_the_curves_of_harmonic_balance() -> None:
+    """Far apart, one joint: f within 200 ppm where known to 100, hard end left out."""
+    structure = chain(np.random.default_rng(4), 2)
+    omega, shapes = structure.modes()
+    size = np.abs(structure.direction @ shapes * shapes[0]) / omega
+    share = np.abs(structure.direction @ shapes)
+    mode = int(np.argmax(size))
+    lost = 2 * 0.002 * omega[mode] ** 2 / share[mode] ** 2
+    joint = Joint(cubic=float(lost / (0.75 * size[mode] ** 2)))
+    jointed = with_joint(structure, joint, 0.0)
+    _, found = resolved(struck(jointed, np.geomspace(1 / 30, 1.0, 4), 60.0))
+    for number, one in enumerate(omega / 2 / np.pi):
+        near = min(found, key=lambda m, one=one: abs(m.soft.frequency - one))
+        curve = near.curve
+        assert curve is not None
+        truth = true_curve(jointed, number, size[mode] * np.geomspace(1e-4, 3.0, 30))
+        at = int(curve.channel.split("@")[1])
+        frequency, _ = truth.at(at, curve.amplitude)
+        known = curve.frequency_sd < 1e-4 * frequency
+        assert known.sum() >= 10
+        assert np.abs(curve.frequency / frequency - 1)[known][:-2].max() < 2e-4
