@@ -106,6 +106,18 @@ class Identification:
         return {one.name: one for one in self.parameters}[name]
 
 
+def parameter_json(parameter: JointParameter) -> dict[str, Any]:
+    """Return one parameter: value, sd, interval_95, unit, identifiable, reason."""
+    return {
+        "value": parameter.value,
+        "sd": parameter.sd,
+        "interval_95": list(parameter.interval),
+        "unit": parameter.unit,
+        "identifiable": parameter.identifiable,
+        "reason": parameter.reason,
+    }
+
+
 def identification_json(result: Identification) -> dict[str, Any]:
     """Return an identification as plain numbers, texts, lists and mappings.
 
@@ -121,17 +133,7 @@ def identification_json(result: Identification) -> dict[str, Any]:
     return {
         "verdict": result.verdict.value,
         "reasons": list(result.reasons),
-        "parameters": {
-            one.name: {
-                "value": one.value,
-                "sd": one.sd,
-                "interval_95": list(one.interval),
-                "unit": one.unit,
-                "identifiable": one.identifiable,
-                "reason": one.reason,
-            }
-            for one in result.parameters
-        },
+        "parameters": {one.name: parameter_json(one) for one in result.parameters},
         "solutions": [
             {
                 "parameters": dict(one.parameters),

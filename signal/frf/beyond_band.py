@@ -85,7 +85,7 @@ class Beyond:
         if self.force_drop is None:
             return ""
         down = max(0.0, -self.force_drop)
-        return f", where the force as recorded is {down:.0f} dB down"
+        return f", where the recorded force spectrum has fallen by {down:.0f} dB"
 
 
 def look_beyond(

@@ -250,7 +250,7 @@ def _double(
         peak,
         Verdict.DOUBLE,
         ratio,
-        f"second force peak of {100 * ratio:.1f} % of the main one, "
+        f"second force peak is {100 * ratio:.1f} % of the main one, "
         f"{abs(between):.2f} ms {'after' if samples > 0 else 'before'} it "
         f"(limit {100 * limit:.3g} %)",
     )

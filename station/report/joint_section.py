@@ -113,7 +113,8 @@ def side_by_side(
     ratio = predicted / measured.value
     text += (
         f"; identification from the modes gives "
-        f"{with_sd(measured.value, measured.sd)} N/m, a ratio of {ratio:.3g}."
+        f"{with_sd(measured.value, measured.sd)} N/m; predicted / identified = "
+        f"{ratio:.3g}."
     )
     if not 1 / 3 < ratio < 3:
         text += (

@@ -6,7 +6,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
-from jointbench.analysis.lumped.identified import IdentificationVerdict, JointParameter
+from jointbench.analysis.lumped.identified import (
+    IdentificationVerdict,
+    JointParameter,
+    parameter_json,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -149,15 +153,7 @@ def structure_json(
         "verdict": result.verdict.value,
         "reasons": list(result.reasons),
         "parameters": {
-            one.name: {
-                "value": one.value,
-                "sd": one.sd,
-                "interval_95": list(one.interval),
-                "unit": one.unit,
-                "identifiable": one.identifiable,
-                "reason": one.reason,
-                **_profile_json(result.profiles.get(one.name)),
-            }
+            one.name: parameter_json(one) | _profile_json(result.profiles.get(one.name))
             for one in result.parameters
         },
         "solutions": [

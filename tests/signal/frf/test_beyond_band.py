@@ -43,6 +43,8 @@ def test_a_peak_above_the_default_band_is_reported_with_its_band(
     assert found.peaks[-1].frequency == pytest.approx(2000.0, abs=2.0)
     assert found.peaks[-1].height > 1.0
     assert f"--band {found.begin:.3g}:2200" in found.words()
+    fallen = f"where the recorded force spectrum has fallen by {-found.force_drop:.0f}"
+    assert f"{fallen} dB; above it peaks stand out" in found.words()
 
 
 def test_the_reported_band_finds_the_mode(structure: Make, hammered: Make) -> None:

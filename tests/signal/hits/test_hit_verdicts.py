@@ -78,6 +78,7 @@ def test_a_bounce_is_double_with_its_share_and_delay(share: float, delay: int) -
     assert hit.verdict is Verdict.DOUBLE
     assert hit.measure == pytest.approx(share)
     assert f"{1e3 * delay / RATE:.2f} ms after" in hit.reason
+    assert hit.reason.startswith(f"second force peak is {100 * hit.measure:.1f} % of")
 
 
 def test_a_small_touch_before_the_blow_is_double_too() -> None:

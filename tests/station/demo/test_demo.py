@@ -105,6 +105,14 @@ def test_session_and_results_open_in_xarray(demo: Path) -> None:
     assert modes["natural_frequency"].size == 2
 
 
+def test_prediction_and_identification_are_compared_by_their_ratio(
+    demo: Path,
+) -> None:
+    """The sentence of the report names both sides of the ratio."""
+    page = (demo / "report.html").read_text(encoding="utf-8")
+    assert re.search(r"N/m; predicted / identified = \d", page)
+
+
 def test_the_report_asks_nothing_of_the_network(demo: Path) -> None:
     """No element loads a foreign address, and a policy forbids it besides."""
     page = (demo / "report.html").read_text(encoding="utf-8")

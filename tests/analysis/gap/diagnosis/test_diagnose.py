@@ -37,12 +37,6 @@ def complete() -> Diagnosis:
     return diagnose(made.made_campaign([]))
 
 
-@pytest.fixture(scope="module")
-def late() -> Diagnosis:
-    """Return the diagnosis of a campaign with a hidden delay."""
-    return diagnose(made.made_campaign([LATE]), entries=LINEAR)
-
-
 def test_a_complete_model_gives_the_verdict_none(complete: Diagnosis) -> None:
     """Verdict none, no effect, no gap beyond noise."""
     assert complete.verdict is Finding.NONE
@@ -80,10 +74,11 @@ def test_an_effect_that_all_conditions_show_is_predicted(late: Diagnosis) -> Non
     assert "not predicted" not in late.reason
 
 
-def test_a_delay_outside_the_catalogue_is_not_called_by_another_name() -> None:
+def test_a_delay_outside_the_catalogue_is_not_called_by_another_name(
+    late_campaign: Campaign,
+) -> None:
     """Without delay in the catalogue, no other effect explains it."""
-    campaign = made.made_campaign([LATE])
-    found = diagnose(campaign, without=frozenset({"delay"}), entries=LINEAR)
+    found = diagnose(late_campaign, without=frozenset({"delay"}), entries=LINEAR)
     assert found.verdict is Finding.UNKNOWN
     assert found.reason
 

@@ -7,12 +7,16 @@ from dataclasses import fields, replace
 from pathlib import Path
 from types import ModuleType
 
-import gap_bench as made
 import pytest
 
 from jointbench.analysis.gap.catalogue.linear_effects import LINEAR
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
-from jointbench.analysis.gap.model.diagnosis_record import Finding, diagnosis_json
+from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.diagnosis_record import (
+    Diagnosis,
+    Finding,
+    diagnosis_json,
+)
 from jointbench.analysis.gap.model.policy import (
     STANDARD,
     Policy,
@@ -115,14 +119,14 @@ def test_the_digest_of_a_policy_changes_with_every_setting() -> None:
     assert len(digests) == 1 + 2 * len(fields(STANDARD))
 
 
-def test_a_varied_policy_decides_the_verdict_and_is_reported_with_it() -> None:
+def test_a_varied_policy_decides_the_verdict_and_is_reported_with_it(
+    late_campaign: Campaign, late: Diagnosis
+) -> None:
     """A delay is named; where no base parameter may move by 0.01 sd, nothing is."""
-    campaign = made.made_campaign([("delay", "channel:a1", [4e-5])])
-    usual = diagnose(campaign, entries=LINEAR)
-    assert usual.verdict is Finding.NAMED
-    assert diagnosis_json(usual)["policy"] == policy_json(STANDARD)
+    assert late.verdict is Finding.NAMED
+    assert diagnosis_json(late)["policy"] == policy_json(STANDARD)
     strict = replace(STANDARD, prior_limit=0.01)
-    refused = diagnose(campaign, entries=LINEAR, policy=strict)
+    refused = diagnose(late_campaign, entries=LINEAR, policy=strict)
     assert refused.verdict is Finding.UNKNOWN
     assert "from its nominal value" in refused.reason
     stated = diagnosis_json(refused)["policy"]

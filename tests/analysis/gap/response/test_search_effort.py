@@ -17,6 +17,11 @@ from jointbench.analysis.gap.response.search_effort import (
     spend,
 )
 
+FEW = [
+    entry
+    for entry in LINEAR
+    if entry.effect.name in {"delay", "cross_talk", "gain_error", "added_mass"}
+]
 TWO = [("delay", "channel:a1", [4e-5]), ("cross_talk", "channel:a0", [0.02])]
 
 
@@ -43,11 +48,11 @@ def test_effort_beyond_the_limit_ends_the_search() -> None:
 def test_without_effort_for_a_second_effect_the_verdict_is_unknown() -> None:
     """Two faults are named; with no effort allowed for the second, none is."""
     campaign = made.made_campaign(TWO)
-    found = diagnose(campaign, entries=LINEAR)
+    found = diagnose(campaign, entries=FEW)
     assert found.verdict is Finding.NAMED
     assert {e.name for e in found.effects} == {"delay", "cross_talk"}
     policy = replace(STANDARD, most_samples=1.0)
-    found = diagnose(campaign, entries=LINEAR, policy=policy)
+    found = diagnose(campaign, entries=FEW, policy=policy)
     assert found.verdict is Finding.UNKNOWN
     assert "reached its effort limit" in found.reason
     assert found.effects == ()
