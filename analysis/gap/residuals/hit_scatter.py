@@ -22,6 +22,7 @@ from jointbench.analysis.gap.residuals.scatter_record import (
 )
 from jointbench.analysis.gap.residuals.scatter_sizes import (
     SizeProblem,
+    descended,
     likeliest_sizes,
     of_repeats,
     regressed_sizes,
@@ -196,17 +197,22 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
         RESIDUALS.most_correlated
     ):
         return found
-    best, least = found, found.problem.deviance(size) - RESIDUALS.correlation_gain
+    least = found.problem.deviance(size) - RESIDUALS.correlation_gain
     own_hits = _hits(intercepts.shape, found.outstanding)
     plain = replace(
         found.problem, systematic=np.concatenate([intercepts, own_hits], axis=2)
     )
-    for rho in RESIDUALS.correlations:
-        tried = replace(plain, rho=rho, highest=np.full(size.size, np.inf))
-        own = likeliest_sizes(tried, np.where(size > 0.0, size, 1e-4))
-        now = tried.deviance(own)
-        if now < least:
-            best, least = _Estimate(tried, own, found.outstanding), now
+    free = replace(plain, highest=np.full(size.size, np.inf))
+    tried = [replace(free, rho=rho) for rho in RESIDUALS.correlations]
+    first = [problem.deviance(size) for problem in tried]
+    reach = free.deviance(size) + RESIDUALS.correlation_reach
+    best = found
+    for at in np.argsort(first)[:2].tolist():
+        if first[at] > reach:
+            break
+        own = likeliest_sizes(tried[at], np.where(size > 0.0, size, 1e-4))
+        if (now := tried[at].deviance(own)) < least:
+            best, least = _Estimate(tried[at], own, found.outstanding), now
     return best
 
 
@@ -245,22 +251,24 @@ def _likeliest(
     information = np.einsum("rc,rc->c", columns, left @ columns)
     gain = (columns.T @ score) ** 2 / (1.0 + information)
     before = problem.deviance(size, restricted=False)
+    hits = len(problem.records.along)
     best, least = None, 1.0
     for at in np.argsort(-gain)[: RESIDUALS.systematic_tried].tolist():
         chosen = candidates[at]
-        if gain[at] < RESIDUALS.systematic_gain:
+        # At most `hits` where the sizes have absorbed the whole of it.
+        if gain[at] < RESIDUALS.systematic_share * hits:
             break
         if chosen.hit and not _stands_out(found, chosen.hit, seen):
             continue
         more = np.concatenate([problem.systematic, chosen.column[:, :, None]], axis=2)
         tried = replace(problem, systematic=more)
-        own = likeliest_sizes(tried, size)
-        drop = before - tried.deviance(own, restricted=False)
-        chance = _chance(drop, len(problem.records.along))
+        own, _ = descended(tried, size)
+        chance = _chance(before - tried.deviance(own, restricted=False), hits)
         limit = policy.outstanding_chance if chosen.hit else policy.trend_chance
         if chance / limit < least:
-            hits = (*found.outstanding, chosen.hit) if chosen.hit else found.outstanding
-            best, least = (chosen, _Estimate(tried, own, hits)), chance / limit
+            bad = (*found.outstanding, chosen.hit) if chosen.hit else found.outstanding
+            own = likeliest_sizes(tried, own)
+            best, least = (chosen, _Estimate(tried, own, bad)), chance / limit
     return best
 
 

@@ -72,6 +72,12 @@ class ResidualSettings:
         "gain below which a direction has no scatter",
         "closed form: a chance of 2.3 % for one direction",
     )
+    clear_scatter_gain: float = numerical(
+        60.0,
+        "-2 log likelihood",
+        "loss without a direction above which it is significant whatever the others "
+        "take over",
+    )
     scatter_iterations: int = numerical(
         25,
         "steps",
@@ -116,6 +122,13 @@ class ResidualSettings:
         "correlations between successive hits that are tried",
         "the likelihood is flat between them for 8 to 24 hits",
     )
+    correlation_reach: float = numerical(
+        12.0,
+        "-2 log likelihood",
+        "loss at the sizes of hits without correlation, above which correlated hits "
+        "are not tried",
+        "new sizes gain less (hits drawn with a memory of 0.8)",
+    )
     correlation_gain: float = numerical(
         2.0,
         "-2 log likelihood",
@@ -139,10 +152,12 @@ class ResidualSettings:
         "-",
         "trends or hits, best by first order, for which sizes are estimated again",
     )
-    systematic_gain: float = numerical(
-        4.0,
-        "-2 log likelihood",
-        "gain by first order below which no trend or hit is tried",
+    systematic_share: float = numerical(
+        0.45,
+        "of the hits",
+        "gain by first order, over the number of hits, below which no trend or hit is "
+        "tried",
+        "closed form: a chance of 3e-4 needs 0.65 for 16 hits, 0.5 for 24",
     )
     outstanding_sd: float = numerical(
         1.0,

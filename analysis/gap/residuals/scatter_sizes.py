@@ -54,22 +54,21 @@ def likeliest_sizes(problem: SizeProblem, start: FloatArray) -> FloatArray:
         start: sizes to start from, shape (n_directions,).
     """
     size = np.clip(start, RESIDUALS.smallest_scatter, problem.highest)
-    size, value = _descend(problem, size)
+    size, value = descended(problem, size)
     for direction in np.argsort(size).tolist():
-        if size[direction] == 0.0:
-            continue
         without = size.copy()
         without[direction] = 0.0
-        if problem.deviance(without) - value < RESIDUALS.scatter_gain:
-            size, value = _descend(problem, without)
+        loss = problem.deviance(without) - value
+        # Other directions may take over what one of them no longer explains.
+        if size[direction] == 0.0 or loss > RESIDUALS.clear_scatter_gain:
             continue
-        again, least = _descend(problem, without)
+        without, least = descended(problem, without)
         if least - value < RESIDUALS.scatter_gain:
-            size, value = again, least
+            size, value = without, least
     return size
 
 
-def _descend(problem: SizeProblem, size: FloatArray) -> tuple[FloatArray, float]:
+def descended(problem: SizeProblem, size: FloatArray) -> tuple[FloatArray, float]:
     """Minimise the deviance over the logarithms of the sizes; sizes of 0 remain.
 
     Source:
@@ -77,14 +76,17 @@ def _descend(problem: SizeProblem, size: FloatArray) -> tuple[FloatArray, float]
         average of observed and expected information.
     """
     free = np.flatnonzero(size > 0.0)
-    value = problem.deviance(size)
+    weighed = problem.weighed(size)
+    value = deviance(weighed, problem.systematic)
     damping = RESIDUALS.scatter_damping
     for _ in range(RESIDUALS.scatter_iterations if free.size else 0):
-        slope, curvature = _slopes(problem, size, free)
+        slope, curvature = _slopes(problem, weighed, size, free)
         scale = np.diag(np.maximum(np.diag(curvature), RESIDUALS.scatter_settled))
         moved = False
         while not moved and damping < RESIDUALS.most_damping:
             step = -np.linalg.solve(curvature + damping * scale, slope)
+            if slope @ step > -RESIDUALS.scatter_settled:
+                return size, value
             step = np.clip(step, -RESIDUALS.longest_step, RESIDUALS.longest_step)
             tried = size.copy()
             tried[free] = np.clip(
@@ -92,22 +94,24 @@ def _descend(problem: SizeProblem, size: FloatArray) -> tuple[FloatArray, float]
                 RESIDUALS.smallest_scatter,
                 problem.highest[free],
             )
-            now = problem.deviance(tried)
+            there = problem.weighed(tried)
+            now = deviance(there, problem.systematic)
             moved = now < value
             damping = damping / 5.0 if moved else 4.0 * damping + 0.1
         if not moved:
             break
-        gain, size, value = value - now, tried, now
+        gain = value - now
+        size, value, weighed = tried, now, there
         if gain < RESIDUALS.scatter_settled:
             break
     return size, value
 
 
 def _slopes(
-    problem: SizeProblem, size: FloatArray, free: IntArray
+    problem: SizeProblem, weighed: Weighed, size: FloatArray, free: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return gradient and information of the deviance by the log variances."""
-    left, score = without_systematic(problem.weighed(size), problem.systematic)
+    left, score = without_systematic(weighed, problem.systematic)
     n, k = problem.records.along.shape
     blocks, values = left.reshape(n, k, n, k), score.reshape(n, k)
     order = np.arange(n)
