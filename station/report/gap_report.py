@@ -10,6 +10,7 @@ from jointbench.station.report.gap_figures import (
     residual_spectrum,
     response_function,
 )
+from jointbench.station.report.gap_law_figures import law_plots
 from jointbench.station.report.gap_numbers import percent, short, sure
 from jointbench.station.report.gap_policy_section import policy_section
 from jointbench.station.report.gap_sentences import (
@@ -46,6 +47,7 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
     sections = [
         Section("picture", "Evidence", _picture(found)),
         Section("effects", "Conclusion", _effects(found)),
+        Section("laws", "Force laws and amplitude", law_plots(found.evidence)),
         Section("where", "Location of the gap", _where(found)),
         Section("candidates", "Explanations tried", _candidates(found)),
         Section("limits", "Tests, noise and repeatability", _limits(found)),

@@ -63,6 +63,7 @@ def _curves(
     shown = slice(None, None, -DIAGNOSIS.curve_every)
     return LawCurves(
         label=fit.candidates[index].label,
+        source=fit.candidates[index].effect.source,
         motion=loops.motion[shown],
         force=own[0][shown],
         force_sd=sd[0][shown],

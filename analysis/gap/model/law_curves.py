@@ -13,6 +13,7 @@ class LawCurves:
 
     Attributes:
         label: effect and site.
+        source: of the law.
         motion: across the link over one cycle [m], shape (n_loops, n_points).
         force: of the law, without the linear link [N], same shape.
         force_sd: its standard deviation [N], same shape.
@@ -26,6 +27,7 @@ class LawCurves:
     """
 
     label: str
+    source: str
     motion: FloatArray
     force: FloatArray
     force_sd: FloatArray
@@ -45,6 +47,7 @@ def law_curves_json(curves: LawCurves) -> dict[str, Any]:
     """Return frequencies and damping over amplitude as JSON types, without loops."""
     return {
         "effect": curves.label,
+        "source": curves.source,
         "amplitude_m": curves.amplitude.tolist(),
         "frequency_Hz": curves.frequency.tolist(),
         "frequency_sd_Hz": curves.frequency_sd.tolist(),
