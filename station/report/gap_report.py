@@ -11,6 +11,7 @@ from jointbench.station.report.gap_figures import (
     residual_spectrum,
     response_function,
 )
+from jointbench.station.report.gap_law_figures import law_plots
 from jointbench.station.report.gap_numbers import percent, short, sure
 from jointbench.station.report.gap_partial_section import partial_section
 from jointbench.station.report.gap_policy_section import policy_section
@@ -49,6 +50,7 @@ def gap_report(found: Diagnosis, *, title: str) -> Report:
         Section("picture", "Evidence", _picture(found)),
         Section("effects", "Conclusion", _effects(found)),
         partial_section(found.partial),
+        Section("laws", "Force laws and amplitude", law_plots(found.evidence)),
         Section("where", "Location of the gap", _where(found)),
         Section("candidates", "Explanations tried", _candidates(found)),
         Section("limits", "Tests, noise and repeatability", _limits(found)),
