@@ -7,6 +7,12 @@ from enum import StrEnum
 from typing import Any
 
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
+from jointbench.analysis.gap.model.check_records import (
+    EffectLimit,
+    SecondMethod,
+    limits_json,
+    second_method_json,
+)
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import GapEvidence, evidence_json
 from jointbench.analysis.gap.model.partial_records import (
@@ -52,6 +58,21 @@ class NamedEffect:
     name: str
     site: str
     parameters: tuple[Estimate, ...]
+    confidence: float
+    evidence: Evidence
+
+
+@dataclass(frozen=True, slots=True)
+class Closest:
+    """The best explanation before the acceptance criteria.
+
+    Attributes:
+        effects: name and site of each effect.
+        confidence: probability that names and sites are right [-].
+        evidence: quantities from which the confidence is computed.
+    """
+
+    effects: tuple[str, ...]
     confidence: float
     evidence: Evidence
 
@@ -132,7 +153,12 @@ class Diagnosis:
         policy: thresholds of the verdict.
         scatter: of the hits, by direction; None if not prepared.
         partial: what the best force law explains under model error; None unless the
-            verdict is mostly, or unknown with a nonlinear joint.
+            verdict is mostly or unknown.
+        closest: the best explanation before the acceptance criteria; None if there
+            was no search.
+        limits: largest size of each effect that the records do not exclude; empty
+            unless the verdict is none.
+        second_method: the best explanation predicted by a second method.
     """
 
     verdict: Finding
@@ -151,6 +177,9 @@ class Diagnosis:
     policy: Policy = STANDARD
     scatter: ScatterFound | None = None
     partial: PartialExplanation | None = None
+    closest: Closest | None = None
+    limits: tuple[EffectLimit, ...] = ()
+    second_method: SecondMethod | None = None
 
     @property
     def predicted(self) -> bool:
@@ -211,6 +240,9 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "reason": d.reason,
         "exhibit": None if d.evidence is None else evidence_json(d.evidence),
         "policy": policy_json(d.policy),
+        "closest": None if d.closest is None else asdict(d.closest),
+        "upper_limits": limits_json(d.limits),
+        "second_method": second_method_json(d.second_method),
         "mostly": None if d.partial is None else partial_json(d.partial),
     }
 

@@ -12,13 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from second_route.channels import (
-    anti_alias,
-    through_channels,
-    through_converter,
-)
-from second_route.motion import UPSAMPLING, integrate_motion
-from second_route.system import make_system
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.model.campaign import TAIL
@@ -27,6 +20,13 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.excitation import Excitation
 from jointbench.analysis.gap.response.predict_records import respond
+from jointbench.analysis.gap.second_method.channels import (
+    anti_alias,
+    through_channels,
+    through_converter,
+)
+from jointbench.analysis.gap.second_method.motion import UPSAMPLING, integrate_motion
+from jointbench.analysis.gap.second_method.system import make_system
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 TOLERANCE = 1e-9
