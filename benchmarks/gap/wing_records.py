@@ -88,7 +88,12 @@ def wing(*, sliders: float = SLIP_FORCE, stop: float = STOP) -> Structure:
     driven = np.zeros((1, n))
     driven[0, MIDDLE] = 1.0
     return Structure(
-        mass, damping, stiffness, driven, across, np.array([0.0, stop, CLEARANCE, 0.0]),
+        mass,
+        damping,
+        stiffness,
+        driven,
+        across,
+        np.array([0.0, stop, CLEARANCE, 0.0]),
         _graded(sliders),
     )
 

@@ -1,4 +1,4 @@
-"""Records at several levels: base of modes, response at ports, verdict, left-out levels."""
+"""Records at several levels: base of modes, response at ports, noise, periods."""
 
 from dataclasses import replace
 
@@ -82,7 +82,12 @@ def records(cubic: float = CUBIC, noise: float = 2e-7) -> RecordSet:
             LevelRecord(f"r{k}", f"{level:g} N", force[None], motion, held_out=k == 2)
         )
     return RecordSet(
-        "two masses", RATE, ("a1", "a2"), ("a1",), (PORT,), tuple(rows),
+        "two masses",
+        RATE,
+        ("a1", "a2"),
+        ("a1",),
+        (PORT,),
+        tuple(rows),
         Output.DISPLACEMENT,
     )
 
