@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from jointbench.analysis.gap.catalogue.catalogue import with_real_joints
 from jointbench.analysis.gap.catalogue.installed_effects import (
     effect_packages,
     installed_catalogue,
@@ -34,6 +35,7 @@ def run_gap(
     model: Path | None = None,
     preload: str | None = None,
     without: str | None,
+    with_: str | None = None,
     effects: Sequence[Path] = (),
     report: Path | None,
     json_target: str | None,
@@ -46,6 +48,7 @@ def run_gap(
         model: bench model, where the source has none.
         preload: on the joint with unit, where the session gives none.
         without: names of effects to leave out of the catalogue, joined by commas.
+        with_: names of further laws of real joints, joined by commas.
         effects: files of the user's own effects, run as Python.
         report: HTML report to write, or None.
         json_target: where the JSON goes.
@@ -59,7 +62,8 @@ def run_gap(
         model, _names(without), parse_preload(preload) if preload else None
     )
     own = [entry for path in effects for entry in read_effects(path)]
-    wanted = replace(wanted, entries=with_own(installed_catalogue(), own))
+    entries = with_real_joints(installed_catalogue(), _names(with_))
+    wanted = replace(wanted, entries=with_own(entries, own))
     packages = effect_packages(wanted.entries)
     screen = Screen(stderr=True)
     with side_by_side(), screen.status(seen(f"reading {sources[0]}")) as status:
@@ -79,10 +83,8 @@ def run_gap(
     return done.found
 
 
-def _names(without: str | None) -> frozenset[str]:
-    return frozenset(
-        word.strip() for word in (without or "").split(",") if word.strip()
-    )
+def _names(joined: str | None) -> frozenset[str]:
+    return frozenset(word.strip() for word in (joined or "").split(",") if word.strip())
 
 
 def _show(done: Examined, packages: Mapping[str, str], json_target: str | None) -> None:

@@ -71,6 +71,15 @@ def gap_command(
         str | None,
         typer.Option(metavar="NAME,...", help="Effects to leave out of the catalogue."),
     ] = None,
+    with_: Annotated[
+        str | None,
+        typer.Option(
+            "--with",
+            metavar="NAME,...",
+            help="Laws of real joints to add: bouc_wen_free, iwan_segalman, clearance, "
+            "quadratic_cubic, cubic_quintic, power_damping, or real_joints for all.",
+        ),
+    ] = None,
     effects: Annotated[
         list[Path] | None,
         typer.Option(
@@ -99,6 +108,7 @@ def gap_command(
         model=model,
         preload=preload,
         without=without,
+        with_=with_,
         effects=effects or [],
         report=report,
         json_target=json,

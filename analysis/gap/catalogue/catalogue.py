@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Catalogue v1 of lumped dynamics: 22 effects, one entry each.
+"""Catalogue of lumped dynamics: 22 effects by default, six further laws on request.
 
 Other packages can add effects, see `installed_effects`.
 """
@@ -10,12 +10,15 @@ from collections.abc import Iterable
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue.linear_effects import LINEAR
 from jointbench.analysis.gap.catalogue.nonlinear_effects import NONLINEAR
+from jointbench.analysis.gap.catalogue.real_joint_effects import REAL_JOINTS
 from jointbench.analysis.gap.model.effect import Candidate, Site
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 CATALOGUE: tuple[LumpedEffect, ...] = (*NONLINEAR, *LINEAR)
 ALL_CHANNELS = "all"
+ALL_REAL_JOINTS = "real_joints"
+"""Stands for all further laws."""
 
 
 def check_names(names: Iterable[str], entries: tuple[LumpedEffect, ...]) -> None:
@@ -27,6 +30,28 @@ def check_names(names: Iterable[str], entries: tuple[LumpedEffect, ...]) -> None
             raise UsageError(
                 f"no effect is called {name!r}; did you mean {', '.join(near)}?"
             )
+
+
+def with_real_joints(
+    entries: tuple[LumpedEffect, ...], names: Iterable[str]
+) -> tuple[LumpedEffect, ...]:
+    """Return a catalogue with further laws of real joints.
+
+    Args:
+        entries: the catalogue.
+        names: of `REAL_JOINTS`, or `ALL_REAL_JOINTS`; a law that is in the catalogue
+            already is not added again.
+
+    Raises:
+        UsageError: a name is unknown.
+    """
+    wanted = frozenset(names)
+    if ALL_REAL_JOINTS in wanted:
+        wanted = frozenset(entry.name for entry in REAL_JOINTS) | wanted
+    check_names(wanted - {ALL_REAL_JOINTS}, REAL_JOINTS)
+    known = {entry.name for entry in entries}
+    more = [e for e in REAL_JOINTS if e.name in wanted and e.name not in known]
+    return (*entries, *more)
 
 
 def sites_of(entry: LumpedEffect, model: LumpedModel) -> tuple[Site, ...]:

@@ -191,5 +191,30 @@ class DiagnosisSettings:
         "below the limit of 4 sd at which a fit is rejected",
     )
 
+    curve_draws: int = numerical(
+        12,
+        "draws",
+        "draws of the covariance of a fit, for the bands of the curves of its laws",
+        "the sd of a band is known to 20 %",
+    )
+    curve_amplitudes: int = numerical(
+        16,
+        "amplitudes",
+        "amplitudes of the curves of a law",
+        "smooth to the eye on a log scale",
+    )
+    least_amplitude: float = numerical(
+        1 / 300,
+        "of the largest motion",
+        "smallest amplitude of the curves of a law",
+        "softer than the softest hits of a campaign",
+    )
+    curve_every: int = numerical(
+        3,
+        "amplitudes",
+        "every such amplitude is drawn as a loop, from the largest",
+        "loops stay apart to the eye",
+    )
+
 
 DIAGNOSIS = DiagnosisSettings()

@@ -10,6 +10,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.evidence_facts import gather
 from jointbench.analysis.gap.diagnosis.findings import advise, describe
+from jointbench.analysis.gap.diagnosis.law_curves_of_fit import law_curves
 from jointbench.analysis.gap.diagnosis.location import (
     counted_samples,
     locate,
@@ -37,6 +38,7 @@ _UNITS = {
     Output.VELOCITY: "m/s",
     Output.ACCELERATION: "m/s^2",
 }
+_SHOWN = (Finding.NAMED, Finding.AMBIGUOUS)
 
 
 def make_evidence(
@@ -84,6 +86,7 @@ def make_evidence(
         record_estimates=record_estimates,
         limits=limits,
         tests=tests[: DIAGNOSIS.figure_tests],
+        laws=law_curves(bench, best) if finding in _SHOWN else (),
     )
 
 

@@ -10,21 +10,6 @@ from jointbench.analysis.gap.model.effect import labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 
-MODEL_ERROR = {
-    "friction": 1e-6,
-    "stiffness": 1e-7,
-    "contact": 1e-6,
-    "damping": 1e-6,
-    "converter": 5e-6,
-}
-"""Share of the base's excess chi2 that a correct law may leave, by family, unless the
-effect sets its own `model_error`. A stop closes between two steps; a smooth law is as
-accurate as its time integration; linear damping has the share of its family; scatter
-moves samples across the limit of a clipped channel, which a slope cannot represent."""
-EXACT = 1e-9
-"""The same for effects that are linear or act on a channel: they are as exact as the
-base, and a larger share would hide a second effect next to a large first one."""
-
 
 def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
     """Return the chi2 that a correct fit may leave due to the model error of its laws.
@@ -41,10 +26,7 @@ def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
     """
     own, allowed = labels_of(fit.candidates), 0.0
     for candidate in fit.candidates:
-        effect = candidate.effect
-        share = effect.model_error
-        if share is None:
-            share = MODEL_ERROR.get(effect.family, EXACT)
+        share = candidate.effect.error_share
         rest = own - {candidate.label}
         without = [f.chi2 for f in others if labels_of(f.candidates) == rest]
         left = min(without, default=others[0].chi2) - dof

@@ -30,6 +30,35 @@ class Site:
         return f"{self.kind}:{self.name}"
 
 
+@dataclass(frozen=True, slots=True)
+class Family:
+    """What the effects of a family have in common.
+
+    Attributes:
+        model_error: share of the base's excess chi2 that a correct law may leave [-].
+        integrated: True if effects of links are integrated in time, so that slopes are
+            differenced at a coarser step.
+    """
+
+    model_error: float
+    integrated: bool = False
+
+
+FAMILIES: Mapping[str, Family] = {
+    "friction": Family(1e-6, integrated=True),
+    "stiffness": Family(1e-7, integrated=True),
+    # A stop closes between two steps; a smooth law is as accurate as its integration.
+    "contact": Family(1e-6, integrated=True),
+    # Linear damping has the share of its family.
+    "damping": Family(1e-6, integrated=True),
+    # Scatter moves samples across the limit of a clipped channel: no slope shows it.
+    "converter": Family(5e-6),
+}
+EXACT = 1e-9
+"""Model error of all other effects: linear or at a channel, they are as exact as the
+base, and a larger share would hide a second effect next to a large first one."""
+
+
 _Report = Callable[[FloatArray], tuple[Reported, ...]]
 
 
@@ -57,6 +86,9 @@ class Effect:
             campaign may confound with their level.
         model_error: share of the base's excess chi2 that a correct law may leave [-];
             None for the share of its family.
+        generalises: names of effects that are special cases of this one, or that it
+            imitates within noise: a fit in which one of them explains as much is
+            preferred, and is no rival.
     """
 
     name: str
@@ -72,6 +104,7 @@ class Effect:
     own_phases: bool = False
     follows_order: bool = False
     model_error: float | None = None
+    generalises: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the model error and the frequency of an effect that starts at peaks."""
@@ -86,6 +119,19 @@ class Effect:
                 f"{len(self.parameters)} parameter; the second one must be its "
                 "frequency: add it, or leave out starts_at_peaks"
             )
+
+    @property
+    def error_share(self) -> float:
+        """Share of the base's excess chi2 that a correct law may leave [-]."""
+        if self.model_error is not None:
+            return self.model_error
+        family = FAMILIES.get(self.family)
+        return EXACT if family is None else family.model_error
+
+    @property
+    def integrated(self) -> bool:
+        """Whether effects of its family are integrated in time at a link."""
+        return self.family in FAMILIES and FAMILIES[self.family].integrated
 
     def reported(self, values: FloatArray) -> tuple[Reported, ...]:
         """Return the reported parameters of fitted `values`, shape (n_parameters,)."""

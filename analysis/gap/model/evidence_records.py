@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.analysis.gap.model.law_curves import LawCurves, law_curves_json
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -165,6 +166,7 @@ class GapEvidence:
         limits: acceptance limits.
         tests: directed tests of the base, largest first.
         force_unit: of force and level.
+        laws: force laws of the explanation as curves; empty for linear effects.
     """
 
     tried: str
@@ -179,6 +181,7 @@ class GapEvidence:
     limits: CampaignLimits
     tests: tuple[DirectedTest, ...]
     force_unit: str = "N"
+    laws: tuple[LawCurves, ...] = ()
 
 
 def evidence_json(evidence: GapEvidence) -> dict[str, Any]:
@@ -204,4 +207,5 @@ def evidence_json(evidence: GapEvidence) -> dict[str, Any]:
             {"effect": t.label, "drop": t.drop, "share": t.share}
             for t in evidence.tests
         ],
+        "laws": [law_curves_json(curves) for curves in evidence.laws],
     }

@@ -66,7 +66,7 @@ def balance_friction(
                         away = f[b * LAW + OWN + k] - f[b * LAW + EXTRAPOLATED + k]
                         v -= w[coupled + across + k] * away
                 guess, before = f[a * LAW + EXTRAPOLATED + k], f[a * LAW + OWN + k]
-                force = rub(limit, width, v, w[at + SLOPE + k], guess)
+                force = rub(limit, width, v, w[at + SLOPE + k], guess, before)
                 f[a * LAW + OWN + k] = force
                 change = max(change, math.fabs(force - before) / (abs(limit) + 1e-300))
             if change < _TOLERANCE:

@@ -23,6 +23,7 @@ from jointbench.analysis.gap.response.dry_friction import balance_friction
 from jointbench.analysis.gap.response.law_forces import (
     BEFORE,
     COULOMB,
+    CURVES,
     EARLIER,
     EXTRAPOLATED,
     FORCE,
@@ -35,6 +36,7 @@ from jointbench.analysis.gap.response.law_forces import (
     SLIDERS,
     SPEED,
     IntegrationLaws,
+    force_of_real_joint,
     force_without_memory,
 )
 from jointbench.analysis.gap.response.mode_steps import (
@@ -53,9 +55,9 @@ from jointbench.analysis.gap.response.slider_integration import (
     bank_forces,
 )
 
-ONE_PORT = (1,)
-SEVERAL_PORTS = (1, 2)
-"""Arguments that choose the compiled version: the length of a tuple is a constant."""
+VERSIONS = ((1,), (1, 2), (1, 2, 3), (1, 2, 3, 4))
+"""Arguments that choose the compiled version, since the length of a tuple is a constant
+for the compiler: one port, several ports, and the same with laws of real joints."""
 
 
 @compiled(fastmath=True, inline="always")
@@ -151,7 +153,7 @@ def _integrate_lanes(
     out: FloatArray,
 ) -> None:
     """Integrate as many records as there are lanes, beginning at `first`."""
-    several = len(version) > 1
+    several, further = len(version) % 2 == 0, len(version) > 2
     n_ports = displacement.shape[0] if several else 1
     n_laws = laws.kinds.size
     coupled = w.size - (n_ports * n_ports * LANES if several else 0)
@@ -180,6 +182,8 @@ def _integrate_lanes(
                     force=a * LAW + OWN,
                 )
                 bank_forces(bank, w, f, states, active, sliders, tables, tops)
+            elif further and kinds[a] > CURVES:
+                force_of_real_joint(a, port, w, f, kinds, p)
             else:
                 force_without_memory(a, port, w, f, kinds, p, curves)
         if several and rubbing > 1:
@@ -228,7 +232,7 @@ def integrate_forces(
         dt: step [s].
         laws: that act together.
         needs_velocity: True if one of them depends on the velocity.
-        version: `ONE_PORT` or `SEVERAL_PORTS`.
+        version: one of `VERSIONS`.
 
     Returns:
         Force of the laws of each port together [N], shape (n_ports, n_steps,

@@ -13,7 +13,7 @@ from jointbench.analysis.gap.response.law_forces import (
     IntegrationLaws,
 )
 
-PARAMETERS = 2
+PARAMETERS = 4
 SLIDER_ROWS = 4
 CURVE_ROWS = 3
 
@@ -43,8 +43,21 @@ def pack_laws(laws: Sequence[Law], ports: Sequence[int]) -> IntegrationLaws:
 
 
 def _rows(laws: Sequence[Law], kind: int, count: int) -> FloatArray:
-    """Return the tables of one kind of law, `count` rows per law, zeros for others."""
+    """Return the tables of one kind of law, `count` rows per law, zeros for others.
+
+    A shorter table is continued by its last value, as a look-up beyond its end is.
+    """
     own = [law.tables if law.kind == kind else None for law in laws]
     width = max((t.shape[1] for t in own if t is not None), default=1)
-    rows = [np.zeros((count, width)) if t is None else t for t in own]
+    rows = [
+        np.zeros((count, width))
+        if t is None
+        else _continued(t, width)
+        for t in own
+    ]
     return rows[0] if len(rows) == 1 else np.concatenate(rows)
+
+
+def _continued(table: FloatArray, width: int) -> FloatArray:
+    more = width - table.shape[1]
+    return np.pad(table, ((0, 0), (0, more)), mode="edge") if more else table

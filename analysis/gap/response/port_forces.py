@@ -18,12 +18,11 @@ from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freez
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.response.effect_hooks import Law
 from jointbench.analysis.gap.response.force_integration import (
-    ONE_PORT,
-    SEVERAL_PORTS,
+    VERSIONS,
     LaneModes,
     integrate_forces,
 )
-from jointbench.analysis.gap.response.law_forces import COULOMB, LANES, MOVING
+from jointbench.analysis.gap.response.law_forces import COULOMB, CURVES, LANES, MOVING
 from jointbench.analysis.gap.response.packed_laws import pack_laws
 
 
@@ -44,9 +43,8 @@ class PortLaw:
 class PortModes:
     """Modes of a linear model between its ports.
 
-    The motion of port p per unit force that contracts port q is the sum over the modes
-    of shapes[:, p] inputs[:, q] / (s - poles), and of its conjugate for a complex pole
-    whose conjugate is left out; the factor 2 of such a pair is in the inputs already.
+    After an impulse of 1 N s of a law at port q the motion of port p is minus the real
+    part of the sum over the modes of shapes[:, p] inputs[:, q] exp(poles t).
 
     Attributes:
         poles: [rad/s], one of each conjugate pair, shape (n_modes, n_records).
@@ -132,7 +130,8 @@ def port_forces(
         raise UsageError("a law depends on the speed; give the speeds of the ports")
     packed = pack_laws([x.law for x in laws], [x.port for x in laws])
     scaled = modes.scaled()
-    version = ONE_PORT if count == 1 else SEVERAL_PORTS
+    further = any(x.law.kind > CURVES for x in laws)
+    version = VERSIONS[2 * further + (count > 1)]
 
     def integrated(every: int) -> FloatArray:
         rows = np.ascontiguousarray(motions[:, :, ::every])

@@ -196,13 +196,15 @@ def slider_tables(
     Source:
         Wen 1976, J. Eng. Mech. Div. 102, eq. (2), with |u| <= 1 normalised.
     """
-    limit = 30.0
+    limit = RESPONSE.slider_reach
     if loading > 0:
         limit = min(limit, loading ** (-1.0 / sharpness))
+    beyond = limit > 1.0
+    points = RESPONSE.slider_curve_points[beyond]
     if loading > 0:  # fine towards saturation
-        stretch = 1.0 - np.exp(-np.linspace(0.0, 14.0, 3000))
+        stretch = 1.0 - np.exp(-np.linspace(0.0, 14.0, points))
     else:  # fine towards zero, where most motions are
-        stretch = np.sinh(np.linspace(0.0, 8.0, 6000))
+        stretch = np.sinh(np.linspace(0.0, 8.0, points))
     u = limit * stretch / stretch[-1] * (1.0 - 1e-6)
     load = _cumulative(u, 1.0 / (1.0 - loading * u**sharpness))
     unload = _cumulative(u, 1.0 / np.maximum(1.0 + unloading * u**sharpness, 1e-3))
@@ -210,8 +212,9 @@ def slider_tables(
     free = (_IDENTITY * (sharpness + 1.0) / bend) ** (1.0 / sharpness)
     elastic = float(unloading == 0.0)
     ends = np.array([load[-1], u[-1], u[-1], unload[-1]])
-    tops = np.array([*((_TABLE_SIZE - 1) / ends), min(free, 0.9), elastic, load[-1]])
-    grid = np.linspace(0.0, 1.0, _TABLE_SIZE)
+    size = RESPONSE.long_table_points if beyond else _TABLE_SIZE
+    tops = np.array([*((size - 1) / ends), min(free, 0.9), elastic, load[-1]])
+    grid = np.linspace(0.0, 1.0, size)
     tables = np.stack(
         [
             np.interp(grid * ends[0], load, u),

@@ -47,11 +47,17 @@ STARTS = SEARCH.shape_starts
 
 
 def score(bench: Bench, fit: Fit) -> float:
-    """Return the score of a fit: its cost plus a charge for each parameter."""
+    """Return the score of a fit: its cost plus a charge for each parameter.
+
+    A law that contains a simpler one of the catalogue is charged as much as separates
+    rivals, so that it is named only where the simpler one explains clearly less.
+    """
     charge, policy = 0.0, bench.policy
     for candidate in fit.candidates:
         charge += policy.parameter_charge * len(candidate.effect.parameters)
         charge += policy.phase_charge * bench.phases(candidate)
+        if candidate.effect.generalises:
+            charge += policy.rival_score
     return fit.cost + charge
 
 
@@ -135,8 +141,7 @@ def finish(
     """Fit to convergence, at the step size that the start requires."""
     resolution = _step_for(problem, x)
     progress(f"{words_of(problem.candidates)} (fine)")
-    families = {c.effect.family for c in problem.candidates if c.site.kind == "link"}
-    if families & {"friction", "stiffness", "contact", "damping"}:
+    if any(c.effect.integrated for c in problem.candidates if c.site.kind == "link"):
         return minimise(
             problem, x, resolution, iterations=8, jacobian_resolution=MIDDLE
         )

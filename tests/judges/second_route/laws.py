@@ -113,6 +113,52 @@ def _bouc_wen(p: Values) -> ContinuousLaw:
     return _bouc_wen_law(_one(p["k"]), _one(p["zy"]), b, g, p["n"])
 
 
+def _bouc_wen_free(p: Values) -> ContinuousLaw:
+    loading, unloading = np.cos(p["angle"]), np.sin(p["angle"])
+    b, g = (loading + unloading) / 2.0, (loading - unloading) / 2.0
+    return _bouc_wen_law(_one(p["k"]), _one(p["zy"]), b, g, p["n"])
+
+
+def _iwan_segalman(p: Values) -> ContinuousLaw:
+    """32 sliders at a constant ratio and one at the end, all of sharpness 30."""
+    chi, beta = p["chi_plus_2"] - 2.0, p["beta"]
+    edge = p["phimax"] * np.append(0.0, 0.003 ** np.linspace(1.0, 0.0, 32))
+    low, high = edge[:-1], edge[1:]
+    weight = (high ** (chi + 1) - low ** (chi + 1)) / (chi + 1)
+    moment = (high ** (chi + 2) - low ** (chi + 2)) / (chi + 2)
+    stiffness = np.append(weight / weight.sum(), beta) / (1.0 + beta)
+    slip = np.append(moment / weight, p["phimax"])
+    return _bouc_wen_law(p["kt"] * stiffness, slip, 0.5, 0.5, 30.0)
+
+
+def _clearance(p: Values) -> ContinuousLaw:
+    """A stop at either side; a stop closed at rest counts where it opens."""
+    middle, half = p["offset"] * p["half_width"], p["half_width"]
+
+    def contact(r: FloatArray) -> FloatArray:
+        away = r - middle
+        return np.asarray(p["k"] * (away - np.clip(away, -half, half)))
+
+    rest = contact(np.zeros(1))[0]
+    linear = p["k"] if abs(p["offset"]) > 1.0 else 0.0
+    return _without_states(lambda r, v: contact(r) - rest - linear * r)
+
+
+def _quadratic_cubic(p: Values) -> ContinuousLaw:
+    return _without_states(lambda r, v: p["k3"] * (r**3 + p["k2_over_k3"] * r**2))
+
+
+def _cubic_quintic(p: Values) -> ContinuousLaw:
+    return _without_states(lambda r, v: p["k3"] * (r**3 + p["k5_over_k3"] * r**5))
+
+
+def _power_damping(p: Values) -> ContinuousLaw:
+    """The amplitude is the force at 10 mm/s."""
+    return _without_states(
+        lambda r, v: p["force"] * np.sign(v) * np.abs(v / 0.01) ** p["p"]
+    )
+
+
 def _iwan(p: Values) -> ContinuousLaw:
     stiffness, slip = iwan_bank(p["kt"], p["phimax"], p["chi_plus_2"] - 1.0)
     return _bouc_wen_law(stiffness, slip, 0.5, 0.5, p["sharpness"])
@@ -146,6 +192,12 @@ LAWS: Mapping[str, Callable[[Values], ContinuousLaw]] = {
     "jenkins": _jenkins,
     "iwan": _iwan,
     "bouc_wen": _bouc_wen,
+    "bouc_wen_free": _bouc_wen_free,
+    "iwan_segalman": _iwan_segalman,
+    "clearance": _clearance,
+    "quadratic_cubic": _quadratic_cubic,
+    "cubic_quintic": _cubic_quintic,
+    "power_damping": _power_damping,
 }
 """Laws of links by the name of their effect."""
 

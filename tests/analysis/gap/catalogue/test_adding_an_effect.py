@@ -9,7 +9,7 @@ import pytest
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.catalogue.linear_effects import CROSS_TALK
-from jointbench.analysis.gap.judgement.expected_residual import EXACT, MODEL_ERROR
+from jointbench.analysis.gap.model.effect import EXACT, FAMILIES
 from jointbench.analysis.gap.response.curve_integration import (
     REACH,
     finest_of,
@@ -241,7 +241,7 @@ def test_the_page_lists_the_model_error_of_each_family() -> None:
     """Its numbers are those of the engine."""
     page = PAGE.read_text("utf-8")
     stated = {name: float(x) for name, x in re.findall(r"`(\w+)` (\de-\d)", page)}
-    assert stated == MODEL_ERROR
+    assert stated == {name: one.model_error for name, one in FAMILIES.items()}
     assert f"Any other family gets {EXACT:.0e}".replace("e-0", "e-") in page
 
 
