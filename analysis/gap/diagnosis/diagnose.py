@@ -21,6 +21,7 @@ from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.model.diagnosis_record import (
+    Closest,
     Diagnosis,
     Estimate,
     Finding,
@@ -145,6 +146,7 @@ def conclude(
         ),
         policy=bench.policy,
         partial=partial,
+        closest=closest_of(outcome, bench),
     )
     if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)
@@ -183,7 +185,7 @@ def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
     )
 
 
-def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
+def evidence_of(outcome: SearchOutcome, bench: LumpedBench, fit: Fit) -> Evidence:
     """Return the quantities from which the confidence of a fit is computed."""
     own = {c.label for c in fit.candidates}
     others = [
@@ -195,8 +197,29 @@ def evidence_of(outcome: SearchOutcome, bench: Bench, fit: Fit) -> Evidence:
     margin = (min(others) if others else DIAGNOSIS.no_rival_score) - score(bench, fit)
     allowed = max(outcome.acceptance.allowed, 1e-12)
     slack = 1.0 - max(outcome.acceptance.excess, 0.0) / allowed
-    distance = weakest(fit, (outcome.base, *outcome.ranked))
-    return Evidence(margin, slack, distance, len(fit.candidates))
+    acceptance, dof = outcome.acceptance, bench.blocks.dof
+    excess = max(acceptance.excess, 0.0)
+    base_excess = max(outcome.base.chi2 - dof, 1.0)
+    return Evidence(
+        margin=margin,
+        slack=slack,
+        amplitude=weakest(fit, (outcome.base, *outcome.ranked)),
+        effects=len(fit.candidates),
+        excess=excess / allowed,
+        probe=(acceptance.remaining or 0.0) / max(acceptance.remaining_allowed, 1.0),
+        left=min(excess * dof / base_excess, 1.0),
+        scatter=max(bench.noise.scatter, default=0.0),
+        deviation=float(np.abs(fit.prior_deviations).max()) / bench.policy.prior_limit,
+    )
+
+
+def closest_of(outcome: SearchOutcome, bench: LumpedBench) -> Closest | None:
+    """Return the best explanation before the acceptance criteria, if there is one."""
+    fit = outcome.ranked[0] if outcome.ranked else outcome.best
+    if not fit.candidates or not np.isfinite(fit.cost):
+        return None
+    evidence = evidence_of(outcome, bench, fit)
+    return Closest(_labels(fit), confidence_of(evidence), evidence)
 
 
 def _effects(
@@ -269,4 +292,11 @@ def _base_estimates(bench: LumpedBench, fit: Fit) -> tuple[Estimate, ...]:
     )
 
 
-__all__ = ["conclude", "diagnose", "estimates_of", "evidence_of", "noise_sd"]
+__all__ = [
+    "closest_of",
+    "conclude",
+    "diagnose",
+    "estimates_of",
+    "evidence_of",
+    "noise_sd",
+]

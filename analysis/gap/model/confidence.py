@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from jointbench.analysis.gap.model.confidence_settings import CONFIDENCE
+
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
@@ -16,65 +18,60 @@ class Evidence:
             1 (at or below the chi2 of noise alone) [-].
         amplitude: smallest distance of an amplitude from OFF [sd].
         effects: number of effects named.
+        excess: excess of chi2/dof over its limit [-]; 1 at the limit.
+        probe: largest remaining directed test over its limit [-]; 1 at the limit.
+        left: share of the base's excess chi2 that is left: the distance of the records
+            from everything that the catalogue can make [-].
+        scatter: relative scatter between hits that is whitened [-].
+        deviation: largest prior deviation over its limit [-]; 1 at the limit.
     """
 
     margin: float
     slack: float
     amplitude: float
     effects: int
+    excess: float = 0.0
+    probe: float = 0.0
+    left: float = 0.0
+    scatter: float = 0.0
+    deviation: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
-class Calibration:
-    """Coefficients of a logistic model of the evidence.
+class Regressor:
+    """One regressor of the logistic model: a clipped logarithm of the evidence."""
 
-    Attributes:
-        intercept: of the logit.
-        margin: per decade of the margin over 15.
-        slack: per unit of slack.
-        amplitude: per decade of the amplitude over 4 sd.
-        second: for a second effect.
-        record: how, and on which campaigns, the coefficients were estimated.
-    """
+    name: str
+    floor: float
+    top: float
 
-    intercept: float
-    margin: float
-    slack: float
-    amplitude: float
-    second: float
-    record: str
+    def of(self, value: float) -> float:
+        """Return the decades of a value above the floor, at most to the top [-]."""
+        return float(np.log10(np.clip(value, self.floor, self.top) / self.floor))
 
 
-CALIBRATION = Calibration(
-    intercept=2.161,
-    margin=0.0,
-    slack=0.885,
-    amplitude=0.0,
-    second=0.0,
-    record="benchmarks/gap/calibrate.py on 85 names reported in 168 simulated "
-    "campaigns, seeds 70000 and on (pairs and reduced catalogues: of an earlier "
-    "version); one campaign in ten is assumed to hide an effect of no catalogue",
+REGRESSORS = (
+    Regressor("margin", *CONFIDENCE.margin_range),
+    Regressor("excess", *CONFIDENCE.limit_range),
+    Regressor("probe", *CONFIDENCE.limit_range),
+    Regressor("left", *CONFIDENCE.left_range),
+    Regressor("scatter", *CONFIDENCE.scatter_range),
+    Regressor("deviation", *CONFIDENCE.limit_range),
+    Regressor("amplitude", *CONFIDENCE.amplitude_range),
 )
 
 
-def features(evidence: Evidence) -> tuple[float, float, float, float]:
-    """Return the regressors of the logistic model, in the order of `Calibration`."""
-    return (
-        float(np.clip(np.log10(max(evidence.margin, 1.0) / 15.0), -1.2, 3.0)),
-        float(np.clip(evidence.slack, 0.0, 1.0)),
-        float(np.clip(np.log10(max(evidence.amplitude, 1.0) / 4.0), -0.6, 2.0)),
-        float(evidence.effects > 1),
-    )
+def features(evidence: Evidence) -> tuple[float, ...]:
+    """Return the regressors of the logistic model, in the order of its slopes."""
+    found = [r.of(float(getattr(evidence, r.name))) for r in REGRESSORS]
+    return (*found, float(evidence.effects > 1))
 
 
-def confidence_of(evidence: Evidence, calibration: Calibration = CALIBRATION) -> float:
+def confidence_of(
+    evidence: Evidence,
+    slopes: tuple[float, ...] = CONFIDENCE.slopes,
+    intercept: float = CONFIDENCE.intercept,
+) -> float:
     """Return the probability that name and site are right [-]."""
-    margin, slack, amplitude, second = features(evidence)
-    logit = (
-        calibration.intercept
-        + calibration.margin * margin
-        + calibration.slack * slack
-        + calibration.amplitude * amplitude
-        + calibration.second * second
-    )
+    logit = intercept + float(np.dot(slopes, features(evidence)))
     return float(1.0 / (1.0 + np.exp(-logit)))

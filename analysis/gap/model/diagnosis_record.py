@@ -56,6 +56,21 @@ class NamedEffect:
 
 
 @dataclass(frozen=True, slots=True)
+class Closest:
+    """The best explanation before the acceptance criteria.
+
+    Attributes:
+        effects: name and site of each effect.
+        confidence: probability that names and sites are right [-].
+        evidence: quantities from which the confidence is computed.
+    """
+
+    effects: tuple[str, ...]
+    confidence: float
+    evidence: Evidence
+
+
+@dataclass(frozen=True, slots=True)
 class Ranked:
     """One explanation that was tried, with its score.
 
@@ -128,7 +143,9 @@ class Diagnosis:
             be distinguished from the best, best first; ("none",) is the base alone.
         policy: thresholds of the verdict.
         partial: what the best force law explains under model error; None unless the
-            verdict is mostly, or unknown with a nonlinear joint.
+            verdict is mostly or unknown.
+        closest: the best explanation before the acceptance criteria; None if there
+            was no search.
     """
 
     verdict: Finding
@@ -146,6 +163,7 @@ class Diagnosis:
     explanations: tuple[tuple[str, ...], ...] = ()
     policy: Policy = STANDARD
     partial: PartialExplanation | None = None
+    closest: Closest | None = None
 
     @property
     def predicted(self) -> bool:
@@ -204,6 +222,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "reason": d.reason,
         "exhibit": None if d.evidence is None else evidence_json(d.evidence),
         "policy": policy_json(d.policy),
+        "closest": None if d.closest is None else asdict(d.closest),
         "mostly": None if d.partial is None else partial_json(d.partial),
     }
 
