@@ -50,10 +50,7 @@ def _rows(laws: Sequence[Law], kind: int, count: int) -> FloatArray:
     own = [law.tables if law.kind == kind else None for law in laws]
     width = max((t.shape[1] for t in own if t is not None), default=1)
     rows = [
-        np.zeros((count, width))
-        if t is None
-        else _continued(t, width)
-        for t in own
+        np.zeros((count, width)) if t is None else _continued(t, width) for t in own
     ]
     return rows[0] if len(rows) == 1 else np.concatenate(rows)
 
