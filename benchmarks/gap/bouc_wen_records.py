@@ -19,7 +19,7 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-from record_makers import Array, Structure, finer, multisine, simulate, sweep
+from record_simulation import Array, Structure, finer, multisine, simulate, sweep
 
 RATE, SAMPLES = 750.0, 8192
 BAND = (5.0, 150.0)

@@ -31,6 +31,7 @@ from jointbench.analysis.gap.catalogue.catalogue_settings import CATALOGUE_SETTI
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
+from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_digest
 from jointbench.analysis.gap.model.setting import Setting, settings_of
@@ -62,6 +63,7 @@ PARTS: Mapping[str, Any] = {
     "judgement": JUDGEMENT,
     "diagnosis": DIAGNOSIS,
     "model error": MODEL_ERROR_SETTINGS,
+    "modes and ports": MODAL,
 }
 """The numerical settings by part of the engine."""
 UNDER_MODEL_ERROR = ("mostly_", "open_")

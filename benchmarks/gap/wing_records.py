@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import scipy.signal
-from record_makers import Array, Structure, finer, multisine, simulate, sweep
+from record_simulation import Array, Structure, finer, multisine, simulate, sweep
 
 RATE, SAMPLES = 512.0, 4096
 BAND = (3.0, 150.0)

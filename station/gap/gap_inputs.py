@@ -12,6 +12,10 @@ from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.acquisition.records.session import Session
 from jointbench.acquisition.session_file.store import SESSION_SCHEMA, read_session
+from jointbench.analysis.gap.catalogue.catalogue import (
+    ALL_REAL_JOINTS,
+    with_real_joints,
+)
 from jointbench.analysis.gap.catalogue.installed_effects import installed_catalogue
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.diagnosis.level_diagnosis import diagnose_levels
@@ -171,7 +175,7 @@ def _examine_levels(
         given,
         base,
         without=wanted.without,
-        entries=wanted.entries,
+        entries=with_real_joints(wanted.entries, (ALL_REAL_JOINTS,)),
         progress=progress,
     )
     return Examined(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Records at several levels, as a TOML file says where they are."""
+"""Read the records at several levels that a TOML file lists."""
 
 from pathlib import Path
 

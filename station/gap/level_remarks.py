@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a user should know of the base behind a verdict on records at several levels."""
+"""Remarks on the base of a verdict on records at several levels."""
 
 from jointbench.analysis.gap.diagnosis.level_diagnosis import LevelDiagnosis
 from jointbench.analysis.gap.modal_bench.level_records import RecordSet

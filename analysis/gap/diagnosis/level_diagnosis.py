@@ -13,6 +13,7 @@ from jointbench.analysis.gap.diagnosis.diagnose import estimates_of, evidence_of
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.level_verdict import level_verdict
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
+from jointbench.analysis.gap.diagnosis.partial_verdict import under_model_error
 from jointbench.analysis.gap.diagnosis.single_record import StretchScore
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.modal_bench.base_from_records import (
@@ -91,7 +92,7 @@ def diagnose_levels(
     if not isinstance(final, ModalBench):
         raise TypeError("the search must return a bench of the type it was given")
     say("held-out levels")
-    found = _conclude(outcome, final)
+    found = _conclude(outcome, final, say)
     return LevelDiagnosis(found, _scores(final, outcome, found), base, chi2)
 
 
@@ -99,11 +100,14 @@ def _silent(line: str) -> None:
     """Show no progress."""
 
 
-def _conclude(outcome: SearchOutcome, bench: ModalBench) -> Diagnosis:
+def _conclude(outcome: SearchOutcome, bench: ModalBench, say: Progress) -> Diagnosis:
     """Derive the diagnosis from the outcome of a search."""
     base = minimise(make_problem(bench, ()), outcome.base.x, iterations=6)
     outcome = replace(outcome, base=base)
-    finding, reason, step = level_verdict(outcome, bench)
+    verdict, partial = under_model_error(
+        level_verdict(outcome, bench), bench, base, say
+    )
+    finding = verdict.finding
     shown: Sequence[Fit] = ()
     if finding is Finding.NAMED:
         shown = (outcome.best,)
@@ -139,12 +143,13 @@ def _conclude(outcome: SearchOutcome, bench: ModalBench) -> Diagnosis:
             outcome.base_screening.largest,
             outcome.base_screening.threshold,
         ),
-        experiment=step,
-        reason=reason,
+        experiment=verdict.step,
+        reason=verdict.reason,
         explanations=tuple(
             _labels(f) for f in outcome.level if outcome.acceptance.passed
         ),
         policy=bench.policy,
+        partial=partial,
     )
 
 

@@ -2,6 +2,7 @@
 """The verdict on records at several levels, its reason, and what to do next."""
 
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
+from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
 from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench
 from jointbench.analysis.gap.model.diagnosis_record import Finding
@@ -14,10 +15,8 @@ MORE_LEVELS = (
 )
 
 
-def level_verdict(
-    outcome: SearchOutcome, bench: ModalBench
-) -> tuple[Finding, str, str]:
-    """Return verdict, reason and next step of a search on records at several levels.
+def level_verdict(outcome: SearchOutcome, bench: ModalBench) -> DiagnosisVerdict:
+    """Return the verdict on a search on records at several levels.
 
     Args:
         outcome: of the search.
@@ -29,24 +28,26 @@ def level_verdict(
             f"all records of the fits have one level ({levels.pop()}), which the base "
             "itself explains; add a higher level"
         )
-        return Finding.UNKNOWN, reason, "add a higher level"
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, "add a higher level")
     if not outcome.acceptance.passed:
         reason = "no effect of the catalogue explains the records: " + (
             outcome.acceptance.reason
         )
-        return Finding.UNKNOWN, reason, MORE_LEVELS
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, MORE_LEVELS, unexplained=True)
     if not outcome.best.candidates:
         reason = "the modes of the lowest level explain all levels within their noise"
-        return Finding.NONE, reason, "none required; higher levels would show more"
+        return DiagnosisVerdict(
+            Finding.NONE, reason, "none required; higher levels would show more"
+        )
     if len(outcome.level) == 1:
         reason = f"explains the records to chi2/dof {1 + outcome.acceptance.excess:.3f}"
-        return Finding.NAMED, reason, _no_rival(outcome, bench)
+        return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
     names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) > bench.policy.most_rivals:
         reason = f"too many explanations fit equally well: {names}"
-        return Finding.UNKNOWN, reason, MORE_LEVELS
+        return DiagnosisVerdict(Finding.UNKNOWN, reason, MORE_LEVELS)
     reason = f"{names}: the difference of their scores is not significant"
-    return Finding.AMBIGUOUS, reason, MORE_LEVELS
+    return DiagnosisVerdict(Finding.AMBIGUOUS, reason, MORE_LEVELS)
 
 
 def _no_rival(outcome: SearchOutcome, bench: ModalBench) -> str:

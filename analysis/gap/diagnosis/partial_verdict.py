@@ -7,8 +7,8 @@ from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdic
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.partial_records import PartialExplanation
 from jointbench.analysis.gap.model_error.explain_mostly import explain_mostly
+from jointbench.analysis.gap.residuals.bench_protocol import MeasuredBench
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.selection_round import Progress
 
 MOSTLY_STEP = (
@@ -18,7 +18,7 @@ MOSTLY_STEP = (
 
 
 def under_model_error(
-    verdict: DiagnosisVerdict, bench: LumpedBench, base: Fit, progress: Progress
+    verdict: DiagnosisVerdict, bench: MeasuredBench, base: Fit, progress: Progress
 ) -> tuple[DiagnosisVerdict, PartialExplanation | None]:
     """Return the verdict with what the best force law explains.
 

@@ -149,7 +149,7 @@ def start_modes(
         damping = np.append(damping, 0.01)
     size = omega.size
     bare = Modes(omega / (2.0 * np.pi), damping, np.zeros((size, len(given.points))))
-    s = np.asarray(frf.added_decay_rate + 2j * np.pi * frf.frequency, np.complex128)
+    s = np.asarray(frf.added_decay_rate + 2j * np.pi * frf.frequency, complex)
     columns = modal_receptance(bare, s).T * s[:, None] ** int(given.output)
     constants = np.zeros((size, len(given.sensors), len(given.inputs)))
     for o in range(len(given.sensors)):
@@ -180,15 +180,12 @@ def _shape(given: RecordSet, constants: FloatArray) -> FloatArray:
     if pairs:
         o, i = max(pairs, key=lambda pair: abs(constants[pair]))
     else:
-        o, i = (
-            int(n)
-            for n in np.unravel_index(np.argmax(np.abs(constants)), constants.shape)
-        )
+        o, i = divmod(int(np.argmax(np.abs(constants))), constants.shape[1])
     scale = float(np.sqrt(abs(constants[o, i]))) or 1e-12
     shape[: len(sensors)] = constants[:, i] / scale
     if pairs:
         shape[o] = scale
-    _fill_inputs(given, shape, constants, int(o), int(i), scale)
+    _fill_inputs(given, shape, constants, o, i, scale)
     return shape
 
 

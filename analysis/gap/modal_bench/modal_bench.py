@@ -21,18 +21,19 @@ from jointbench.analysis.gap.modal_bench.modal_response import (
     respond_modes,
     shaken,
 )
+from jointbench.analysis.gap.modal_bench.outline import outline
 from jointbench.analysis.gap.modal_bench.port_effects import (
     port_candidates,
     port_scales,
 )
-from jointbench.analysis.gap.model.campaign import TAIL
+from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
-from jointbench.analysis.gap.residuals.noise_models import channel_sigma
+from jointbench.analysis.gap.residuals.noise_models import Noise, channel_sigma
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.response.port_forces import PortLaw
@@ -76,6 +77,16 @@ class ModalBench:
     def base_sd(self) -> FloatArray:
         """Prior standard deviation of the coordinates, shape (n_base,)."""
         return self.base.sd
+
+    @property
+    def campaign(self) -> Campaign:
+        """Forces, responses, levels and points of the fits."""
+        return outline(self.given, self.data)
+
+    @property
+    def noise(self) -> Noise:
+        """Noise of the sensors; forces and levels count as exact."""
+        return Noise(self.sigma, 0.0, ())
 
     @property
     def expanded(self) -> bool:
@@ -137,6 +148,16 @@ class ModalBench:
         r *= self.data.scored
         r /= self.sigma[:, :, None]
         return r.ravel()
+
+    def difference(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int
+    ) -> FloatArray:
+        """Return model minus measurement, shape of the response."""
+        return self.response(base, terms, oversampling) - self.data.measured
+
+    def mask(self, values: FloatArray) -> None:
+        """Set samples without weight to 0, in place."""
+        values *= self.data.scored
 
     def refine(
         self,

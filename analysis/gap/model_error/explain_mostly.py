@@ -30,14 +30,13 @@ from jointbench.analysis.gap.model_error.model_error_settings import (
     MODEL_ERROR_SETTINGS,
 )
 from jointbench.analysis.gap.model_error.repeat_floor import left_of_explainable
-from jointbench.analysis.gap.residuals.bench_protocol import values_of
+from jointbench.analysis.gap.residuals.bench_protocol import MeasuredBench, values_of
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.selection_round import Progress
 
 
 def explain_mostly(
-    bench: LumpedBench, base: Fit, progress: Progress
+    bench: MeasuredBench, base: Fit, progress: Progress
 ) -> PartialExplanation | None:
     """Return what the best force law explains under model error.
 
@@ -217,7 +216,7 @@ def _left(scores: _Scores) -> dict[str, dict[str, float]]:
     """Return the power left over that of the base by level, channel and band."""
     bench, (gain, counted) = scores.fits.bench, _gains(scores)
     found: dict[str, dict[str, float]] = {}
-    for view in ("level", "hit point", "preload"):
+    for view in (name for name in bench.blocks.labels[0] if name != "order"):
         labels = [r[view] for r in bench.blocks.labels]
         found[view] = {
             label: float(

@@ -23,6 +23,7 @@ from jointbench.analysis.gap.model_error.whitened_bench import (
     WhitenedBench,
     whitened_bench,
 )
+from jointbench.analysis.gap.residuals.bench_protocol import MeasuredBench
 from jointbench.analysis.gap.residuals.evaluation_resolutions import MIDDLE
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -51,7 +52,7 @@ class LawFits:
     laws: tuple[Fit, ...]
 
 
-def fit_laws(inner: LumpedBench, start: Fit, progress: Progress) -> LawFits:
+def fit_laws(inner: MeasuredBench, start: Fit, progress: Progress) -> LawFits:
     """Fit the base and every force law under the discrepancy at the best law.
 
     Args:
@@ -59,7 +60,7 @@ def fit_laws(inner: LumpedBench, start: Fit, progress: Progress) -> LawFits:
         start: fit of the base alone.
         progress: receives the label of each law.
     """
-    inner = settle(inner, None)
+    inner = settle(inner, None) if isinstance(inner, LumpedBench) else inner
     frame = spectral_frame(inner)
     progress("base under model error")
     bench, base = _settled_base(inner, frame, start)
@@ -89,7 +90,7 @@ def _contenders(laws: list[Fit]) -> list[Fit]:
 
 
 def _settled_base(
-    inner: LumpedBench, frame: SpectralFrame, start: Fit
+    inner: MeasuredBench, frame: SpectralFrame, start: Fit
 ) -> tuple[WhitenedBench, Fit]:
     """Alternate fits of the base and estimates of the discrepancy."""
     bench, x = whitened_bench(inner, frame, no_discrepancy(frame)), start.base

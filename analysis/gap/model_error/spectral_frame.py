@@ -15,7 +15,7 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.analysis.gap.model_error.model_error_settings import (
     MODEL_ERROR_SETTINGS,
 )
-from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
+from jointbench.analysis.gap.residuals.bench_protocol import MeasuredBench
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +68,7 @@ class SpectralFrame:
         return np.asarray(found)
 
 
-def spectral_frame(bench: LumpedBench) -> SpectralFrame:
+def spectral_frame(bench: MeasuredBench) -> SpectralFrame:
     """Return the lines and bands in which the records of a bench have signal."""
     campaign, settings = bench.campaign, MODEL_ERROR_SETTINGS
     samples = campaign.response.shape[2]

@@ -18,9 +18,9 @@ from jointbench.analysis.gap.model_error.model_error_settings import (
     MODEL_ERROR_SETTINGS,
 )
 from jointbench.analysis.gap.model_error.spectral_frame import SpectralFrame
+from jointbench.analysis.gap.residuals.bench_protocol import MeasuredBench
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks
-from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +33,7 @@ class WhitenedBench:
         blocks: rows by record; two rows for each line.
     """
 
-    inner: LumpedBench
+    inner: MeasuredBench
     whitening: Whitening
     blocks: Blocks
 
@@ -125,7 +125,7 @@ class WhitenedBench:
 
 
 def whitened_bench(
-    inner: LumpedBench, frame: SpectralFrame, found: Discrepancy
+    inner: MeasuredBench, frame: SpectralFrame, found: Discrepancy
 ) -> WhitenedBench:
     """Return a bench under a discrepancy.
 

@@ -7,10 +7,13 @@ from typing import Protocol
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import Policy
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
+from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 
 
 class Scaled(Protocol):
@@ -96,6 +99,35 @@ class Bench(Scaled, Protocol):
             terms: effects.
             resolution: window and step.
         """
+        ...
+
+
+class MeasuredBench(Bench, Protocol):
+    """A bench with the records that it compares, for views and for model error."""
+
+    @property
+    def campaign(self) -> Campaign:
+        """Forces, responses, levels and points."""
+        ...
+
+    @property
+    def entries(self) -> tuple[LumpedEffect, ...]:
+        """The catalogue of this run."""
+        ...
+
+    @property
+    def noise(self) -> Noise:
+        """Expected noise of the residual."""
+        ...
+
+    def difference(
+        self, base: FloatArray, terms: Sequence[Term], oversampling: int
+    ) -> FloatArray:
+        """Return model minus measurement, shape of the response."""
+        ...
+
+    def mask(self, values: FloatArray) -> None:
+        """Set samples without weight to 0, in place."""
         ...
 
 

@@ -1,4 +1,4 @@
-"""Records at several levels: base of modes, response at ports, left-out levels."""
+"""Records at several levels: base of modes, response at ports, noise, periods."""
 
 from dataclasses import replace
 

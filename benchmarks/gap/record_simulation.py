@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Records of nonlinear structures by a Runge-Kutta method in physical coordinates.
 
-The makers share neither integrator nor model with the engine: masses, dampers and
+The simulation shares neither integrator nor model with the engine: masses, dampers and
 springs in a matrix, slip as a differential equation, and a force that is interpolated
 by a Fourier series between its samples.
 """
@@ -89,7 +89,7 @@ def simulate(structure: Structure, fine: Array, rate: float, periods: int = 1) -
     """
     inverse = np.linalg.inv(structure.mass)
     return np.asarray(
-        _march(
+        _integrate(
             inverse @ structure.stiffness,
             inverse @ structure.damping,
             inverse @ structure.driven.T @ np.atleast_2d(fine),
@@ -130,7 +130,7 @@ def _slope(x, v, z, push, k, c, inward, across, springs, sliders, a, dz):  # typ
 
 
 @numba.njit(cache=True)
-def _march(k, c, push, inward, across, springs, sliders, half, periods):  # type: ignore[no-untyped-def]
+def _integrate(k, c, push, inward, across, springs, sliders, half, periods):  # type: ignore[no-untyped-def]
     n, count, slips = k.shape[0], push.shape[1], sliders.shape[0]
     fine = count * periods
     samples = fine // FINE
