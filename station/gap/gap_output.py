@@ -29,6 +29,7 @@ _WIDEST = 110
 _LABEL = 9
 """Width of the labels at the beginning of lines."""
 _OPEN = "Largest effects that these records do not exclude (95 %)"
+_OPEN_HEADS = ("effect", "at most", "at the shape")
 _VIEW_HEADS = ("view", "largest shares")
 _TRIED_HEADS = ("explanation", "delta score", "chi2/dof", "prior dev. [sd]", "reason")
 
@@ -68,8 +69,7 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     if where:
         screen.print(table("Location of the gap", _VIEW_HEADS, where, words={0, 1}))
     if found.limits:
-        columns = ("effect", "at most", "at the shape")
-        screen.print(table(_OPEN, columns, limit_rows(found), words={0, 2}))
+        screen.print(table(_OPEN, _OPEN_HEADS, limit_rows(found), words={0, 2}))
     if len(found.candidates) > 1:
         tried = _candidates(found)
         screen.print(table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))

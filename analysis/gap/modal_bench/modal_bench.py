@@ -35,6 +35,7 @@ from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL, Resol
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import Noise, channel_sigma
 from jointbench.analysis.gap.residuals.residual_views import slice_views
+from jointbench.analysis.gap.residuals.scatter_record import no_scatter
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.response.port_forces import PortLaw
 from jointbench.analysis.gap.response.search_effort import spend
@@ -86,7 +87,7 @@ class ModalBench:
     @property
     def noise(self) -> Noise:
         """Noise of the sensors; forces and levels count as exact."""
-        return Noise(self.sigma, 0.0, ())
+        return Noise(self.sigma, 0.0, no_scatter((), len(self.sigma)))
 
     @property
     def expanded(self) -> bool:

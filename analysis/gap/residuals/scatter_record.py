@@ -79,6 +79,12 @@ class HitScatter:
         return found[0] if found else 0.0
 
     @property
+    def largest_share(self) -> float:
+        """Largest size of the directions without unit: of gains and stiffnesses [-]."""
+        sizes = zip(self.size, self.directions, strict=True)
+        return max((float(s) * d.scale for s, d in sizes if d.unit == "-"), default=0.0)
+
+    @property
     def joint_size(self) -> float:
         """Scatter of the first joint's stiffness [-]; 0 if there is no joint."""
         found = [k for k, d in enumerate(self.directions) if d.is_joint]
