@@ -30,6 +30,8 @@ def judge(names: set[str], found: Diagnosis, *, hidden: bool) -> str:
         return "right" if not names else "silent"
     if verdict == "unknown":
         return "unknown"
+    if verdict == "mostly":
+        return "mostly right" if names <= named else "mostly WRONG"
     if verdict == "ambiguous":
         return "ambiguous with truth" if names <= named else "ambiguous without"
     return "right" if named == names and not hidden else "WRONG"
