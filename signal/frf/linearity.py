@@ -30,6 +30,7 @@ _LEAST_SPAN = 1.2
 _CHANCE = 0.01
 # The scatter of a few hits is itself noisy; it is averaged over this many lines.
 _SMOOTH_LINES = 41
+_BLOCK_LINES = 512
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -180,25 +181,33 @@ class _Fit:
 def _regress(
     spectra: ForcesOfHits, pair: Pair, impulse: FloatArray, inside: BoolArray
 ) -> _Fit:
-    force = spectra.force[pair.hits][:, inside]
+    """Regress the hits of a pair, some lines at a time: they fit into the cache."""
     response = spectra.responses(pair, inside)
-    frf, weight = response / force, np.abs(force) ** 2
-    # Weighted by |F|^2: the noise of a hit's FRF is response noise over force.
-    total = weight.sum(axis=0)
+    lines = np.flatnonzero(inside)
+    slope_power, noise_power, level_power = np.empty((3, lines.size))
     level = np.log2(impulse)[:, None]
-    centred = level - (weight * level).sum(axis=0) / total
-    mean = (weight * frf).sum(axis=0) / total
-    lever = (weight * centred**2).sum(axis=0)
-    slope = (weight * centred * frf).sum(axis=0) / lever
-    residual = (frf - mean - centred * slope) * np.sqrt(weight)
-    noise = np.sum(np.abs(residual) ** 2, axis=0) / (pair.hits.size - 2)
-    return _Fit(
-        np.abs(slope) ** 2,
-        noise / lever,
-        np.abs(mean) ** 2,
-        pair.hits.size,
-        _correlation_length(residual),
-    )
+    last: ComplexArray | None = None
+    shared = power = 0.0
+    for first in range(0, lines.size, _BLOCK_LINES):
+        here = slice(first, first + _BLOCK_LINES)
+        force = spectra.force[pair.hits[:, None], lines[here]]
+        frf, weight = response[:, here] / force, _power(force)
+        # Weighted by |F|^2: the noise of a hit's FRF is response noise over force.
+        total = weight.sum(axis=0)
+        centred = level - (weight * level).sum(axis=0) / total
+        mean = (weight * frf).sum(axis=0) / total
+        lever = (weight * centred**2).sum(axis=0)
+        slope = (weight * centred * frf).sum(axis=0) / lever
+        residual = (frf - mean - centred * slope) * np.sqrt(weight)
+        left = _power(residual).sum(axis=0)
+        slope_power[here], level_power[here] = _power(slope), _power(mean)
+        noise_power[here] = left / (pair.hits.size - 2) / lever
+        power += float(left.sum())
+        joined = residual if last is None else np.hstack((last, residual))
+        shared += float(np.vdot(joined[:, :-1], joined[:, 1:]).real)
+        last = residual[:, -1:]
+    length = _correlation_length(shared, power) if lines.size > 2 else 1.0
+    return _Fit(slope_power, noise_power, level_power, pair.hits.size, length)
 
 
 def _test(fits: Sequence[_Fit]) -> tuple[float, float]:
@@ -218,13 +227,20 @@ def _pooled(fit: _Fit) -> FloatArray:
     return np.asarray(np.where(smooth > 0.0, smooth, np.inf))
 
 
-def _correlation_length(residual: ComplexArray) -> float:
-    """Return how many neighbouring lines carry one independent error, 1 or more."""
-    power = float(np.sum(np.abs(residual) ** 2))
-    if residual.shape[1] < 3 or power == 0.0:
+def _power(values: ComplexArray) -> FloatArray:
+    return np.asarray(values.real**2 + values.imag**2)
+
+
+def _correlation_length(shared: float, power: float) -> float:
+    """Return how many neighbouring lines carry one independent error, 1 or more.
+
+    Args:
+        shared: sum over neighbouring lines of the product of their residuals.
+        power: sum of the squared residuals.
+    """
+    if power == 0.0:
         return 1.0
-    shared = np.sum(residual[:, 1:] * residual[:, :-1].conj()).real / power
-    share = min(max(float(shared), 0.0), 0.99)
+    share = min(max(shared / power, 0.0), 0.99)
     return (1.0 + share) / (1.0 - share)
 
 

@@ -15,16 +15,55 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.acquisition.records.recordings import Quantity, Recording
 from jointbench.signal.hits.hit_pairs import pair_up
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
     SpectraPlan,
+    force_spectrum,
     plan_spectra,
-    transformed,
+    response_spectra,
 )
 from jointbench.signal.hits.windows import HammerWindow
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ForceUpdate:
+    """What a hit changes in all pairs whose earlier hits had the same force.
+
+    Attributes:
+        force: its spectrum [N s], shape (n_lines,).
+        total: sum of |F|^2 with this hit, same shape.
+        share: sum of |F|^2 without it over that with it [-], same shape.
+        gain: conj(F) over the sum with it [1/(N s)], same shape.
+        silent: lines on which no hit had a force, or None where there is none.
+    """
+
+    force: ComplexArray
+    total: FloatArray
+    share: FloatArray
+    gain: ComplexArray
+    silent: BoolArray | None
+
+
+def force_update(force: ComplexArray, before: FloatArray) -> ForceUpdate:
+    """Return what a hit changes.
+
+    Args:
+        force: its spectrum [N s], shape (n_lines,).
+        before: sum of |F|^2 of the earlier hits, same shape.
+    """
+    total = before + _power(force)
+    silent = total <= 0.0
+    safe = np.where(silent, 1.0, total)
+    return ForceUpdate(
+        force,
+        total,
+        before / safe,
+        force.conj() / safe,
+        silent if silent.any() else None,
+    )
 
 
 @dataclass(slots=True, eq=False)
@@ -46,31 +85,27 @@ class PairSums:
     hits: int = 0
 
     @classmethod
-    def empty(cls, lines: int) -> "PairSums":
-        """Return the sums of no hit."""
-        force, response, scatter = np.zeros((3, lines))
-        return cls(np.zeros(lines, complex), force, response, scatter)
+    def empty(cls, nothing: FloatArray) -> "PairSums":
+        """Return the sums of no hit; `nothing` is zeros, shape (n_lines,)."""
+        response, scatter = np.zeros((2, nothing.size))
+        return cls(np.zeros(nothing.size, complex), nothing, response, scatter)
 
-    def add(
-        self, force: ComplexArray, power: FloatArray, response: ComplexArray
-    ) -> None:
+    def add(self, hit: ForceUpdate, response: ComplexArray) -> None:
         """Add one hit.
 
         Args:
-            force: its spectrum [N s], shape (n_lines,).
-            power: |force|^2, same shape.
-            response: its spectrum, same shape.
+            hit: from its force and `force_power`.
+            response: its spectrum, shape (n_lines,).
         """
-        before = self.force_power
-        total = before + power
-        safe = np.where(total > 0.0, total, 1.0)
-        error = response - self.h1 * force
-        self.scatter += _power(error) * (before / safe)
-        self.h1 += error * (force.conj() / safe)
-        # A line without force holds nothing but noise of the response.
-        self.scatter += np.where(total > 0.0, 0.0, _power(response))
-        self.response_power += _power(response)
-        self.force_power = total
+        power = _power(response)
+        error = response - self.h1 * hit.force
+        self.scatter += _power(error) * hit.share
+        self.h1 += error * hit.gain
+        if hit.silent is not None:
+            # A line without force holds nothing but noise of the response.
+            self.scatter += np.where(hit.silent, power, 0.0)
+        self.response_power += power
+        self.force_power = hit.total
         self.hits += 1
 
 
@@ -105,8 +140,13 @@ class _Adder:
     """Adds hits to the sums of their pairs."""
 
     power: FloatArray
+    nothing: FloatArray
     pairs: dict[tuple[str, str], PairSums] = field(default_factory=dict)
     hits: int = 0
+
+    @classmethod
+    def of(cls, lines: int) -> "_Adder":
+        return cls(np.zeros(lines), np.zeros(lines))
 
     def add(
         self,
@@ -115,14 +155,18 @@ class _Adder:
         labels: Sequence[str],
         point: str,
     ) -> None:
-        own = _power(force)
-        self.power += own
+        self.power += _power(force)
         self.hits += 1
+        # Pairs with the same earlier hits hold one array of their power.
+        updates: dict[int, ForceUpdate] = {}
         for label, row in zip(labels, response, strict=True):
-            pair = label, point
-            if pair not in self.pairs:
-                self.pairs[pair] = PairSums.empty(force.size)
-            self.pairs[pair].add(force, own, row)
+            if (label, point) not in self.pairs:
+                self.pairs[label, point] = PairSums.empty(self.nothing)
+            sums = self.pairs[label, point]
+            before = sums.force_power
+            if id(before) not in updates:
+                updates[id(before)] = force_update(force, before)
+            sums.add(updates[id(before)], row)
 
 
 def sum_hits(recordings: Sequence[Recording], window: HammerWindow) -> SpectralSums:
@@ -142,9 +186,10 @@ def sum_hits(recordings: Sequence[Recording], window: HammerWindow) -> SpectralS
             a pair that was never measured together.
     """
     plan = plan_spectra(recordings)
-    adder = _Adder(np.zeros(plan.frequency.size))
+    adder = _Adder.of(plan.frequency.size)
     for (recording, hit), labels in zip(plan.chosen, plan.labels, strict=True):
-        force, responses = transformed(recording, hit, window, plan.block)
+        force = force_spectrum(recording, hit, window, plan.block)
+        responses = response_spectra(recording, hit, window, plan.block)
         adder.add(force, responses, labels, hit.point)
     return _sums(adder, plan)
 
@@ -155,7 +200,7 @@ def sums_of_spectra(spectra: HitSpectra) -> SpectralSums:
     Raises:
         ChannelMissing: a pair of output and input that was never measured together.
     """
-    adder = _Adder(np.zeros(spectra.frequency.size))
+    adder = _Adder.of(spectra.frequency.size)
     rows = zip(
         spectra.force, spectra.response, spectra.labels, spectra.points, strict=True
     )

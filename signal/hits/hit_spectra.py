@@ -87,8 +87,8 @@ def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpe
     force = np.empty((len(plan.chosen), lines), complex)
     response = np.empty((len(plan.chosen), rows, lines), complex)
     for number, (recording, hit) in enumerate(plan.chosen):
-        one, others = transformed(recording, hit, window, plan.block)
-        force[number] = one
+        force[number] = force_spectrum(recording, hit, window, plan.block)
+        others = response_spectra(recording, hit, window, plan.block)
         for row, other in enumerate(others):
             response[number, row] = other
     return HitSpectra(
@@ -184,8 +184,8 @@ class HitForces:
         for place, (number, row) in enumerate(zip(pair.hits, pair.rows, strict=True)):
             recording, hit = self.plan.chosen[number]
             rows = response_rows(recording)[row : row + 1]
-            _, (one,) = transformed(
-                recording, hit, self.window, self.plan.block, rows=rows
+            (one,) = response_spectra(
+                recording, hit, self.window, self.plan.block, rows
             )
             found[place] = one[inside]
         return found
@@ -200,7 +200,7 @@ class HitForces:
         size = len(plan.chosen), len(plan.labels[0]), np.count_nonzero(lines)
         response = np.empty(size, complex)
         for number, (recording, hit) in enumerate(plan.chosen):
-            _, others = transformed(recording, hit, self.window, plan.block)
+            others = response_spectra(recording, hit, self.window, plan.block)
             for row, other in enumerate(others):
                 response[number, row] = other[lines]
         return HitSpectra(
@@ -223,7 +223,7 @@ def hit_forces(recordings: Sequence[Recording], window: HammerWindow) -> HitForc
     plan = plan_spectra(recordings)
     force = np.empty((len(plan.chosen), plan.frequency.size), complex)
     for number, (recording, hit) in enumerate(plan.chosen):
-        force[number], _ = transformed(recording, hit, window, plan.block, rows=())
+        force[number] = force_spectrum(recording, hit, window, plan.block)
     return HitForces(plan.frequency, force, plan.labels, plan.points, plan, window)
 
 
@@ -290,40 +290,49 @@ def dead_channels(recording: Recording, hit: Hit) -> tuple[tuple[str, float], ..
     return tuple(found)
 
 
-def transformed(
+def force_spectrum(
+    recording: Recording, hit: Hit, window: HammerWindow, block: int
+) -> ComplexArray:
+    """Return the spectrum of the windowed force [N s], see `windowed_hit`."""
+    stop, weights = _weights(recording, hit, window, block)
+    row = recording.row(Quantity.FORCE)
+    force = recording.samples[row, hit.start : stop]
+    force = (force - quiet_mean(force, hit.trigger - hit.start)) * weights[0]
+    return np.asarray(scipy.fft.rfft(force, block) / recording.sample_rate)
+
+
+def response_spectra(
     recording: Recording,
     hit: Hit,
     window: HammerWindow,
     block: int,
-    *,
     rows: Sequence[int] | None = None,
-) -> tuple[ComplexArray, Iterator[ComplexArray]]:
-    """Window a hit and transform it, one channel at a time.
+) -> Iterator[ComplexArray]:
+    """Yield the spectra of windowed responses, one channel at a time.
 
     Args:
         recording: holds the hit.
         hit: which.
         window: to apply.
         block: number of samples; a shorter hit is padded with zeros.
-        rows: of the responses to transform, None for all.
-
-    Returns:
-        Spectra of the force [N s] and, one after the other, of the responses, shape
-        (n_lines,) each.
+        rows: of the responses, None for all.
     """
-    rate, stop = recording.sample_rate, min(hit.stop, hit.start + block)
-    trigger = hit.trigger - hit.start
-    weights = window_weights(window, stop - hit.start, trigger, rate)
-    force = recording.samples[recording.row(Quantity.FORCE), hit.start : stop]
-    force = (force - quiet_mean(force, trigger)) * weights[0]
+    stop, weights = _weights(recording, hit, window, block)
+    for row in response_rows(recording) if rows is None else rows:
+        one = recording.samples[row, hit.start : stop]
+        one = (one - one.mean()) * weights[1]
+        spectrum = scipy.fft.rfft(one, block, overwrite_x=True)
+        spectrum /= recording.sample_rate
+        yield spectrum
 
-    def responses() -> Iterator[ComplexArray]:
-        for row in response_rows(recording) if rows is None else rows:
-            one = recording.samples[row, hit.start : stop]
-            one = (one - one.mean()) * weights[1]
-            yield np.asarray(scipy.fft.rfft(one, block, overwrite_x=True) / rate)
 
-    return scipy.fft.rfft(force, block) / rate, responses()
+def _weights(
+    recording: Recording, hit: Hit, window: HammerWindow, block: int
+) -> tuple[int, tuple[FloatArray, FloatArray]]:
+    """Return the end of the segment of a hit, and what its window multiplies."""
+    stop = min(hit.stop, hit.start + block)
+    count, trigger = stop - hit.start, hit.trigger - hit.start
+    return stop, window_weights(window, count, trigger, recording.sample_rate)
 
 
 def windowed_hit(

@@ -12,10 +12,11 @@ added.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.arrays import FloatArray, read_only
 from jointbench.acquisition.records.recordings import (
     Hit,
     Quantity,
@@ -166,6 +167,7 @@ def apply_window(
     return force * on_force, response * on_response
 
 
+@lru_cache(maxsize=4)
 def window_weights(
     window: HammerWindow, count: int, trigger: int, sample_rate: float
 ) -> tuple[FloatArray, FloatArray]:
@@ -176,6 +178,9 @@ def window_weights(
         count: samples of the segment.
         trigger: index of the trigger in the segment.
         sample_rate: [Hz].
+
+    Returns:
+        Weights of the force and of the responses, read-only.
     """
     time = (np.arange(count) - trigger) / sample_rate
     both = np.ones(count)
@@ -183,9 +188,10 @@ def window_weights(
         both *= time >= -window.lead
     if window.decay_rate is not None:
         both *= np.exp(-window.decay_rate * time)
-    if window.force_width is None:
-        return both, both
-    return both * _keep_then_taper(time, window.force_width), both
+    force = both
+    if window.force_width is not None:
+        force = both * _keep_then_taper(time, window.force_width)
+    return read_only(force), read_only(both)
 
 
 def quiet_mean(force: FloatArray, trigger: int) -> float:

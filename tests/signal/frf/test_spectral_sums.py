@@ -11,7 +11,7 @@ from jointbench.acquisition.records.recordings import Channel, Quantity, Recordi
 from jointbench.signal.frf.estimators import estimate_pair
 from jointbench.signal.frf.frf import estimate_frf
 from jointbench.signal.frf.linearity import check_linearity
-from jointbench.signal.frf.spectral_sums import PairSums, sum_hits
+from jointbench.signal.frf.spectral_sums import PairSums, force_update, sum_hits
 from jointbench.signal.hits.find_hits import find_hits
 from jointbench.signal.hits.hit_spectra import hit_forces, hit_spectra
 from jointbench.signal.hits.windows import choose_window
@@ -44,9 +44,9 @@ def test_sums_hit_by_hit_are_those_of_all_hits_at_once():
     force = rng.standard_normal(shape) + 1j * rng.standard_normal(shape)
     small = 1e-5 * (rng.standard_normal(shape) + 1j * rng.standard_normal(shape))
     response = (2.0 - 1.0j) * force + small
-    sums = PairSums.empty(50)
+    sums = PairSums.empty(np.zeros(50))
     for one, other in zip(force, response, strict=True):
-        sums.add(one, np.abs(one) ** 2, other)
+        sums.add(force_update(one, sums.force_power), other)
     wanted = estimate_pair(force, response)
     np.testing.assert_allclose(sums.h1, wanted.response, rtol=1e-13)
     left = np.sum(np.abs(response - wanted.response * force) ** 2, axis=0)
@@ -56,8 +56,9 @@ def test_sums_hit_by_hit_are_those_of_all_hits_at_once():
 
 def test_a_line_without_force_keeps_its_response_as_scatter():
     """Nothing is divided by zero; H1 stays zero there."""
-    sums = PairSums.empty(2)
-    sums.add(np.array([0.0j, 1.0]), np.array([0.0, 1.0]), np.array([2.0 + 0j, 3.0]))
+    sums = PairSums.empty(np.zeros(2))
+    hit = force_update(np.array([0.0j, 1.0]), sums.force_power)
+    sums.add(hit, np.array([2.0 + 0j, 3.0]))
     assert sums.h1.tolist() == [0.0, 3.0]
     assert sums.scatter.tolist() == [4.0, 0.0]
 
