@@ -21,12 +21,12 @@ from jointbench.signal.modal.doubtful_neighbours import (
     DoubtfulNeighbours,
     doubtful_neighbours,
 )
-from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
     local_level,
     model_error,
+    residual_around,
 )
 from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lscf import Progress
