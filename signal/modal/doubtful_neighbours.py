@@ -15,11 +15,13 @@ import scipy.special
 import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
+    BoolArray,
     ComplexArray,
     FloatArray,
     IntArray,
     freeze,
 )
+from jointbench.signal.modal.frf_lines import measured_width
 from jointbench.signal.modal.local_fit import Group, WholeFit
 from jointbench.signal.modal.missing_modes import (
     refined_group,
@@ -29,10 +31,17 @@ from jointbench.signal.modal.missing_modes import (
 from jointbench.signal.modal.refined_pole_covariance import RefinedPoles, unresolved
 
 # Probability that noise anywhere in the band hints at a neighbour.
-_CHANCE = 0.01
-_TRIALS = 10
+_CHANCE = 0.1
+_TRIALS = 16
+# Residual power over noise up to which a model with one more mode is admissible: else
+# leakage or a nonlinear structure is left, which no neighbour explains.
+_ADMISSIBLE = 4.0
+# Half-power half-widths on each side of a mode that a group must hold.
+_PEAK = 1.0
 # Weight of a neighbour from which it is stated.
 _STATED = 0.5
+# Places named in the remark.
+_LISTED = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,12 +62,11 @@ class DoubtfulNeighbours:
         freeze(self, "frequency", "shift")
 
 
-def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeighbours:
+def doubtful_neighbours(whole: WholeFit) -> DoubtfulNeighbours:
     """Try one more mode wherever the residual hints at one.
 
     Args:
         whole: final fit of all lines.
-        covariance: of (Re p, Im p) of each mode in it, shape (n_modes, 2, 2).
 
     Returns:
         Places and changes; of several neighbours of a mode the largest change counts.
@@ -78,13 +86,38 @@ def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeig
         pole = fitted.pole[-1:]
         if pole[0].real >= 0.0 or bool(unresolved(whole.lines, pole)[0]):
             continue
+        if _left(group, fitted) > _ADMISSIBLE:
+            continue
         weight = _weight(group, without, fitted)
-        _widen(
-            shift, weight * _change(whole.pole, fitted, group, covariance), group.modes
-        )
-        if weight > _STATED:
-            places.append(float(pole[0].imag) / (2.0 * np.pi))
-    return DoubtfulNeighbours(np.sort(np.array(places, float)), shift)
+        inside = _inside(group, without.pole)
+        change = weight * _change(without, fitted)
+        _widen(shift, change[inside], group.modes[inside])
+        near = np.abs(np.array(places, float) - pole[0].imag) < abs(pole[0].real)
+        if weight > _STATED and not near.any():
+            places.append(float(pole[0].imag))
+    return DoubtfulNeighbours(np.sort(places) / (2.0 * np.pi), shift)
+
+
+def neighbour_words(doubts: DoubtfulNeighbours) -> tuple[str, ...]:
+    """State where modes may be missing, and what would show them.
+
+    Args:
+        doubts: of the final fit.
+
+    Returns:
+        One sentence, or none.
+    """
+    count = doubts.frequency.size
+    if count == 0:
+        return ()
+    listed = ", ".join(f"{f:.6g}" for f in doubts.frequency[:_LISTED])
+    more = f" and {count - _LISTED} more" if count > _LISTED else ""
+    return (
+        f"{'a mode' if count == 1 else 'modes'} may be missing near {listed} Hz{more}: "
+        "the residual is that of a resonance there, too weak or too close to another "
+        "to be reported; the intervals of the modes around include it; another "
+        "accelerometer or hammer point, or more hits, would show it",
+    )
 
 
 def _weight(group: Group, without: RefinedPoles, fitted: RefinedPoles) -> float:
@@ -92,22 +125,32 @@ def _weight(group: Group, without: RefinedPoles, fitted: RefinedPoles) -> float:
 
     Chi-squared counts in units of what that model leaves: noise, or what neither has.
     """
-    before, after = (
-        float(np.sum(np.abs(f.residual) ** 2 / group.noise)) for f in (without, fitted)
-    )
     n_frf, n_lines = group.noise.shape
-    gain = 2.0 * (before - after) / max(1.0, after / (n_frf * n_lines))
-    parameters = 2 * (n_frf + 1)
-    return float(scipy.special.expit(0.5 * gain - parameters))
+    before, after = _left(group, without), _left(group, fitted)
+    gain = 2.0 * n_frf * n_lines * (before - after) / max(1.0, after)
+    return float(scipy.special.expit(0.5 * gain - 2 * (n_frf + 1)))
 
 
-def _change(
-    pole: ComplexArray, fitted: RefinedPoles, group: Group, covariance: FloatArray
-) -> FloatArray:
+def _left(group: Group, fitted: RefinedPoles) -> float:
+    """Return the mean residual power over the noise [-]."""
+    return float(np.mean(np.abs(fitted.residual) ** 2 / group.noise))
+
+
+def _inside(group: Group, pole: ComplexArray) -> BoolArray:
+    """Return which modes have their peaks within the lines of the group.
+
+    Of the others only a flank was fitted again.
+    """
+    low, high = group.lines.laplace.imag[[0, -1]]
+    width = _PEAK * measured_width(group.lines, pole)
+    return np.asarray((pole.imag - width > low) & (pole.imag + width < high))
+
+
+def _change(without: RefinedPoles, fitted: RefinedPoles) -> FloatArray:
     """Return squared shift and growth of the variance, shape (n_members, 2, 2)."""
-    moved = (fitted.pole[:-1] - pole[group.modes]).view(np.float64).reshape(-1, 2)
+    moved = (fitted.pole[:-1] - without.pole).view(np.float64).reshape(-1, 2)
     own = fitted.covariance[:-1] * fitted.inflation[:-1, None, None]
-    grown = own - covariance[group.modes]
+    grown = own - without.covariance * without.inflation[:, None, None]
     both = np.arange(2)
     larger = np.zeros_like(grown)
     larger[:, both, both] = np.maximum(grown[:, both, both], 0.0)

@@ -4,12 +4,19 @@
 Where hits were averaged, their scatter gives the noise. Where only the FRF is given,
 its roughness does: from line to line a structure is smooth and noise is not. Neither
 includes the model error; that is estimated from the residual of a fit.
+
+The covariance of a least-squares fit holds if residuals match the variances and are
+independent from line to line. Their local ratio around a mode corrects for the first,
+their correlation for the second. Two practices make intervals too wide and are avoided:
+counting only ratios above 1, where the variances themselves are estimates that err both
+ways, and treating every chance correlation of a few lines as real.
 """
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 
 # |x|^2 of complex normal noise has this median, as a share of its mean.
 _MEDIAN_OF_POWER = float(np.log(2.0))
@@ -20,6 +27,12 @@ _LEVEL_LINES = 11
 _LOCAL_LINES = 41
 # Least sd of an FRF as a share of its own level: converters, cables.
 _BEST = 1e-7
+# Around a mode: this many half-power half-widths, and this many lines, each side.
+_REACH_WIDTHS = 4.0
+_REACH_LINES = 10.0
+# A correlation counts above this many of its own standard deviations.
+_SIGNIFICANT = 2.0
+_HIGHEST_SHARE = 0.99
 
 
 def line_noise(
@@ -108,3 +121,54 @@ def model_error(
     excess = np.abs(residual) ** 2 / _MEDIAN_OF_POWER - noise
     share = float(np.median(excess / local_level(response)))
     return float(np.sqrt(max(0.0, share)))
+
+
+def residual_around(
+    lines: FrfLines, pole: ComplexArray, residual: ComplexArray, variance: FloatArray
+) -> FloatArray:
+    """Compare the residual around each pole with the given variances.
+
+    Args:
+        lines: lines of the fit.
+        pole: [rad/s], shape (n_modes,).
+        residual: of the fit, shape (n_frf, n_lines).
+        variance: E|error|^2 of each line, same shape.
+
+    Returns:
+        Factor on the covariance of each pole [-], shape (n_modes,).
+    """
+    standard = residual / np.sqrt(variance)
+    omega = lines.laplace.imag
+    pitch = float(np.median(np.diff(omega)))
+    factors = []
+    for p, width in zip(pole, measured_width(lines, pole), strict=True):
+        reach = max(_REACH_WIDTHS * width, _REACH_LINES * pitch)
+        around = standard[:, np.abs(omega - p.imag) < reach]
+        inside = int(np.count_nonzero(np.abs(pole.imag - p.imag) < reach))
+        factors.append(_power(around, inside) * _correlation_length(around))
+    return np.array(factors)
+
+
+def _power(standard: ComplexArray, modes: int) -> float:
+    """Return mean |x|^2, corrected for the fitted parameters.
+
+    One residue per FRF, one pole for all.
+    """
+    n_frf, n_lines = standard.shape
+    left = n_frf * (n_lines - modes) - modes
+    if left <= 0:
+        return 1.0
+    return float(np.sum(np.abs(standard) ** 2) / left)
+
+
+def _correlation_length(standard: ComplexArray) -> float:
+    """Return how many neighbouring lines carry one independent error, 1 or more."""
+    power = float(np.sum(np.abs(standard) ** 2))
+    if standard.shape[1] < 3 or power == 0.0:
+        return 1.0
+    shared = np.sum(standard[:, 1:] * standard[:, :-1].conj()).real / power
+    share = min(float(shared), _HIGHEST_SHARE)
+    # The real part of a correlation of n complex numbers has variance 1 / 2 n.
+    if share < _SIGNIFICANT / np.sqrt(2.0 * standard.size):
+        return 1.0
+    return (1.0 + share) / (1.0 - share)

@@ -8,6 +8,8 @@ out, a pole is tried together with the modes around it, and kept where the FRF n
 by the same rule as any candidate, and where it explains most of what the fit left.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.fft
 
@@ -24,6 +26,8 @@ from jointbench.signal.modal.refined_pole_covariance import (
     unresolved,
 )
 
+Seen = Callable[[complex], bool]
+"""Whether the FRF itself has a pole there [rad/s]."""
 # Decay rates of the resonances looked for, over the median of the modes found.
 _DECAYS = (0.5, 1.0, 2.0)
 # Lines on each side of a trial: half-power half-widths, and lines at least.
@@ -44,12 +48,12 @@ _APART = 1.0
 _NARROWEST = 0.3
 
 
-def find_missing(whole: WholeFit, barred: FloatArray) -> ComplexArray:
+def find_missing(whole: WholeFit, seen: Seen | None) -> ComplexArray:
     """Return the poles of modes that the residual needs.
 
     Args:
         whole: fit of all lines with the modes found so far.
-        barred: frequencies within whose peaks no mode is looked for [rad/s].
+        seen: whether a pole is one of the FRF; None takes every one as seen.
 
     Returns:
         Refined together with their neighbours [rad/s], shape (n_missing,).
@@ -58,7 +62,7 @@ def find_missing(whole: WholeFit, barred: FloatArray) -> ComplexArray:
     limit = least_significance(whole.lines)
     for start in trial_starts(whole, limit, apart=_APART, most=_TRIALS):
         pole = _tried(whole, start)
-        if pole is None or np.any(np.abs(pole.imag - barred) < 2.0 * abs(pole.real)):
+        if pole is None or (seen is not None and not seen(pole)):
             continue
         if _away(whole.lines, pole, np.array(found, complex)):
             found.append(pole)

@@ -21,17 +21,17 @@ from jointbench.signal.modal.doubtful_neighbours import (
     DoubtfulNeighbours,
     doubtful_neighbours,
 )
-from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
     local_level,
     model_error,
+    residual_around,
 )
 from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lscf import Progress
 from jointbench.signal.modal.lsfd import LinearFit, fit_residues, needed, significance
-from jointbench.signal.modal.missing_modes import find_missing
+from jointbench.signal.modal.missing_modes import Seen, find_missing
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
@@ -86,7 +86,7 @@ def fit_modes(
     scatter: FloatArray | None,
     *,
     held: BoolArray | None = None,
-    dropped: FloatArray | None = None,
+    seen: Seen | None = None,
     n_inputs: int = 1,
     refine: bool = True,
     progress: Progress | None = None,
@@ -102,7 +102,8 @@ def fit_modes(
         candidates: poles [rad/s], shape (n_candidates,).
         scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
         held: True for candidates that are always kept, shape (n_candidates,), or None.
-        dropped: where the residual may show no mode: dropped by hand [rad/s].
+        seen: whether a pole that the residual shows is one of the FRF; None adds no
+            modes, as where some were dropped by hand and their residual is wanted.
         n_inputs: references; inputs vary fastest over the rows of the lines.
         refine: False keeps the poles of LSCF.
         progress: called with the current step and its share; None for no reports.
@@ -128,13 +129,12 @@ def fit_modes(
             noise = line_noise(lines.response, scatter, poles.residual)
     error = model_error(poles.residual, noise, lines.response)
     variance = noise + error**2 * level
-    barred = np.empty(0) if dropped is None else dropped
-    start = _Start(candidates, held, noise, variance, error, barred, steps)
+    start = _Start(candidates, held, noise, variance, error, steps)
     kept = needed(lines, poles.pole, held[chosen], noise, variance, poles.beyond)
     report("refining modes", 0.7)
     done = _settled(lines, start, chosen, kept, poles)
-    for _ in range(_SEARCHES if refine else 0):
-        more = _completed(lines, start, done, scatter)
+    for _ in range(_SEARCHES if refine and seen else 0):
+        more = _completed(lines, start, done, scatter, seen)
         if more is None:
             break
         start, done = more
@@ -149,7 +149,7 @@ def fit_modes(
         start.error,
         residual_around(lines, done.poles.pole, done.poles.residual, start.noise),
         shared_covariance(lines, done.poles, done.fit, start.variance, n_inputs),
-        _doubts(lines, start, done, refine=refine),
+        _doubts(lines, start, done, tried=refine and seen is not None),
     )
 
 
@@ -163,7 +163,6 @@ class _Start:
         noise: noise variance of the lines.
         variance: noise and model error.
         error: the model error, as a share of the local level [-].
-        barred: frequencies at which no mode may be added [rad/s].
         steps: most evaluations of a refinement.
     """
 
@@ -172,7 +171,6 @@ class _Start:
     noise: FloatArray
     variance: FloatArray
     error: float
-    barred: FloatArray
     steps: int
 
 
@@ -218,7 +216,11 @@ def _settled(
 
 
 def _completed(
-    lines: FrfLines, start: _Start, done: _Settled, scatter: FloatArray | None
+    lines: FrfLines,
+    start: _Start,
+    done: _Settled,
+    scatter: FloatArray | None,
+    seen: Seen | None,
 ) -> tuple[_Start, _Settled] | None:
     """Add what the residual shows; None where it shows nothing.
 
@@ -226,7 +228,7 @@ def _completed(
     """
     poles = done.poles
     whole = _final(lines, start, done)
-    beyond, added = find_beyond(whole), find_missing(whole, start.barred)
+    beyond, added = find_beyond(whole), find_missing(whole, seen)
     if added.size == 0 and beyond.size == poles.beyond.size:
         return None
     everything = np.append(start.candidates, added)
@@ -256,14 +258,12 @@ def _final(lines: FrfLines, start: _Start, done: _Settled) -> WholeFit:
 
 
 def _doubts(
-    lines: FrfLines, start: _Start, done: _Settled, *, refine: bool
+    lines: FrfLines, start: _Start, done: _Settled, *, tried: bool
 ) -> DoubtfulNeighbours:
-    poles = done.poles
-    if not refine:
-        nothing = np.zeros((poles.pole.size, 2, 2))
+    if not tried:
+        nothing = np.zeros((done.poles.pole.size, 2, 2))
         return DoubtfulNeighbours(np.empty(0), nothing)
-    covariance = poles.covariance * poles.inflation[:, None, None]
-    return doubtful_neighbours(_final(lines, start, done), covariance)
+    return doubtful_neighbours(_final(lines, start, done))
 
 
 def _again(

@@ -2,6 +2,7 @@
 """Identify the modes of a structure from its FRF."""
 
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.line_weights import weights_of
 from jointbench.signal.kalman.process_models import StageGain
 from jointbench.signal.kalman.stage_provenance import stage_gain_of
+from jointbench.signal.modal.doubtful_neighbours import neighbour_words
 from jointbench.signal.modal.frf_lines import FrfLines, lines_of
 from jointbench.signal.modal.lscf import Progress, fit_poles
 from jointbench.signal.modal.manual_selection import Choices, overrule
@@ -30,6 +32,7 @@ from jointbench.signal.modal.stabilisation import (
     StabilityLimits,
     candidates,
     from_residual,
+    recurs,
     stabilise,
 )
 
@@ -105,12 +108,16 @@ def identify_modes(
     The steps are: poles of all orders (LSCF), stable poles (stabilisation), significant
         poles (selection), refinement by nonlinear least squares, residues (LSFD).
 
+    Where the residual shows a resonance, the mode is added; where it hints at one, the
+    intervals of its neighbours include it and a remark names the frequency.
+
     Standard uncertainties are linearised at the optimum from the line variances, times
     the factor by which the residual around each mode exceeds them (on real hits leakage
     and small local modes dominate over noise, and they are correlated from line to
-    line). A jackknife over hits is not used: the hits of one session share those
-    errors, so it would not include them. The variance of a pole that could not be
-    refined includes the scatter over orders.
+    line), plus a part from errors that all FRFs of a reference share. A jackknife over
+    hits is not used: the hits of one session share those errors, so it would not
+    include them. The variance of a pole that could not be refined includes the scatter
+    over orders.
 
     Args:
         frf: any kind, any number of outputs and inputs.
@@ -138,7 +145,7 @@ def identify_modes(
         start,
         _scatter(frf, keep),
         held=np.array([c.by_hand for c in found], bool),
-        dropped=2.0 * np.pi * np.array(settings.choices.drop, float),
+        seen=None if settings.choices.drop else partial(recurs, table),
         n_inputs=len(frf.inputs),
         refine=settings.refine,
         progress=progress,
@@ -162,7 +169,7 @@ def identify_modes(
         settings=settings,
         band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
         stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
-        remarks=remarks,
+        remarks=(*remarks, *neighbour_words(fitted.doubts)),
     )
 
 

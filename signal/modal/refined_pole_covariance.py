@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
-from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
+from jointbench.signal.modal.line_noise import residual_around
 from jointbench.signal.modal.lsfd import modal_basis, modal_size
 from jointbench.signal.modal.normal_equations import (
     correlations,

@@ -32,6 +32,9 @@ _USUAL_SHARE, _USUAL_SHAPE, _USUAL_ORDERS = 1.0 / 3.0, 0.03, 2.0
 # Orders a track may miss before it ends.
 _MISSED = 3
 _UNMATCHED = 1e6
+# A pole from a residual recurs where this share of the orders has one within its width
+# and this factor of its damping.
+_RECURS, _ALIKE = 0.1, 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,6 +237,22 @@ def from_residual(table: Stabilisation, pole: complex) -> PoleCandidate:
     near = np.abs(table.pole.imag - pole.imag) < abs(pole.real)
     orders = np.unique(table.order[near & table.stable])
     return PoleCandidate(pole, (0.0, 0.0), int(orders.size), -1)
+
+
+def recurs(table: Stabilisation, pole: complex) -> bool:
+    """Return whether a pole of its frequency and damping is found at many orders.
+
+    What the residual of a fit suggests may be leakage, or a resonance that is not that
+    of a linear mode; poles of the FRF itself do not place a mode there.
+
+    Args:
+        table: from `stabilise`.
+        pole: [rad/s].
+    """
+    near = np.abs(table.pole.imag - pole.imag) < abs(pole.real)
+    alike = np.abs(np.log(table.pole.real / pole.real)) < np.log(_ALIKE)
+    seen = np.unique(table.order[near & alike]).size
+    return bool(seen >= _RECURS * table.orders.size)
 
 
 def mac(one: ComplexArray, other: ComplexArray) -> float:

@@ -103,6 +103,7 @@ def _frf_notes(chain: ModalChain) -> ModalNotes:
         "FRFs from files have no hits at different levels",
         limit_words(chain),
         (words,) if words else (),
+        chain.result.remarks,
     )
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from jointbench.signal.frf.frf import Frf, FrfKind
-from jointbench.signal.modal.fit_residuals import residual_around
 from jointbench.signal.modal.frf_lines import lines_of
+from jointbench.signal.modal.line_noise import residual_around
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
 LINES = np.arange(0.0, 1200.0)
