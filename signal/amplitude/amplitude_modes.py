@@ -168,6 +168,7 @@ def _judged(
         frequency_change=change.frequency if change else 0.0,
         frequency_change_sd=change.frequency_sd if change else 0.0,
         damping_change=change.damping if change else 0.0,
+        damping_change_sd=change.damping_sd if change else 0.0,
         family=family_by_law(family, laws),
         ratio=ratio,
         laws=laws,
