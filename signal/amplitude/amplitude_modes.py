@@ -37,6 +37,7 @@ from jointbench.signal.amplitude.dependence_test import (
     score_chance,
 )
 from jointbench.signal.amplitude.group_fits import GroupFit, fit_groups
+from jointbench.signal.amplitude.harmonics_of_joint import without_harmonics
 from jointbench.signal.amplitude.level_comparison import compare_levels
 from jointbench.signal.amplitude.mode_groups import ModeGroup, mode_groups
 from jointbench.signal.amplitude.ring_downs import RingDowns, ring_downs
@@ -89,7 +90,8 @@ def amplitude_modes(
             found += [_undecided(model, i, words) for i in group.members]
         else:
             found += _resolved(decays, model, group, fitted, levels)
-    return tuple(sorted(found, key=lambda mode: mode.replaces[0]))
+    ordered = sorted(found, key=lambda mode: mode.replaces[0])
+    return without_harmonics(ordered)
 
 
 def _resolved(
