@@ -107,7 +107,16 @@ def _resolved(
         others = [i for i in group.members if i not in fitted.members]
         own = (member, *others) if member == group.members[0] else (member,)
         modes.append(_judged(decays, model, fitted, number, own, levels[member]))
+    if any(_merged_blindly(mode) for mode in modes):
+        words = "the decays do not stand out of the noise"
+        return [_undecided(model, i, words) for i in group.members]
     return modes
+
+
+def _merged_blindly(mode: AmplitudeMode) -> bool:
+    """Return whether poles were merged although no part of a curve is known."""
+    white = mode.residual_ratio <= LARGEST_RESIDUAL_RATIO
+    return len(mode.replaces) > 1 and mode.curve is None and white
 
 
 def _levels_at(
