@@ -132,6 +132,7 @@ class AmplitudeMode:
         frequency_change: from soft to hard, over the frequency [-].
         frequency_change_sd: its standard uncertainty [-].
         damping_change: of the damping ratio from soft to hard [-].
+        damping_change_sd: its standard uncertainty [-].
         family: of laws, by the ratio of the two changes; empty where not decided.
         ratio: d zeta / (-df / f) [-], nan where df is not resolved.
         laws: fitted to the curve, best first.
@@ -148,6 +149,7 @@ class AmplitudeMode:
     frequency_change: float = 0.0
     frequency_change_sd: float = 0.0
     damping_change: float = 0.0
+    damping_change_sd: float = 0.0
     family: str = ""
     ratio: float = float("nan")
     laws: tuple[LawFit, ...] = ()

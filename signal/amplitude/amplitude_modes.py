@@ -37,6 +37,7 @@ from jointbench.signal.amplitude.dependence_test import (
     score_chance,
 )
 from jointbench.signal.amplitude.group_fits import GroupFit, fit_groups
+from jointbench.signal.amplitude.harmonics_of_joint import without_harmonics
 from jointbench.signal.amplitude.level_comparison import (
     compare_levels,
     spectra_near_modes,
@@ -86,7 +87,7 @@ def amplitude_modes(
             asked.append(group)
     if asked:  # few sessions need their decays
         found += _fitted_modes(ring_downs(judged), model, asked, levels, progress)
-    return tuple(sorted(found, key=lambda mode: mode.replaces[0]))
+    return without_harmonics(sorted(found, key=lambda mode: mode.replaces[0]))
 
 
 def _fitted_modes(
@@ -120,7 +121,16 @@ def _resolved(
         others = [i for i in group.members if i not in fitted.members]
         own = (member, *others) if member == group.members[0] else (member,)
         modes.append(_judged(decays, model, fitted, number, own, levels[member]))
+    if any(_merged_blindly(mode) for mode in modes):
+        words = "the decays do not stand out of the noise"
+        return [_undecided(model, i, words) for i in group.members]
     return modes
+
+
+def _merged_blindly(mode: AmplitudeMode) -> bool:
+    """Return whether poles were merged although no part of a curve is known."""
+    white = mode.residual_ratio <= LARGEST_RESIDUAL_RATIO
+    return len(mode.replaces) > 1 and mode.curve is None and white
 
 
 def _levels_at(
@@ -183,6 +193,7 @@ def _judged(
         frequency_change=change.frequency if change else 0.0,
         frequency_change_sd=change.frequency_sd if change else 0.0,
         damping_change=change.damping if change else 0.0,
+        damping_change_sd=change.damping_sd if change else 0.0,
         family=family_by_law(family, laws),
         ratio=ratio,
         laws=laws,

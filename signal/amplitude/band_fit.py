@@ -31,6 +31,8 @@ _STIFF = 0.5
 # First curves: the last step gains this share; above this residual ratio a second
 # start is tried.
 _NEAR, _POOR = 1e-3, 3.0
+# Linear modes that curves are compared with: the last step gains this share.
+_SETTLED = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +149,7 @@ def linear_residual(decays: RingDowns, band: Band) -> float:
         band: its modes and those beside it.
     """
     lines, poles = _prepared(decays, band)
-    return fit_linear(lines, poles, decays.derivatives).chi2
+    return fit_linear(lines, poles, decays.derivatives, enough=_SETTLED).chi2
 
 
 def curved_residual(fit: BandFit, decays: RingDowns, band: Band) -> float:

@@ -70,6 +70,7 @@ def _mode_json(mode: AmplitudeMode) -> dict[str, object]:
         "frequency_change": mode.frequency_change,
         "frequency_change_sd": mode.frequency_change_sd,
         "damping_change": mode.damping_change,
+        "damping_change_sd": mode.damping_change_sd,
         "chance": _number(mode.significance),
         "residual_ratio": _number(mode.residual_ratio),
         "linear_residual_ratio": _number(mode.linear_residual_ratio),

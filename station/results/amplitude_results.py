@@ -33,6 +33,7 @@ _NUMBERS = (
     "frequency_change",
     "frequency_change_sd",
     "damping_change",
+    "damping_change_sd",
     "ratio",
 )
 _LAW_NUMBERS = ("exponent", "exponent_sd", "chi2", "criterion")

@@ -5,13 +5,15 @@ One row a number: which part of the result, of what, which quantity, its value w
 standard deviation, or a word in place of a number.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.records.recordings import Verdict
+from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode, Dependence
 from jointbench.station.pipeline.process_session import PreloadModes, ProcessedSession
 from jointbench.station.pipeline.surface_stages import SurfaceChain
 
@@ -96,6 +98,38 @@ def _modes(modes: PreloadModes, preload: float) -> Iterator[ResultQuantity]:
             numbers = float(values[index]), float(sds[index])
             item = str(index + 1)
             yield ResultQuantity("modes", item, name, unit, *numbers, preload=preload)
+    yield from amplitude_quantities(
+        modes.chain.amplitude, model.natural_frequency, preload
+    )
+
+
+def amplitude_quantities(
+    found: Sequence[AmplitudeMode], frequency: FloatArray, preload: float = NAN
+) -> Iterator[ResultQuantity]:
+    """Yield what amplitude does to each mode, where it does anything.
+
+    Changes are those from soft to hard; the exponent is that of the best law, where it
+    has one of its own.
+
+    Args:
+        found: modes over amplitude.
+        frequency: natural frequencies of the modes of the result [Hz], whose numbers
+            are the items.
+        preload: [N].
+    """
+    for mode in found:
+        if mode.dependence is not Dependence.DEPENDS:
+            continue
+        item = str(int(np.argmin(np.abs(frequency - mode.soft.frequency))) + 1)
+        rows = [
+            ("frequency_change", mode.frequency_change, mode.frequency_change_sd),
+            ("damping_change", mode.damping_change, mode.damping_change_sd),
+        ]
+        if mode.laws and mode.laws[0].exponent_sd > 0:
+            law = mode.laws[0]
+            rows.append(("amplitude_exponent", law.exponent, law.exponent_sd))
+        for name, value, sd in rows:
+            yield ResultQuantity("modes", item, name, "1", value, sd, preload=preload)
 
 
 def _surface(chain: SurfaceChain) -> Iterator[ResultQuantity]:

@@ -19,6 +19,7 @@ from jointbench.station.results.amplitude_results import (
     read_amplitude,
     write_amplitude,
 )
+from jointbench.station.results.quantities import amplitude_quantities
 
 
 def one_mode() -> AmplitudeMode:
@@ -39,6 +40,7 @@ def one_mode() -> AmplitudeMode:
         frequency_change=-0.01,
         frequency_change_sd=1e-5,
         damping_change=0.002,
+        damping_change_sd=1e-4,
         family="friction or micro-slip",
         ratio=0.3,
         laws=(LawFit("micro-slip power law", 0.6, 0.01, 3.0, 9.0),) * 2,
@@ -67,3 +69,15 @@ def test_modes_come_back_as_they_were_written(tmp_path: Path) -> None:
         write_amplitude(file.create_group("amplitude"), found)
         again = read_amplitude(file["amplitude"])
     assert amplitude_json(again) == amplitude_json(found)
+
+
+def test_trends_get_the_changes_of_modes_that_depend_on_amplitude() -> None:
+    """Changes and exponent with their sd, under the number of the mode at 80 Hz."""
+    frequency = np.array([20.0, 80.01, 200.0])
+    rows = list(amplitude_quantities((one_mode(), plain_mode()), frequency, 5e3))
+    assert {row.item for row in rows} == {"2"}
+    assert [(row.name, row.value, row.sd) for row in rows] == [
+        ("frequency_change", -0.01, 1e-5),
+        ("damping_change", 0.002, 1e-4),
+        ("amplitude_exponent", 0.6, 0.01),
+    ]
