@@ -4,16 +4,15 @@ import json
 import logging
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
+from package_commands import run
 from plugin_distributions import install, install_example
 
 from jointbench.acquisition.records.surfaces import Profile
 from jointbench.acquisition.session_file.store import read_session
-from jointbench.station.main import app, exit_code
 
 EXAMPLE_PLAN = Path(__file__).parents[3] / "examples" / "plates.toml"
 FORCE = [0.0, 80.0, 20.0, 0.0, 0.0, 0.0]
@@ -22,24 +21,6 @@ HEIGHTS = np.round(
     np.cumsum(np.random.default_rng(8).normal(size=600)) / 10, 3
 )  # [um], a walk with D near 1.5
 PITCH = 0.5  # [um]
-
-
-@pytest.fixture
-def example(
-    tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Path]:
-    """The example package, installed for one test."""
-    folder = install_example(tmp_path_factory.mktemp("site"))
-    monkeypatch.syspath_prepend(folder)
-    yield folder
-    for module in [m for m in sys.modules if m.startswith("jointbench_example")]:
-        monkeypatch.delitem(sys.modules, module)
-
-
-def run(monkeypatch: pytest.MonkeyPatch, *words: object) -> int:
-    """Run a command in this process; return its exit code."""
-    monkeypatch.setattr(sys, "argv", ["jointbench", *map(str, words)])
-    return exit_code(app, debug=False)
 
 
 def started(folder: Path, *words: object) -> "subprocess.CompletedProcess[str]":
