@@ -41,6 +41,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
+from jointbench.analysis.gap.residuals.scatter_record import FORCE_GAIN
 from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.gap.search.descent import minimise
 from jointbench.analysis.gap.search.screening import screen
@@ -83,18 +84,25 @@ def fitted(campaign: Campaign) -> tuple[LumpedBench, Fit]:
     return bench, fit
 
 
+def sizes(bench: LumpedBench) -> tuple[float, float]:
+    """Return the scatter of strength and of the joint [-]."""
+    scatter = bench.noise.scatter
+    return scatter.size_of(FORCE_GAIN), scatter.joint_size
+
+
 def drawn_campaign(bench: LumpedBench, fit: Fit, rng: np.random.Generator) -> Campaign:
     """Draw a campaign from a fitted base."""
     campaign, noise = bench.campaign, bench.noise
     records = campaign.hit.size
-    scatter = (*noise.scatter, 0.0, 0.0)
-    settling = scatter[1] * rng.standard_normal(records)
+    scatter = noise.scatter
+    settling = scatter.joint_size * rng.standard_normal(records)
     conditions = replace(bench.excitation.conditions, settling=settling)
     theta = bench.theta(fit.base)
     response = respond(
         campaign.model, theta, replace(bench.excitation, conditions=conditions)
     )
-    response *= 1.0 + scatter[0] * rng.standard_normal((records, 1, 1))
+    gain = scatter.size_of(FORCE_GAIN)
+    response *= 1.0 + gain * rng.standard_normal((records, 1, 1))
     response += noise.sigma[:, :, None] * rng.standard_normal(response.shape)
     force = np.zeros_like(campaign.force)
     first, last = bench.time_gate
@@ -172,7 +180,7 @@ def about_parent(bench: LumpedBench, fit: Fit, seed: int) -> dict[str, Any]:
         "draw": -1,
         "linearised": np.quantile(drops, QUANTILES).tolist(),
         "score_variance": float(score_variance(bench, fit, tested).max()),
-        "found_scatter": bench.noise.scatter,
+        "found_scatter": sizes(bench),
         "noise_sd": noise_sd(bench),
         "apart": float(verified.over_peak.max()),
         "chi2_apart": verified.chi2,
@@ -191,7 +199,7 @@ def run_parent(path: Path, key: tuple[str, float, int], draws: int) -> None:
         began = time.process_time()
         drawn = drawn_campaign(bench, fit, np.random.default_rng([seed, 2, k]))
         own, own_fit = fitted(drawn)
-        line = head | {"draw": k, "found_scatter": own.noise.scatter}
+        line = head | {"draw": k, "found_scatter": sizes(own)}
         line |= judge(own, own_fit) | {"seconds": time.process_time() - began}
         if scatter == 0.0 and k % KNOWN_EVERY == 0:
             line["known"] = with_known_noise(bench, fit, drawn)

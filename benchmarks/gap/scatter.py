@@ -4,7 +4,7 @@
 Usage:
   python benchmarks/gap/scatter.py nulls RUNS.jsonl [--seed 140000] [--rounds 13]
   python benchmarks/gap/scatter.py singles RUNS.jsonl [--seed 141000] [--count 200]
-  python benchmarks/gap/scatter.py page RUNS.jsonl
+  python benchmarks/gap/scatter.py page RUNS.jsonl --engine COMMIT
 
 `nulls`: nothing is missing; each round judges one campaign of every cell (a way of
 scatter at one size). `singles`: one effect with an expected margin of 50 or more over
@@ -175,7 +175,7 @@ def read_runs(path: Path) -> list[Run]:
     return [json.loads(line) for line in path.read_text().splitlines()]
 
 
-def page(runs: Sequence[Run]) -> str:
+def page(runs: Sequence[Run], engine: str) -> str:
     """Return docs/gap-scatter.md."""
     nulls = [r for r in runs if r["kind"] == "null"]
     singles = [r for r in runs if r["kind"] == "single"]
@@ -187,6 +187,7 @@ def page(runs: Sequence[Run]) -> str:
         "Made by `benchmarks/gap/scatter.py`. The hits scatter in ways and sizes that "
         "the engine does not share (`benchmarks/gap/scattered_campaigns.py`); counts "
         "with 95 % Wilson intervals in %.",
+        f"Engine: {engine}.",
         "",
         "## Nothing missing",
         "",
@@ -275,11 +276,12 @@ def main() -> None:
     parser.add_argument("runs", type=Path)
     parser.add_argument("--seed", type=int, default=140000)
     parser.add_argument("--rounds", type=int, default=13)
+    parser.add_argument("--engine", default="not stated", help="commit of the runs")
     parser.add_argument("--count", type=int, default=200)
     arguments = parser.parse_args()
     runs = read_runs(arguments.runs)
     if arguments.what == "page":
-        sys.stdout.write(page(runs))
+        sys.stdout.write(page(runs, arguments.engine))
         return
     done = {key_of(run) for run in runs}
     nulls = arguments.what == "nulls"

@@ -179,7 +179,7 @@ class Policy:
         "chance of the deviation of one hit below which the hit stands out and does "
         "not count for the scatter of the others",
         "closed form; 100 hits and directions: 0.1 % a campaign",
-        "",
+        "-30 %: 0 of 7; +30 %: 0 of 7",
     )
     trend_chance: float = decision(
         3e-4,

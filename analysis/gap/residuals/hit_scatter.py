@@ -255,8 +255,7 @@ def _likeliest(
     best, least = None, 1.0
     for at in np.argsort(-gain)[: RESIDUALS.systematic_tried].tolist():
         chosen = candidates[at]
-        # At most `hits` where the sizes have absorbed the whole of it.
-        if gain[at] < RESIDUALS.systematic_share * hits:
+        if gain[at] < RESIDUALS.systematic_share * _least_gain(hits, policy):
             break
         if chosen.hit and not _stands_out(found, chosen.hit, seen):
             continue
@@ -270,6 +269,16 @@ def _likeliest(
             own = likeliest_sizes(tried, own)
             best, least = (chosen, _Estimate(tried, own, bad)), chance / limit
     return best
+
+
+def _least_gain(count: int, policy: Policy) -> float:
+    """Return the gain by first order of a trend whose chance is that of the policy.
+
+    The sizes have absorbed the trend: it gains at most one unit a hit.
+    """
+    free = max(count - 2, 1)
+    squared = float(scipy.stats.f.isf(policy.trend_chance, 1, free))
+    return count * squared / (squared + free)
 
 
 def _chance(drop: float, count: int) -> float:

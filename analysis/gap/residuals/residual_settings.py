@@ -82,7 +82,6 @@ class ResidualSettings:
         25,
         "steps",
         "most Newton steps to the likeliest sizes",
-        "6 to 12 are usual",
     )
     scatter_damping: float = numerical(
         0.01,
@@ -120,26 +119,22 @@ class ResidualSettings:
         (0.5, 0.8, 0.93),
         "-",
         "correlations between successive hits that are tried",
-        "the likelihood is flat between them for 8 to 24 hits",
     )
     correlation_reach: float = numerical(
         12.0,
         "-2 log likelihood",
         "loss at the sizes of hits without correlation, above which correlated hits "
         "are not tried",
-        "new sizes gain less (hits drawn with a memory of 0.8)",
     )
     correlation_gain: float = numerical(
         2.0,
         "-2 log likelihood",
         "gain below which hits are not correlated",
-        "scatter correlated by 0.8 (docs/gap-scatter.md)",
     )
     most_correlated: int = numerical(
         64,
         "hits",
         "number of hits above which no correlation between them is estimated",
-        "the matrices of all hits together: a second at 64",
     )
     most_systematic: int = numerical(
         6,
@@ -153,11 +148,10 @@ class ResidualSettings:
         "trends or hits, best by first order, for which sizes are estimated again",
     )
     systematic_share: float = numerical(
-        0.45,
-        "of the hits",
-        "gain by first order, over the number of hits, below which no trend or hit is "
-        "tried",
-        "closed form: a chance of 3e-4 needs 0.65 for 16 hits, 0.5 for 24",
+        0.8,
+        "-",
+        "gain by first order, over that of a trend at its chance, below which no trend "
+        "or hit is tried",
     )
     outstanding_sd: float = numerical(
         1.0,
