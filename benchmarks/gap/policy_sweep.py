@@ -32,6 +32,7 @@ from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
+from jointbench.analysis.gap.model.confidence_settings import CONFIDENCE
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_digest
 from jointbench.analysis.gap.model.setting import Setting, settings_of
 from jointbench.analysis.gap.model_error.model_error_settings import (
@@ -60,6 +61,7 @@ PARTS: Mapping[str, Any] = {
     "intake": INTAKE,
     "search": SEARCH,
     "judgement": JUDGEMENT,
+    "confidence": CONFIDENCE,
     "diagnosis": DIAGNOSIS,
     "model error": MODEL_ERROR_SETTINGS,
 }

@@ -68,8 +68,8 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     if where:
         screen.print(table("Location of the gap", _VIEW_HEADS, where, words={0, 1}))
     if found.limits:
-        columns = ("effect", "at most", "at the shape")
-        screen.print(table(_OPEN, columns, limit_rows(found), words={0, 2}))
+        heads = ("effect", "at most", "at the shape")
+        screen.print(table(_OPEN, heads, limit_rows(found), words={0, 2}))
     if len(found.candidates) > 1:
         tried = _candidates(found)
         screen.print(table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))
