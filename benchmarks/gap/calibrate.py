@@ -14,11 +14,13 @@ third, for the settings in force. The seeds of the two must differ.
 import argparse
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
 from scipy.stats import rankdata
 
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.gap.model.confidence import (
     REGRESSORS,
     Evidence,
@@ -32,13 +34,13 @@ PRIOR_SLOPE = 0.3
 PRIOR_SD = 1.0
 
 
-def answers(path: Path) -> list[dict]:
+def answers(path: Path) -> list[dict[str, Any]]:
     """Return the campaigns with a forced answer."""
     lines = path.read_text(encoding="utf-8").splitlines()
     return [r for r in map(json.loads, lines) if r["evidence"] is not None]
 
 
-def fit(runs: list[dict]) -> None:
+def fit(runs: list[dict[str, Any]]) -> None:
     """Print intercept and slopes."""
     x = np.array([features(Evidence(**r["evidence"])) for r in runs])
     x = np.concatenate([np.ones((len(x), 1)), x], axis=1)
@@ -47,7 +49,7 @@ def fit(runs: list[dict]) -> None:
     centre = np.concatenate([[0.0], PRIOR_SLOPE * signs])
     weight = np.concatenate([[0.0], np.full(signs.size, PRIOR_SD**-2)])
 
-    def loss(w: np.ndarray) -> float:
+    def loss(w: FloatArray) -> float:
         logit = x @ w
         data = np.sum(np.logaddexp(0.0, logit) - y * logit)
         return float(data + 0.5 * np.sum(weight * (w - centre) ** 2))
@@ -60,14 +62,14 @@ def fit(runs: list[dict]) -> None:
     print(f"n = {y.size}, right {int(y.sum())}")
 
 
-def area_under_curve(stated: np.ndarray, right: np.ndarray) -> float:
+def area_under_curve(stated: FloatArray, right: BoolArray) -> float:
     """Return the chance that a right answer is stated above a wrong one [-]."""
     ranks, hits = rankdata(stated), int(right.sum())
     above = ranks[right].sum() - hits * (hits + 1) / 2
     return float(above / (hits * (right.size - hits)))
 
 
-def judge(runs: list[dict]) -> None:
+def judge(runs: list[dict[str, Any]]) -> None:
     """Print the table of docs/gap-confidence.md."""
     stated = np.array([confidence_of(Evidence(**r["evidence"])) for r in runs])
     right = np.array([r["right"] for r in runs], dtype=bool)

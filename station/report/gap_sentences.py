@@ -213,6 +213,5 @@ def closest_words(found: Diagnosis) -> str:
     if found.closest is None or found.verdict not in (Finding.UNKNOWN, Finding.MOSTLY):
         return ""
     words = effect_words(" + ".join(found.closest.effects))
-    return (
-        f"{words} would be right with a probability of {sure(found.closest.confidence)}"
-    )
+    chance = sure(found.closest.confidence)
+    return f"{words} would be right with a probability of {chance}"

@@ -37,7 +37,6 @@ def check_winner(bench: LumpedBench, fit: Fit) -> SecondMethod:
             bench.actions(fit.terms),
             measured=campaign.response[record : record + 1],
             sigma=sigma[record : record + 1],
-            lead=campaign.lead,
             tolerance=DIAGNOSIS.check_tolerance,
         )
     except (UsageError, BadData) as error:
