@@ -32,7 +32,11 @@ from jointbench.analysis.gap.model.diagnosis_record import (
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.effect_parameter import Reported
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
-from jointbench.analysis.gap.residuals.bench_protocol import Bench, values_of
+from jointbench.analysis.gap.residuals.bench_protocol import (
+    Bench,
+    MeasuredBench,
+    values_of,
+)
 from jointbench.analysis.gap.residuals.evaluation_resolutions import FULL
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -185,7 +189,7 @@ def _ranked(outcome: SearchOutcome, bench: Bench) -> tuple[Ranked, ...]:
     )
 
 
-def evidence_of(outcome: SearchOutcome, bench: LumpedBench, fit: Fit) -> Evidence:
+def evidence_of(outcome: SearchOutcome, bench: MeasuredBench, fit: Fit) -> Evidence:
     """Return the quantities from which the confidence of a fit is computed."""
     own = {c.label for c in fit.candidates}
     others = [
