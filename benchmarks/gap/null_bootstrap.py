@@ -51,7 +51,7 @@ from jointbench.simulators.campaigns.write_campaign import write_campaign
 # Generators and second methods that the tests use as well.
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
 
-from second_route.verify import verify_fit
+from jointbench.analysis.gap.second_method.verify import verify_fit
 
 PARENTS = tuple(
     (grid, scatter, seed)

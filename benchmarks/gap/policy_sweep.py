@@ -33,6 +33,7 @@ from jointbench.analysis.gap.intake.intake_settings import INTAKE
 from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
+from jointbench.analysis.gap.model.confidence_settings import CONFIDENCE
 from jointbench.analysis.gap.model.policy import STANDARD, Policy, policy_digest
 from jointbench.analysis.gap.model.setting import Setting, settings_of
 from jointbench.analysis.gap.model_error.model_error_settings import (
@@ -61,6 +62,7 @@ PARTS: Mapping[str, Any] = {
     "intake": INTAKE,
     "search": SEARCH,
     "judgement": JUDGEMENT,
+    "confidence": CONFIDENCE,
     "diagnosis": DIAGNOSIS,
     "model error": MODEL_ERROR_SETTINGS,
     "modes and ports": MODAL,

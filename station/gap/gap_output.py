@@ -11,9 +11,12 @@ from jointbench.station.report.gap_partial_section import partial_lines
 from jointbench.station.report.gap_sentences import (
     PRIORS,
     SMALL_GAP,
+    closest_words,
     headline,
+    limit_rows,
     next_step,
     place,
+    second_method_words,
     why_lost,
 )
 from jointbench.station.screen.terminal import console, table
@@ -25,6 +28,7 @@ _SMALL_SHARE = 0.005
 _WIDEST = 110
 _LABEL = 9
 """Width of the labels at the beginning of lines."""
+_OPEN = "Largest effects that these records do not exclude (95 %)"
 _VIEW_HEADS = ("view", "largest shares")
 _TRIED_HEADS = ("explanation", "delta score", "chi2/dof", "prior dev. [sd]", "reason")
 
@@ -58,9 +62,14 @@ def show_on(screen: Console, found: Diagnosis) -> None:
     for label, words in partial_lines(found.partial):
         _say(screen, label, words)
     _say(screen, "limits", _limit_words(found))
+    _say(screen, "checked", *filter(None, (second_method_words(found),)))
+    _say(screen, "closest", *filter(None, (closest_words(found),)))
     where = _where(found)
     if where:
         screen.print(table("Location of the gap", _VIEW_HEADS, where, words={0, 1}))
+    if found.limits:
+        heads = ("effect", "at most", "at the shape")
+        screen.print(table(_OPEN, heads, limit_rows(found), words={0, 2}))
     if len(found.candidates) > 1:
         tried = _candidates(found)
         screen.print(table("Explanations tried", _TRIED_HEADS, tried, words={0, 4}))

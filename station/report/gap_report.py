@@ -15,10 +15,13 @@ from jointbench.station.report.gap_partial_section import partial_section
 from jointbench.station.report.gap_policy_section import policy_section
 from jointbench.station.report.gap_sentences import (
     SMALL_GAP,
+    closest_words,
     effect_words,
     headline,
+    limit_rows,
     next_step,
     place,
+    second_method_words,
     why_lost,
 )
 from jointbench.station.report.gap_summary_figure import summary_figure
@@ -326,7 +329,16 @@ def _limits(found: Diagnosis) -> tuple[Item, ...]:
         f"gain, the joint by {100 * noise['scatter_joint']:.2g} % in stiffness; "
         "a smaller effect cannot be detected."
     )
-    return (Text(floor), table)
+    items: list[Item] = [Text(floor), table]
+    if words := second_method_words(found):
+        items.append(Text(f"{words[:1].upper()}{words[1:]}."))
+    if words := closest_words(found):
+        items.append(Text(f"Before the acceptance criteria, {words}."))
+    if rows_left := limit_rows(found):
+        caption = "Largest effects that these records do not exclude (95 %)."
+        heads = ("effect", "at most", "at the shape")
+        items.append(DataTable(caption, heads, rows_left))
+    return tuple(items)
 
 
 def _base(found: Diagnosis) -> DataTable:

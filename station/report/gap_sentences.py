@@ -2,7 +2,7 @@
 """A diagnosis in words: the headline, and the reason against each rival."""
 
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, Finding, Ranked
-from jointbench.station.report.gap_numbers import percent
+from jointbench.station.report.gap_numbers import percent, sure
 
 _PREPOSITIONS = {"link": "in", "body": "on body", "channel": "on channel"}
 _ALL = "channel:all"
@@ -179,3 +179,39 @@ def _faults(one: Ranked, found: Diagnosis) -> str:
     if limits is not None and one.prior_deviation > limits.deviation_allowed:
         faults.append(f"prior deviation above {limits.deviation_allowed:g} sd")
     return ", ".join(faults)
+
+
+def limit_rows(found: Diagnosis) -> tuple[tuple[str, str, str], ...]:
+    """Return effect, largest amplitude that is not excluded, and its shape."""
+    rows = []
+    for one in found.limits:
+        first, *shape = one.parameters
+        at = ", ".join(f"{p.name} {p.value:.3g} {p.unit}" for p in shape)
+        size = f"{first.name} {first.value:.3g} {first.unit}"
+        rows.append((f"{one.name.replace('_', ' ')} {place(one.site)}", size, at))
+    return tuple(rows)
+
+
+def second_method_words(found: Diagnosis) -> str:
+    """Return how far the second method is from the first; empty without a check."""
+    check = found.second_method
+    if check is None:
+        return ""
+    words = effect_words(" + ".join(check.effects))
+    what = "base model" if check.effects == ("none",) else words
+    if check.over_peak is None or check.over_noise is None:
+        return f"{what}: not predicted by the second method: {check.reason}"
+    return (
+        f"{what}: a second time integration differs by {check.over_peak:.1g} of the "
+        f"peak and {check.over_noise:.1g} of the noise (record {check.record}: "
+        f"{check.condition})"
+    )
+
+
+def closest_words(found: Diagnosis) -> str:
+    """Return the confidence of the best explanation where none is accepted."""
+    if found.closest is None or found.verdict not in (Finding.UNKNOWN, Finding.MOSTLY):
+        return ""
+    words = effect_words(" + ".join(found.closest.effects))
+    chance = sure(found.closest.confidence)
+    return f"{words} would be right with a probability of {chance}"

@@ -10,15 +10,18 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
+from jointbench.analysis.gap.diagnosis.effect_limits import effect_limits
 from jointbench.analysis.gap.diagnosis.evidence import make_evidence
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
 from jointbench.analysis.gap.diagnosis.partial_verdict import under_model_error
 from jointbench.analysis.gap.diagnosis.verdict_and_advice import verdict_on
+from jointbench.analysis.gap.diagnosis.winner_check import check_winner
 from jointbench.analysis.gap.judgement.amplitudes import weakest
 from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
 from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.model.campaign import Campaign
+from jointbench.analysis.gap.model.check_records import EffectLimit
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.model.diagnosis_record import (
     Closest,
@@ -151,6 +154,10 @@ def conclude(
         policy=bench.policy,
         partial=partial,
         closest=closest_of(outcome, bench),
+        limits=_limits(outcome, bench, finding),
+        second_method=check_winner(
+            bench, outcome.best if outcome.best.candidates else base
+        ),
     )
     if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)
@@ -215,6 +222,15 @@ def evidence_of(outcome: SearchOutcome, bench: MeasuredBench, fit: Fit) -> Evide
         scatter=max(bench.noise.scatter, default=0.0),
         deviation=float(np.abs(fit.prior_deviations).max()) / bench.policy.prior_limit,
     )
+
+
+def _limits(
+    outcome: SearchOutcome, bench: LumpedBench, finding: Finding
+) -> tuple[EffectLimit, ...]:
+    """Return the largest effects that a verdict of none leaves open."""
+    if finding is not Finding.NONE:
+        return ()
+    return effect_limits(bench, outcome.base_screening)
 
 
 def closest_of(outcome: SearchOutcome, bench: LumpedBench) -> Closest | None:

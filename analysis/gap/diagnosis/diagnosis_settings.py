@@ -190,6 +190,30 @@ class DiagnosisSettings:
         "second effect",
         "below the limit of 4 sd at which a fit is rejected",
     )
+    one_sided_quantile: float = numerical(
+        1.645,
+        "sd",
+        "reach of the limit of an effect that has one sign",
+        "closed form: 95 %",
+    )
+    two_sided_quantile: float = numerical(
+        1.96,
+        "sd",
+        "reach of the limit of an effect that may have either sign",
+        "closed form: 95 %",
+    )
+    longest_check: int = numerical(
+        8192,
+        "samples",
+        "longest record that the second method predicts",
+        "computing time: 0.3 to 2 s for 1,024 samples",
+    )
+    check_tolerance: float = numerical(
+        1e-8,
+        "of the state",
+        "local error of the second method",
+        "at 1e-7 and 1e-9 the difference of the methods is the same to 1 %",
+    )
 
     curve_draws: int = numerical(
         12,

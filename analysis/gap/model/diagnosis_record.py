@@ -7,6 +7,12 @@ from enum import StrEnum
 from typing import Any
 
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
+from jointbench.analysis.gap.model.check_records import (
+    EffectLimit,
+    SecondMethod,
+    limits_json,
+    second_method_json,
+)
 from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.evidence_records import GapEvidence, evidence_json
 from jointbench.analysis.gap.model.partial_records import (
@@ -146,6 +152,9 @@ class Diagnosis:
             verdict is mostly or unknown.
         closest: the best explanation before the acceptance criteria; None if there
             was no search.
+        limits: largest size of each effect that the records do not exclude; empty
+            unless the verdict is none.
+        second_method: the best explanation predicted by a second method.
     """
 
     verdict: Finding
@@ -164,6 +173,8 @@ class Diagnosis:
     policy: Policy = STANDARD
     partial: PartialExplanation | None = None
     closest: Closest | None = None
+    limits: tuple[EffectLimit, ...] = ()
+    second_method: SecondMethod | None = None
 
     @property
     def predicted(self) -> bool:
@@ -223,6 +234,8 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "exhibit": None if d.evidence is None else evidence_json(d.evidence),
         "policy": policy_json(d.policy),
         "closest": None if d.closest is None else asdict(d.closest),
+        "upper_limits": limits_json(d.limits),
+        "second_method": second_method_json(d.second_method),
         "mostly": None if d.partial is None else partial_json(d.partial),
     }
 

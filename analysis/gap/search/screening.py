@@ -41,6 +41,8 @@ class Direction:
         one_sided: True if only one sign is allowed.
         suggested: True if the shape was derived from the residual, so that the drop
             is biased.
+        amplitude: to first order, without bounds [coordinate].
+        amplitude_sd: of it [coordinate]; infinite if the fit hides the effect.
     """
 
     candidate: Candidate
@@ -49,6 +51,8 @@ class Direction:
     drop: float
     one_sided: bool
     suggested: bool
+    amplitude: float
+    amplitude_sd: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -213,7 +217,14 @@ def _judge(
         shift = -_solve(tangent.r, minimum + tested.taken[k] * moved)
         directions.append(
             Direction(
-                candidate, start, shift, drop, bool(one_sided[k]), k >= tested.fixed
+                candidate,
+                start,
+                shift,
+                drop,
+                bool(one_sided[k]),
+                k >= tested.fixed,
+                float(amplitude[k]),
+                _sd(float(left[k])),
             )
         )
     counted = np.array([bench.phases(c) == 0 for c, _ in starts])
@@ -224,6 +235,11 @@ def _judge(
     largest = max((d.drop for d in directions[: tested.fixed]), default=0.0)
     directions.sort(key=lambda d: -d.drop)
     return Screening(tuple(directions), threshold, largest)
+
+
+def _sd(left: float) -> float:
+    """Return the sd of an amplitude from the squared length of its direction."""
+    return float(1.0 / np.sqrt(left)) if np.isfinite(left) else np.inf
 
 
 def _solve(r: FloatArray, right: FloatArray) -> FloatArray:

@@ -9,12 +9,6 @@ from types import ModuleType
 import gap_bench as made
 import numpy as np
 import pytest
-from second_route.verify import (
-    Verification,
-    second_response,
-    verify_fit,
-    verify_response,
-)
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
@@ -30,6 +24,12 @@ from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.gap.search.screening import screen
+from jointbench.analysis.gap.second_method.verify import (
+    Verification,
+    second_response,
+    verify_fit,
+    verify_response,
+)
 from jointbench.analysis.lumped.lumped_model import Output
 
 

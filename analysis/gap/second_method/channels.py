@@ -7,13 +7,13 @@ import numpy as np
 import scipy.fft
 from scipy.interpolate import CubicSpline
 from scipy.signal import lfilter
-from second_route.laws import values_by_name
-from second_route.motion import UPSAMPLING
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.excitation import Excitation
+from jointbench.analysis.gap.second_method.laws import values_by_name
+from jointbench.analysis.gap.second_method.motion import UPSAMPLING
 
 Values = Mapping[str, float]
 AT_SAMPLES = ("saturation", "hum")
@@ -80,7 +80,7 @@ def through_channels(
         else:
             raise UsageError(
                 f"effect {name!r} has no second route; write what it does to a "
-                "signal in second_route.channels"
+                "signal in jointbench.analysis.gap.second_method.channels"
             )
     return out
 

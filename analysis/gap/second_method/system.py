@@ -10,17 +10,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from second_route.laws import (
-    ContinuousLaw,
-    has_law,
-    law_of,
-    values_by_name,
-)
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.excitation import Excitation
+from jointbench.analysis.gap.second_method.laws import (
+    ContinuousLaw,
+    has_law,
+    law_of,
+    values_by_name,
+)
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 LINEAR = (
@@ -204,7 +204,7 @@ def _change(
     if name not in LINEAR:
         raise UsageError(
             f"effect {name!r} has no second route; write what it does to the "
-            "matrices in second_route.system beside "
+            "matrices in jointbench.analysis.gap.second_method.system beside "
             f"{', '.join(LINEAR)}"
         )
     e = _ends(model, at, matrices.mass.shape[1])

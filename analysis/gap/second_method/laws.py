@@ -2,8 +2,7 @@
 """Force laws of links in continuous time, written independently for the second route.
 
 Nothing here is shared with the compiled time integration: a law gives its force and the
-    rates of
-its own states at one instant, and `second_route.motion` integrates.
+rates of its own states at one instant, and `motion` integrates.
 """
 
 from collections.abc import Callable, Mapping
@@ -229,7 +228,7 @@ def law_of(action: Action) -> ContinuousLaw:
     if law is None or law.kind != CURVES:
         raise UsageError(
             f"effect {name!r} has no second route; write its law in "
-            f"second_route.laws beside {', '.join(sorted(LAWS))}"
+            f"analysis/gap/second_method/laws.py beside {', '.join(sorted(LAWS))}"
         )
     return _of_curves(law)
 

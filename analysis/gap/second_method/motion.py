@@ -12,12 +12,12 @@ import numpy as np
 import scipy.fft
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
-from second_route.system import System
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.response.excitation import Excitation
 from jointbench.analysis.gap.response.predict_records import undamped
+from jointbench.analysis.gap.second_method.system import System
 
 UPSAMPLING = 16
 """Points per sample between which a cubic spline carries the force: 2e-6 of a line at

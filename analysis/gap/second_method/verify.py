@@ -12,13 +12,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from second_route.channels import (
-    anti_alias,
-    through_channels,
-    through_converter,
-)
-from second_route.motion import UPSAMPLING, integrate_motion
-from second_route.system import make_system
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.model.campaign import TAIL
@@ -27,6 +20,13 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.excitation import Excitation
 from jointbench.analysis.gap.response.predict_records import respond
+from jointbench.analysis.gap.second_method.channels import (
+    anti_alias,
+    through_channels,
+    through_converter,
+)
+from jointbench.analysis.gap.second_method.motion import UPSAMPLING, integrate_motion
+from jointbench.analysis.gap.second_method.system import make_system
 from jointbench.analysis.lumped.lumped_model import LumpedModel
 
 TOLERANCE = 1e-9
@@ -36,7 +36,7 @@ BEYOND = 64
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verification:
-    """How far the two routes are apart, samples without weight left out.
+    """How far the two routes are apart, the last samples left out.
 
     Attributes:
         over_peak: largest difference over the largest response of the channel in
@@ -124,7 +124,6 @@ def verify_response(
     *,
     measured: FloatArray | None = None,
     sigma: FloatArray | None = None,
-    lead: int = 0,
     oversampling: int = 8,
     tolerance: float = TOLERANCE,
 ) -> Verification:
@@ -138,7 +137,6 @@ def verify_response(
         measured: from which hum takes its phase, shape as a response.
         sigma: noise of the records [unit of the channel], shape (n_records,
             n_channels); None to compare with the peak alone.
-        lead: first samples without weight; the last 64 have none either.
         oversampling: of the first route.
         tolerance: of the second route [-].
 
@@ -155,7 +153,7 @@ def verify_response(
     second = second_response(
         model, theta, excitation, actions, measured=measured, tolerance=tolerance
     )
-    apart = np.abs(first - second)[..., lead:-TAIL]
+    apart = np.abs(first - second)[..., :-TAIL]
     peak = np.abs(second).max(axis=-1)
     over_peak = apart.max(axis=-1) / np.where(peak > 0.0, peak, 1.0)
     if sigma is None:
@@ -191,6 +189,5 @@ def verify_fit(
         bench.actions(fit.terms),
         measured=campaign.response,
         sigma=bench.noise.sigma,
-        lead=campaign.lead,
         tolerance=tolerance,
     )
