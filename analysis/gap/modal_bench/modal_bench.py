@@ -17,10 +17,13 @@ from jointbench.analysis.gap.catalogue.probes import PROBES
 from jointbench.analysis.gap.modal_bench.level_records import LevelRecord, RecordSet
 from jointbench.analysis.gap.modal_bench.modal_base import ModalBase
 from jointbench.analysis.gap.modal_bench.modal_response import (
+    PortForces,
     Shaken,
+    measured_forces,
     respond_modes,
     shaken,
 )
+from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.modal_bench.outline import outline
 from jointbench.analysis.gap.modal_bench.port_effects import (
     port_candidates,
@@ -55,6 +58,7 @@ class ModalBench:
         probes: further shapes for directed tests, at each port.
         blocks: records as groups.
         scales: words to values.
+        kept: forces along the measured motion, by laws and step.
         policy: thresholds for fits of the bench.
     """
 
@@ -67,6 +71,7 @@ class ModalBench:
     probes: tuple[Candidate, ...]
     blocks: Blocks
     scales: dict[str, float]
+    kept: dict[tuple[object, ...], PortForces]
     policy: Policy = STANDARD
 
     @property
@@ -121,15 +126,34 @@ class ModalBench:
     ) -> FloatArray:
         """Predict the sensors, shape (n_records, n_sensors, n_samples)."""
         laws = self._laws(terms)
-        spend(self.data.measured.size, oversampling if laws else 0)
+        forces = self._forces(terms, laws, oversampling) if measured_motion else None
+        spend(self.data.measured.size, oversampling if laws and forces is None else 0)
         return respond_modes(
             self.given,
             self.base.modes(base),
             self.data,
             laws,
             oversampling=oversampling,
-            measured_motion=measured_motion,
+            forces=forces,
         )
+
+    def _forces(
+        self, terms: Sequence[Term], laws: Sequence[PortLaw], oversampling: int
+    ) -> PortForces | None:
+        """Return the forces along the measured motion, kept while the base moves."""
+        if not laws:
+            return None
+        key = (
+            oversampling,
+            *((t.candidate.label, t.coordinates.tobytes()) for t in terms),
+        )
+        found = self.kept.get(key)
+        if found is None:
+            if len(self.kept) >= MODAL.kept_forces:
+                self.kept.clear()
+            found = measured_forces(self.given, self.data, laws, oversampling)
+            self.kept[key] = found
+        return found
 
     def residual(
         self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
@@ -238,6 +262,7 @@ def make_modal_bench(
         probes=port_candidates(PROBES, given),
         blocks=_blocks(given, data),
         scales=scales | {"noise": float(sigma.min())},
+        kept={},
         policy=policy,
     )
 

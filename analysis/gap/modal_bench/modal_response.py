@@ -93,6 +93,39 @@ def _displacement(
     return np.asarray(rows * (pass_band / s ** int(given.output)))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class PortForces:
+    """Forces of the laws along the measured motion, which no base changes.
+
+    Attributes:
+        ports: index of each port with a law, ascending.
+        spectra: damped, up to the pass band, shape (n_ports, n_records, n_lines).
+    """
+
+    ports: tuple[int, ...]
+    spectra: ComplexArray
+
+
+def measured_forces(
+    given: RecordSet, data: Shaken, laws: Sequence[PortLaw], oversampling: int
+) -> PortForces:
+    """Return the forces of laws along the measured motion of their ports.
+
+    Args:
+        given: the set, with its points and ports.
+        data: the transformed records.
+        laws: that act at the ports.
+        oversampling: steps of the time integration per sample.
+    """
+    ports = sorted({x.port for x in laws})
+    motion = np.stack([port_motion(given, data, q) for q in ports])
+    still = Modes(np.ones(1), np.full(1, 0.5), np.zeros((1, 0)))
+    between = port_modes(still, np.zeros((1, len(ports))), len(data.records))
+    own = [PortLaw(ports.index(x.port), x.law) for x in laws]
+    spectra = force_spectra(data.excitation, motion, between, own, oversampling)
+    return PortForces(tuple(ports), spectra)
+
+
 def respond_modes(
     given: RecordSet,
     modes: Modes,
@@ -100,7 +133,7 @@ def respond_modes(
     laws: Sequence[PortLaw],
     *,
     oversampling: int,
-    measured_motion: bool = False,
+    forces: PortForces | None = None,
 ) -> FloatArray:
     """Predict the sensors.
 
@@ -110,9 +143,9 @@ def respond_modes(
         data: the transformed records.
         laws: that act at the ports.
         oversampling: steps of the time integration per sample.
-        measured_motion: whether the laws follow the measured motion of their port
-            instead of the predicted one; the response is then smooth in the parameters
-            of the laws, however strong they are.
+        forces: of these laws along the measured motion of their ports, instead of the
+            predicted one; the response is then smooth in the parameters of the laws,
+            however strong they are.
 
     Returns:
         Shape (n_records, n_sensors, n_samples); not finite if the motion diverges.
@@ -122,18 +155,9 @@ def respond_modes(
     push = modes.shapes[:, [points.index(p) for p in given.inputs]]
     modal = np.einsum("mi,ril->rml", push, data.spectrum) * receptance
     if laws:
-        ports = sorted({x.port for x in laws})
-        across = port_rows(given, modes)[:, ports]
-        motion = np.einsum("mp,rml->prl", across, modal)
-        between = port_modes(modes, across, len(data.records))
-        if measured_motion:
-            motion = np.stack([port_motion(given, data, q) for q in ports])
-            between = replace(between, inputs=0.0 * between.inputs)
-        renumbered = [PortLaw(ports.index(x.port), x.law) for x in laws]
-        forces = force_spectra(
-            data.excitation, motion, between, renumbered, oversampling
-        )
-        modal = modal - np.einsum("mp,prl->rml", across, forces) * receptance
+        found = forces or _predicted(given, modes, data, modal, laws, oversampling)
+        across = port_rows(given, modes)[:, list(found.ports)]
+        modal = modal - np.einsum("mp,prl->rml", across, found.spectra) * receptance
     seen = modes.shapes[:, [points.index(p) for p in given.sensors]]
     spectra = np.einsum("ms,rml->rsl", seen, modal)
     if given.output:
@@ -141,6 +165,27 @@ def respond_modes(
     n = data.excitation.growth.size
     rows = scipy.fft.irfft(spectra, data.excitation.padded, axis=-1)
     return np.asarray(rows[..., :n] * data.excitation.growth)
+
+
+def _predicted(
+    given: RecordSet,
+    modes: Modes,
+    data: Shaken,
+    modal: ComplexArray,
+    laws: Sequence[PortLaw],
+    oversampling: int,
+) -> PortForces:
+    """Return the forces of laws along the predicted motion of their ports."""
+    ports = sorted({x.port for x in laws})
+    across = port_rows(given, modes)[:, ports]
+    spectra = force_spectra(
+        data.excitation,
+        np.einsum("mp,rml->prl", across, modal),
+        port_modes(modes, across, len(data.records)),
+        [PortLaw(ports.index(x.port), x.law) for x in laws],
+        oversampling,
+    )
+    return PortForces(tuple(ports), spectra)
 
 
 def port_motion(given: RecordSet, data: Shaken, index: int) -> ComplexArray:

@@ -114,6 +114,13 @@ class ModalSettings:
         "averaged periods from which their scatter gives the noise",
         "with two, leakage of a transient would count as noise",
     )
+    kept_forces: int = numerical(
+        8,
+        "sets",
+        "sets of port forces along the measured motion that are kept: they do not "
+        "depend on the base, whose slopes then need no time integration",
+        "memory; a descent needs one for each parameter of its laws and one more",
+    )
 
 
 MODAL = ModalSettings()
