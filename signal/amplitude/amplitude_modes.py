@@ -36,8 +36,8 @@ from jointbench.signal.amplitude.dependence_test import (
     decide,
     score_chance,
 )
+from jointbench.signal.amplitude.doubts_between_modes import with_doubts
 from jointbench.signal.amplitude.group_fits import GroupFit, fit_groups
-from jointbench.signal.amplitude.harmonics_of_joint import without_harmonics
 from jointbench.signal.amplitude.level_comparison import compare_levels
 from jointbench.signal.amplitude.mode_groups import ModeGroup, mode_groups
 from jointbench.signal.amplitude.ring_downs import RingDowns, ring_downs
@@ -91,7 +91,7 @@ def amplitude_modes(
         else:
             found += _resolved(decays, model, group, fitted, levels)
     ordered = sorted(found, key=lambda mode: mode.replaces[0])
-    return without_harmonics(ordered)
+    return with_doubts(ordered)
 
 
 def _resolved(
