@@ -23,7 +23,7 @@ _ORDERS = (2, 3)
 _CLOSE, _WEAKER = 0.005, 0.05
 # Modes this close beat on a joint; the larger change of frequency may be this share of
 # their distance.
-_BESIDE, _BEAT = 0.1, 0.05
+_BESIDE, _BEAT = 0.1, 0.02
 
 
 def with_doubts(found: Sequence[AmplitudeMode]) -> tuple[AmplitudeMode, ...]:
