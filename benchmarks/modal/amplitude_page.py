@@ -17,8 +17,9 @@ tests/judges/jointed_masses.py: central differences at 82 kHz, four levels over 
 of 30, two hits each, 2 s, up to three channels, white noise. Truth by harmonic balance.
 Seeds run from 0 in each part; shares stand with their 95 % Wilson intervals, n as run.
 The floors of the intervals (50 ppm, 0.5 %) were fixed before. The share of what other
-modes change that counts as uncertainty (a fifth) was set after curves 1, 5, 7 and 9, the
-limit of beats (2 % of the distance) after pair 4: those draws are no independent check.
+modes change that counts as uncertainty (a fifth) was set after curves 1, 5, 7 and 9,
+the limit of beats (2 % of the distance) after pair 4: those draws are no independent
+check.
 """
 
 
