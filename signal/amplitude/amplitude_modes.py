@@ -36,8 +36,8 @@ from jointbench.signal.amplitude.dependence_test import (
     decide,
     score_chance,
 )
+from jointbench.signal.amplitude.doubts_between_modes import with_doubts
 from jointbench.signal.amplitude.group_fits import GroupFit, fit_groups
-from jointbench.signal.amplitude.harmonics_of_joint import without_harmonics
 from jointbench.signal.amplitude.level_comparison import (
     compare_levels,
     spectra_near_modes,
@@ -87,7 +87,7 @@ def amplitude_modes(
             asked.append(group)
     if asked:  # few sessions need their decays
         found += _fitted_modes(ring_downs(judged), model, asked, levels, progress)
-    return without_harmonics(sorted(found, key=lambda mode: mode.replaces[0]))
+    return with_doubts(sorted(found, key=lambda mode: mode.replaces[0]))
 
 
 def _fitted_modes(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Weak modes at multiples of a strong one's frequency are not decided."""
+"""Weak modes at multiples of a strong one, and modes that beat, are not decided."""
 
 import numpy as np
 import pytest
@@ -10,10 +10,10 @@ from jointbench.signal.amplitude.amplitude_curve import (
     Dependence,
     SoftLimit,
 )
-from jointbench.signal.amplitude.harmonics_of_joint import without_harmonics
+from jointbench.signal.amplitude.doubts_between_modes import with_doubts
 
 
-def mode(frequency: float, largest: float) -> AmplitudeMode:
+def mode(frequency: float, largest: float, change: float = 0.0) -> AmplitudeMode:
     """Return a mode that depends on amplitude, up to an acceleration."""
     one = np.ones(3)
     curve = AmplitudeCurve(
@@ -28,7 +28,7 @@ def mode(frequency: float, largest: float) -> AmplitudeMode:
         one,
     )
     soft = SoftLimit(frequency, 0.1, 0.005, 1e-4)
-    return AmplitudeMode(Dependence.DEPENDS, "", curve, soft, 0.0, 1.0, 9.0)
+    return AmplitudeMode(Dependence.DEPENDS, "", curve, soft, 0.0, 1.0, 9.0, change)
 
 
 @pytest.mark.parametrize(
@@ -44,6 +44,22 @@ def test_a_weak_mode_at_a_multiple_is_not_decided(
     frequency: float, largest: float, outcome: Dependence
 ) -> None:
     """Beside 80 Hz of 400 m/s2: at three or two times, elsewhere, as strong."""
-    strong, other = without_harmonics((mode(80.0, 400.0), mode(frequency, largest)))
+    strong, other = with_doubts((mode(80.0, 400.0), mode(frequency, largest)))
     assert strong.dependence is Dependence.DEPENDS
     assert other.dependence is outcome
+
+
+@pytest.mark.parametrize(
+    ("frequency", "change", "outcome"),
+    [
+        (84.0, -0.004, Dependence.NOT_DECIDED),
+        (84.0, -0.0005, Dependence.DEPENDS),
+        (100.0, -0.004, Dependence.DEPENDS),
+    ],
+)
+def test_modes_that_beat_on_a_joint_are_not_decided(
+    frequency: float, change: float, outcome: Dependence
+) -> None:
+    """5 % from 80 Hz with a change of 0.4 %, of 0.05 %; 25 % from it."""
+    found = with_doubts((mode(80.0, 1.0), mode(frequency, 1.0, change)))
+    assert [one.dependence for one in found] == [outcome, outcome]
