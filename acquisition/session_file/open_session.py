@@ -39,7 +39,7 @@ _MOST_KEPT = 2**26
 """Size of the unpacked samples that are kept [bytes]: one hit of 64 channels and 2 s at
 51.2 kS/s takes half of it in single precision."""
 _DOUBLE = 8
-_LIMITS = FileLimits(unpacked_bytes=2**37)
+_LIMITS = FileLimits(unpacked_bytes=2**37, in_parts="/samples")
 """Samples are unpacked in parts; their ratio to the file stays limited."""
 
 

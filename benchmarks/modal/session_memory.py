@@ -141,7 +141,7 @@ def row_of(folder: Path, channels: int, hits: int, seed: int) -> str:
     path.unlink()
     Path(results).unlink()
     samples = 8.0 * channels * hits * RATE * SECONDS
-    sizes = (samples, floor.peak, modal.peak, modal.peak - samples)
+    sizes = (samples, floor.peak, modal.peak)
     words = " | ".join(f"{size / _MB:.0f}" for size in sizes)
     return (
         f"| {channels} x {hits} | {seed} | {words} "
@@ -150,9 +150,9 @@ def row_of(folder: Path, channels: int, hits: int, seed: int) -> str:
 
 
 HEAD = (
-    "| channels x hits | seed | samples [MB] | peak, read and FFT [MB] | "
-    "peak, modal [MB] | beside the samples [MB] | CPU, read and FFT [s] | "
-    "CPU, modal [s] | ratio |\n|---|---|---|---|---|---|---|---|---|"
+    "| channels x hits | seed | samples as doubles [MB] | peak, read and FFT [MB] | "
+    "peak, modal [MB] | CPU, read and FFT [s] | CPU, modal [s] | ratio |\n"
+    "|---|---|---|---|---|---|---|---|"
 )
 
 

@@ -110,8 +110,9 @@ def _standing_out(
     inside = (frequency >= band[0]) & (frequency <= band[1])
     # An exponential power over the scattering median around is F-distributed;
     # responses share a force: their mean may scatter as much as one of them.
-    lines = max(1, np.count_nonzero(inside))
-    limit = _FREEDOM * ((lines / _CHANCE) ** (1.0 / _FREEDOM) - 1.0) / np.log(2.0)
+    lines = max(1, int(np.count_nonzero(inside)))
+    rare = float((lines / _CHANCE) ** (1.0 / _FREEDOM))
+    limit = _FREEDOM * (rare - 1.0) / float(np.log(2.0))
     # The side lobes of a strong line stand out as well: the highest goes first.
     peak = power >= maximum_filter1d(power, _AROUND)
     chosen = np.flatnonzero(inside & peak & (power > limit))
@@ -128,7 +129,7 @@ def _whitened(responses: FloatArray) -> FloatArray:
         power = np.abs(scipy.fft.rfft((row - row.mean()) * window)) ** 2
         level = median_filter(power, _AROUND, mode="nearest")
         total += power / np.where(level > 0.0, level, np.inf)
-    return total / responses.shape[0]
+    return np.asarray(total / responses.shape[0])
 
 
 def _taken_out(responses: FloatArray, line: float) -> tuple[float, float] | None:
