@@ -59,6 +59,8 @@ class FileLimits:
         matlab: whether the features of a MAT file of version 7.3 are allowed: 512 bytes
             before the signature, complex numbers as pairs, references to objects of
             the same file, and field names as attributes (which are not read).
+        in_parts: end of the names of datasets that are unpacked chunk by chunk; of
+            these a chunk counts, and all together by `unpacked_ratio`. Empty for none.
     """
 
     objects: int = 20_000
@@ -74,6 +76,7 @@ class FileLimits:
     unpacked_ratio: float = 64.0
     variable_texts: int = 0
     matlab: bool = False
+    in_parts: str = ""
 
 
 @dataclass(slots=True)
@@ -87,6 +90,7 @@ class _Tally:
     chunks: int = 0
     attributes: int = 0
     unpacked: int = 0
+    parts: int = 0
     groups: set[int] = field(default_factory=set)
 
     def refuse(self, name: str, rule: str) -> HostileFile:
@@ -278,6 +282,14 @@ def _check_size(
         pieces = math.prod(-(-n // c) for n, c in zip(shape, chunk, strict=True))
         tally.chunks += pieces
         values = max(values, pieces * math.prod(chunk) if pieces else 0)
+    if limits.in_parts and name.endswith(limits.in_parts):
+        tally.parts += values * max(_DOUBLE, kind.get_size())
+        whole = max(limits.always_bytes, limits.unpacked_ratio * tally.file_bytes)
+        if tally.parts > min(whole, limits.unpacked_bytes):
+            words = f"brings the file to {tally.parts} bytes of values"
+            raise tally.refuse(name, words)
+        chunked = properties.get_layout() == h5d.CHUNKED
+        values = math.prod(properties.get_chunk()) if chunked else 0
     if isinstance(kind, h5t.TypeStringID):
         tally.unpacked += values * kind.get_size() + _TEXT * math.prod(shape[:-1])
     else:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from jointbench.acquisition.basics.array_checks import require_finite
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.acquisition.file_access.hdf5_guards import open_guarded
+from jointbench.acquisition.file_access.hdf5_guards import FileLimits, open_guarded
 from jointbench.acquisition.file_access.netcdf_read import read_attribute
 from jointbench.acquisition.file_access.netcdf_write import CHUNK_VALUES
 from jointbench.acquisition.records.session import Session
@@ -39,6 +39,8 @@ _MOST_KEPT = 2**26
 """Size of the unpacked samples that are kept [bytes]: one hit of 64 channels and 2 s at
 51.2 kS/s takes half of it in single precision."""
 _DOUBLE = 8
+_LIMITS = FileLimits(unpacked_bytes=2**37, in_parts="/samples")
+"""Samples are unpacked in parts; their ratio to the file stays limited."""
 
 
 @dataclass(slots=True, eq=False, weakref_slot=True)
@@ -112,7 +114,7 @@ def open_session(path: Path | str, *, most_whole: int = MOST_WHOLE) -> Session:
         BadData: as `read_session`; for samples that are read later, on access.
     """
     with ExitStack() as stack:
-        file = stack.enter_context(open_guarded(path))
+        file = stack.enter_context(open_guarded(path, limits=_LIMITS))
         if not _is_large(file, path, most_whole):
             return read_session(path)
         opened = _OpenFile(Path(path), file)

@@ -93,12 +93,19 @@ def score(seconds: float, seed: int) -> Row:
                 errors[1] / found.damping_ratio_sd[near],
             ]
         )
+    taken = [
+        o
+        for o in ORDERS
+        if np.abs(found.sines.frequency - o * SPEED).min(initial=9) < 0.01
+    ]
     other = set(range(found.natural_frequency.size)) - used
     unmarked = sum(not found.sine_like[i] for i in other)
     return row | {
         "missed": FREQUENCY.size - len(modes),
         "false": unmarked,
         "sines": len(other) - unmarked,
+        "taken": len(taken),
+        "too_many": found.sines.frequency.size - len(taken),
         "modes": modes,
         "cpu_s": time.process_time() - started,
     }
@@ -136,7 +143,7 @@ def _column(rows: list[Row]) -> dict[str, str]:
     table = np.array([mode for row in rows for mode in row["modes"]])  # type: ignore[attr-defined]
     total = {
         name: sum(int(str(row.get(name, 0))) for row in rows)
-        for name in ("missed", "false", "sines")
+        for name in ("missed", "false", "sines", "taken", "too_many")
     }
     rms = 100.0 * np.sqrt(np.mean(table[:, :2] ** 2, axis=0))
     inside = np.abs(table[:, 2:]) < _NORMAL_95
@@ -144,7 +151,9 @@ def _column(rows: list[Row]) -> dict[str, str]:
         "runs": str(len(rows)),
         "modes found": f"{table.shape[0]} of {FREQUENCY.size * len(rows)}",
         "false modes": str(total["false"]),
-        "sines found and marked": str(total["sines"]),
+        "sines taken out before the fit": str(total["taken"]),
+        "other lines taken out": str(total["too_many"]),
+        "sines found as modes and marked": str(total["sines"]),
         "frequency within 0.2 %": _share(np.abs(table[:, 0]) < 0.002),
         "damping within 15 %": _share(np.abs(table[:, 1]) < 0.15),
         "rms error of frequency": f"{rms[0]:.3f} %",

@@ -36,8 +36,13 @@ from jointbench.signal.modal.stabilisation import (
 from jointbench.signal.output_only.correlations import Correlations, correlate_responses
 from jointbench.signal.output_only.harmonics import sine_like
 from jointbench.signal.output_only.pole_jackknife import correlation_poles, judge_poles
+from jointbench.signal.output_only.spindle_lines import (
+    SpindleLines,
+    without_spindle_lines,
+)
 from jointbench.signal.output_only.stochastic_subspace import most_states
 
+NO_LINES = SpindleLines(np.empty(0), np.empty(0))
 # Default upper end of the band, as a share of the sample rate.
 _HIGHEST = 1.0 / 2.56
 
@@ -53,6 +58,7 @@ class OutputOnlySettings:
         rows: block rows of the Hankel matrix; the lags used are twice as many.
         blocks: of the record, whose scatter gives the uncertainty.
         stability: criteria of a stable pole.
+        take_out_sines: whether steady sines are taken out of the record first.
     """
 
     band: tuple[float, float] | None = None
@@ -64,6 +70,7 @@ class OutputOnlySettings:
             frequency=0.005, damping=0.3, persistence=0.2
         )
     )
+    take_out_sines: bool = True
 
     def __post_init__(self) -> None:
         """Refuse numbers too small for a fit."""
@@ -94,6 +101,7 @@ class OutputOnlyModes:
         stabilisation: poles of all orders.
         correlations: the data of the fit.
         provenance: origin and processing steps.
+        sines: taken out of the record before the fit.
     """
 
     natural_frequency: FloatArray
@@ -108,6 +116,7 @@ class OutputOnlyModes:
     stabilisation: Stabilisation
     correlations: Correlations
     provenance: Provenance = field(default=())
+    sines: SpindleLines = NO_LINES
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -146,6 +155,9 @@ def identify_output_only(
     """
     settings = settings or OutputOnlySettings()
     band = _band(recording, settings)
+    lines = NO_LINES
+    if settings.take_out_sines:
+        recording, lines = without_spindle_lines(recording, band)
     data = correlate_responses(
         recording,
         highest=band[1],
@@ -188,6 +200,7 @@ def identify_output_only(
         stabilisation=table,
         correlations=data,
         provenance=(*recording.provenance, done),
+        sines=lines,
     )
 
 

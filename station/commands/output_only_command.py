@@ -74,6 +74,8 @@ def show_output_only(
     )
     columns = ("mode", "natural frequency [Hz]", "damping ratio [%]", "remark")
     console(json_target).print(table(title, columns, rows))
+    if modes.sines.words:
+        console(json_target).print(f"note: {modes.sines.words}")
 
 
 def output_only_json(recording: Recording, modes: OutputOnlyModes) -> dict[str, object]:
@@ -83,6 +85,8 @@ def output_only_json(recording: Recording, modes: OutputOnlyModes) -> dict[str, 
         "recording": recording.name,
         "band_hz": list(modes.band),
         "outputs": list(modes.outputs),
+        "sines_hz": modes.sines.frequency.tolist(),
+        "sine_amplitudes": modes.sines.amplitude.tolist(),
         "modes": [
             {
                 "frequency_hz": float(modes.natural_frequency[i]),
