@@ -15,16 +15,16 @@ from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 
-SOURCE = Path(__file__).parents[2] / "benchmarks" / "gap" / "scattered_campaigns.py"
+SIMULATION = Path(__file__).parents[2] / "benchmarks" / "gap" / "scattered_campaigns.py"
 
 pytestmark = pytest.mark.timeout(400)
 
 
-def campaigns_module() -> ModuleType:
-    """Load the campaigns of the benchmark by their path."""
+def drawing() -> ModuleType:
+    """Load the simulation of the benchmark by its path."""
     name = "scattered_campaigns"
     if name not in sys.modules:
-        spec = importlib.util.spec_from_file_location(name, SOURCE)
+        spec = importlib.util.spec_from_file_location(name, SIMULATION)
         assert spec is not None and spec.loader is not None
         sys.modules[name] = importlib.util.module_from_spec(spec)
         spec.loader.exec_module(sys.modules[name])
@@ -34,7 +34,7 @@ def campaigns_module() -> ModuleType:
 @pytest.mark.parametrize(("way", "size"), [("channel", 0.01), ("wander", 0.03)])
 def test_scatter_of_hits_is_no_effect(way: str, size: float, tmp_path: Path) -> None:
     """Gains of each channel and hit, independent and correlated: nothing is missing."""
-    campaign, _ = campaigns_module().scattered_null(7, way, size, grid="small")
+    campaign, _ = drawing().scattered_null(7, way, size, grid="small")
     write_campaign(campaign, tmp_path / "campaign.h5")
     found = diagnose(read_campaign(tmp_path / "campaign.h5"))
     assert found.verdict is Finding.NONE
@@ -46,7 +46,7 @@ def test_scatter_of_hits_is_no_effect(way: str, size: float, tmp_path: Path) -> 
 
 def test_one_bad_hit_among_good_ones_is_listed(tmp_path: Path) -> None:
     """24 % too strong or too weak, with its sign; the verdict is none."""
-    campaign, truth = campaigns_module().scattered_null(9, "bad", 0.03, grid="middle")
+    campaign, truth = drawing().scattered_null(9, "bad", 0.03, grid="middle")
     write_campaign(campaign, tmp_path / "campaign.h5")
     found = diagnose(read_campaign(tmp_path / "campaign.h5"))
     assert found.verdict is Finding.NONE

@@ -127,7 +127,8 @@ def _checked(
 ) -> HeldOut:
     """Check the step where it moves most, and refit more conditions if it fails."""
     condition = conditions_of(bench.blocks)
-    if len(stepped.chi2) < JUDGEMENT.least_conditions:
+    far = stepped.chi2.sum() > bench.policy.far_chi2 * stepped.dof.sum()
+    if far or len(stepped.chi2) < JUDGEMENT.least_conditions:
         return stepped
     own = np.bincount(condition[bench.blocks.group], weights=fit.residual**2)
     order = np.argsort(own - stepped.chi2)

@@ -92,13 +92,14 @@ def estimate_scatter(
     found = _Estimate(problem, likeliest_sizes(problem, start), ())
     found = _within_repeats(found, seen)
     found = _with_systematic(found, seen, policy)
+    trends = found.problem
     found = _correlated(found, problem.systematic)
     found = _within_repeats(found, seen)
     size = np.where(found.size < policy.least_scatter, 0.0, found.size)
     problem, outstanding = found.problem, found.outstanding
     if problem.weighed(size).chi2 > policy.far_chi2 * dof and seen.groups:
-        repeats = of_repeats(problem, seen.groups)
-        size = likeliest_sizes(repeats, start)
+        # Far off, a trend is not taken for scatter with a memory.
+        size = likeliest_sizes(of_repeats(trends, seen.groups), start)
         size = np.where(size < policy.least_scatter, 0.0, size)
         problem, outstanding = replace(problem, rho=0.0), ()
     sd, values = _each_hit(problem, size, outstanding)
@@ -253,10 +254,10 @@ def _likeliest(
     before = problem.deviance(size, restricted=False)
     hits = len(problem.records.along)
     best, least = None, 1.0
-    for at in np.argsort(-gain)[: RESIDUALS.systematic_tried].tolist():
+    for at in _most_likely(gain, candidates):
         chosen = candidates[at]
         if gain[at] < RESIDUALS.systematic_share * _least_gain(hits, policy):
-            break
+            continue
         if chosen.hit and not _stands_out(found, chosen.hit, seen):
             continue
         more = np.concatenate([problem.systematic, chosen.column[:, :, None]], axis=2)
@@ -269,6 +270,15 @@ def _likeliest(
             own = likeliest_sizes(tried, own)
             best, least = (chosen, _Estimate(tried, own, bad)), chance / limit
     return best
+
+
+def _most_likely(gain: FloatArray, candidates: Sequence[_Systematic]) -> list[int]:
+    """Return the trends and the hits with the largest gains by first order."""
+    order = np.argsort(-gain).tolist()
+    trends = [at for at in order if candidates[at].hit is None]
+    hits = [at for at in order if candidates[at].hit is not None]
+    most = RESIDUALS.systematic_tried
+    return [*trends[:most], *hits[:most]]
 
 
 def _least_gain(count: int, policy: Policy) -> float:

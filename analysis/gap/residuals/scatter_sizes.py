@@ -141,7 +141,8 @@ def regressed_sizes(records: CompressedRecords, direction: IntArray) -> FloatArr
 def of_repeats(problem: SizeProblem, groups: Sequence[IntArray]) -> SizeProblem:
     """Return the problem of repeated conditions alone, each with values of its own.
 
-    Repeats share every missing effect, so that no effect speaks through them.
+    Repeats share every missing effect, so that no effect speaks through them; but for
+    a trend with time, which is fitted as well where it was found.
     """
     rows = np.concatenate(groups)
     condition = np.repeat(np.arange(len(groups)), [g.size for g in groups])
@@ -149,10 +150,11 @@ def of_repeats(problem: SizeProblem, groups: Sequence[IntArray]) -> SizeProblem:
     own = np.zeros((rows.size, columns, len(groups), columns))
     for column in range(columns):
         own[np.arange(rows.size), column, condition, column] = 1.0
+    means = own.reshape(rows.size, columns, -1)
     return SizeProblem(
         problem.records.some(rows),
         problem.direction,
-        own.reshape(rows.size, columns, -1),
+        np.concatenate([means, problem.systematic[rows]], axis=2),
         np.full(problem.highest.size, np.inf),
     )
 
