@@ -8,7 +8,7 @@ out, a pole is tried together with the modes around it, and kept where the FRF n
 by the same rule as any candidate, and where it explains most of what the fit left.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import scipy.fft
@@ -89,7 +89,7 @@ def trial_starts(
     modes = whole.pole[: whole.n_modes]
     width = measured_width(whole.lines, modes)
     decays = [factor * float(np.median(width)) for factor in _DECAYS]
-    likeness = np.array([_likeness(whole, decay) for decay in decays])
+    likeness = _likeness(whole, decays)
     best = likeness.max(axis=0)
     for pole, near in zip(modes, apart * width, strict=True):
         best[np.abs(omega - pole.imag) < near] = 0.0
@@ -105,24 +105,30 @@ def trial_starts(
     return starts
 
 
-def _likeness(whole: WholeFit, decay: float) -> FloatArray:
+def _likeness(whole: WholeFit, decays: Sequence[float]) -> FloatArray:
     """Return the chi-squared that a resonance at each line would explain.
 
-    Both sums over the lines are convolutions with the resonance.
+    Shape (n_decays, n_lines). Sums over the lines are convolutions with the resonance;
+    the noise is taken as constant over it.
     """
     omega = whole.lines.laplace.imag
     pitch = float(np.median(np.diff(omega)))
     away = pitch * np.arange(-omega.size + 1, omega.size)
-    shape = 1.0 / (decay + 1j * away)
-    size = scipy.fft.next_fast_len(3 * omega.size)
-    turned = scipy.fft.fft(shape[::-1].conj(), size)
-    power = scipy.fft.fft(np.abs(shape) ** 2, size)
-    weighted = scipy.fft.fft(whole.residual / whole.noise, size, axis=1)
-    weight = scipy.fft.fft(1.0 / whole.noise, size, axis=1)
-    part = slice(omega.size - 1, 2 * omega.size - 1)
-    alike = scipy.fft.ifft(weighted * turned, axis=1)[:, part]
-    total = scipy.fft.ifft(weight * power, axis=1)[:, part].real
-    return np.asarray(np.sum(2.0 * np.abs(alike) ** 2 / total, axis=0))
+    size = scipy.fft.next_fast_len(2 * omega.size)
+    weighted = scipy.fft.fft(whole.residual / np.sqrt(whole.noise), size, axis=1)
+    ones = scipy.fft.fft(np.ones(omega.size), size)
+    found = []
+    for decay in decays:
+        shape = 1.0 / (decay + 1j * away)
+        # Turned around, and wrapped so that lag 0 is the first.
+        turned = np.zeros(size, complex)
+        turned[: omega.size] = shape[omega.size - 1 :: -1].conj()
+        turned[size - omega.size + 1 :] = shape[: omega.size - 1 : -1].conj()
+        alike = scipy.fft.ifft(weighted * scipy.fft.fft(turned), axis=1)
+        total = scipy.fft.ifft(ones * scipy.fft.fft(np.abs(turned) ** 2)).real
+        power = np.sum(np.abs(alike[:, : omega.size]) ** 2, axis=0)
+        found.append(2.0 * power / total[: omega.size])
+    return np.array(found)
 
 
 def _tried(whole: WholeFit, start: complex) -> complex | None:

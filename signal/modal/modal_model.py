@@ -183,7 +183,10 @@ def _uncertainty(
     poles = fitted.poles
     pole, size = poles.pole, np.abs(poles.pole)
     covariance = poles.covariance * poles.inflation[:, None, None]
-    covariance = covariance + fitted.shared + fitted.doubts.shift
+    # One residual shows both: the larger counts.
+    parts = np.stack((fitted.shared, fitted.doubts.shift))
+    larger = np.argmax(np.trace(parts, axis1=2, axis2=3), axis=0)
+    covariance = covariance + parts[larger, np.arange(pole.size)]
     # d|p| and d(-Re p / |p|) for a change of (Re p, Im p).
     along = np.stack((pole.real, pole.imag), axis=1) / size[:, None]
     across = np.stack((-(pole.imag**2), pole.real * pole.imag), axis=1)
