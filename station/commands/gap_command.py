@@ -35,8 +35,7 @@ def run_gap(
     model: Path | None = None,
     preload: str | None = None,
     without: str | None,
-    with_: str | None = None,
-    effects: Sequence[Path] = (),
+    effects: Sequence[Path | str] = (),
     report: Path | None,
     json_target: str | None,
 ) -> Diagnosis:
@@ -48,21 +47,21 @@ def run_gap(
         model: bench model, where the source has none.
         preload: on the joint with unit, where the session gives none.
         without: names of effects to leave out of the catalogue, joined by commas.
-        with_: names of further laws of real joints, joined by commas.
-        effects: files of the user's own effects, run as Python.
+        effects: further ones: files of the user's own effects, run as Python, and
+            names of laws of real joints.
         report: HTML report to write, or None.
         json_target: where the JSON goes.
     """
     sources = [str(source), *map(str, more)]
     files = [Path(name) for name in sources if not is_url(name)]
-    check_outputs(
-        [*files, *effects, *([model] if model else [])], [report, json_target]
-    )
+    owned = [one for one in effects if isinstance(one, Path)]
+    check_outputs([*files, *owned, *([model] if model else [])], [report, json_target])
     wanted = GapRequest(
-        model, _names(without), parse_preload(preload) if preload else None
+        model, names_in(without), parse_preload(preload) if preload else None
     )
-    own = [entry for path in effects for entry in read_effects(path)]
-    entries = with_real_joints(installed_catalogue(), _names(with_))
+    own = [entry for path in owned for entry in read_effects(path)]
+    laws = [one for one in effects if isinstance(one, str)]
+    entries = with_real_joints(installed_catalogue(), laws)
     wanted = replace(wanted, entries=with_own(entries, own))
     packages = effect_packages(wanted.entries)
     screen = Screen(stderr=True)
@@ -83,7 +82,8 @@ def run_gap(
     return done.found
 
 
-def _names(joined: str | None) -> frozenset[str]:
+def names_in(joined: str | None) -> frozenset[str]:
+    """Return the names of an option that joins them by commas."""
     return frozenset(word.strip() for word in (joined or "").split(",") if word.strip())
 
 

@@ -100,7 +100,7 @@ def gap_command(
         jointbench gap session.h5 --model bench.toml --report gap.html
         jointbench gap 'sim:two-body-campaign?seed=3&hide=iwan'
     """
-    from jointbench.station.commands.gap_command import run_gap
+    from jointbench.station.commands.gap_command import names_in, run_gap
 
     run_gap(
         sources[0],
@@ -108,8 +108,7 @@ def gap_command(
         model=model,
         preload=preload,
         without=without,
-        with_=with_,
-        effects=effects or [],
+        effects=[*(effects or []), *sorted(names_in(with_))],
         report=report,
         json_target=json,
     )
