@@ -31,7 +31,7 @@ from jointbench.analysis.gap.model.confidence import (
 SIGNS = (1.0, -1.0, -1.0, -1.0, -1.0, -1.0, 1.0, -1.0)
 """Of the slopes: margin, excess, probe, left, scatter, deviation, amplitude, second."""
 PRIOR_SLOPE = 0.3
-PRIOR_SD = 1.0
+PRIOR_SD = 0.3
 
 
 def answers(path: Path) -> list[dict[str, Any]]:

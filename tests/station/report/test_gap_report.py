@@ -6,6 +6,7 @@ from functools import cache
 
 import gap_outcomes as outcomes
 import pytest
+from gap_contradictions import contradictions
 from rich.console import Console
 
 from jointbench.analysis.gap.diagnosis.diagnose import conclude
@@ -235,3 +236,27 @@ def test_the_provenance_holds_the_policy_of_the_verdict() -> None:
     page = render(gap_report(varied, title="made"))
     assert "a varied policy" in page
     assert "a delta score of 20 (" in page
+
+
+def test_a_mostly_verdict_has_its_law_rivals_and_linear_error_everywhere() -> None:
+    """JSON, terminal and page state family, what is left and the linear error."""
+    diagnosis = found("mostly")
+    stated = diagnosis_json(diagnosis)
+    assert stated["verdict"] == "mostly"
+    assert stated["effects"] == []
+    mostly = stated["mostly"]
+    assert (mostly["family"], mostly["site"]) == ("stiffness", "link:joint")
+    assert mostly["share_explained"] > 0.5
+    assert {row["channel"] for row in mostly["linear_discrepancy"]} == {"a0", "a1"}
+    screen = Console(width=200, record=True)
+    gap_output.show_on(screen, diagnosis)
+    terminal = screen.export_text()
+    for label in ("verdict: mostly", "law:", "rivals:", "left:", "linear:", "checked:"):
+        assert label in terminal
+    report = gap_report(diagnosis, title="made")
+    section = next(s for s in report.sections if s.anchor == "model-error")
+    assert [i.identifier for i in section.items if isinstance(i, Plot)] == [
+        "left",
+        "discrepancy",
+    ]
+    assert contradictions(diagnosis, frozenset({"cubic_stiffness"})) == []
