@@ -156,7 +156,7 @@ def respond_modes(
     modal = np.einsum("mi,ril->rml", push, data.spectrum) * receptance
     if laws:
         found = forces or _predicted(given, modes, data, modal, laws, oversampling)
-        across = port_rows(given, modes)[:, list(found.ports)]
+        across = _port_rows(given, modes)[:, list(found.ports)]
         modal = modal - np.einsum("mp,prl->rml", across, found.spectra) * receptance
     seen = modes.shapes[:, [points.index(p) for p in given.sensors]]
     spectra = np.einsum("ms,rml->rsl", seen, modal)
@@ -177,7 +177,7 @@ def _predicted(
 ) -> PortForces:
     """Return the forces of laws along the predicted motion of their ports."""
     ports = sorted({x.port for x in laws})
-    across = port_rows(given, modes)[:, ports]
+    across = _port_rows(given, modes)[:, ports]
     spectra = force_spectra(
         data.excitation,
         np.einsum("mp,rml->prl", across, modal),
@@ -205,7 +205,7 @@ def modal_receptance(modes: Modes, s: ComplexArray) -> ComplexArray:
     )
 
 
-def port_rows(given: RecordSet, modes: Modes) -> FloatArray:
+def _port_rows(given: RecordSet, modes: Modes) -> FloatArray:
     """Return the relative motion at every port in each mode, (n_modes, n_ports)."""
     rows = [port_shapes(modes, given.points, port) for port in given.ports]
     return np.stack(rows, axis=1)
