@@ -14,10 +14,10 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.modal_bench.level_records import LevelRecord, RecordSet
-from jointbench.analysis.gap.modal_bench.modal_base import ModalBase, Modes
+from jointbench.analysis.gap.modal_bench.modal_base import ModalBase, UnitModes
 from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench, make_modal_bench
-from jointbench.analysis.gap.modal_bench.modal_response import modal_receptance
 from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
+from jointbench.analysis.gap.modal_bench.port_response import modal_receptance
 from jointbench.analysis.gap.modal_bench.record_frf import record_frf
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
@@ -96,7 +96,7 @@ def _change(given: RecordSet, base: ModalBase) -> FloatArray:
     return np.minimum(np.abs(fit.base), MODAL.start_sd)
 
 
-def _fitted(given: RecordSet, modes: Modes) -> tuple[ModalBench, Fit]:
+def _fitted(given: RecordSet, modes: UnitModes) -> tuple[ModalBench, Fit]:
     """Fit modes to the lowest level, with uninformative priors."""
     count = modes.frequency.size * (2 + len(given.points))
     base = ModalBase(given.points, modes, np.full(count, MODAL.start_sd))
@@ -133,7 +133,7 @@ def _poles(frf: Frf, wanted: BaseRequest) -> ComplexArray:
 
 def start_modes(
     given: RecordSet, frf: Frf, poles: ComplexArray, above: float | None
-) -> Modes:
+) -> UnitModes:
     """Return modes of unit mass with real shapes, by linear least squares.
 
     Args:
@@ -148,7 +148,9 @@ def start_modes(
         omega = np.append(omega, 2.0 * np.pi * above)
         damping = np.append(damping, 0.01)
     size = omega.size
-    bare = Modes(omega / (2.0 * np.pi), damping, np.zeros((size, len(given.points))))
+    bare = UnitModes(
+        omega / (2.0 * np.pi), damping, np.zeros((size, len(given.points)))
+    )
     s = np.asarray(frf.added_decay_rate + 2j * np.pi * frf.frequency, complex)
     columns = modal_receptance(bare, s).T * s[:, None] ** int(given.output)
     constants = np.zeros((size, len(given.sensors), len(given.inputs)))

@@ -17,7 +17,7 @@ from jointbench.analysis.lumped.lumped_model import GROUND
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Modes:
+class UnitModes:
     """Modes with shapes of unit modal mass.
 
     Attributes:
@@ -47,7 +47,7 @@ class ModalBase:
     """
 
     points: tuple[str, ...]
-    nominal: Modes
+    nominal: UnitModes
     sd: FloatArray
 
     def __post_init__(self) -> None:
@@ -77,10 +77,10 @@ class ModalBase:
         """Largest shape component of each mode [1/sqrt(kg)], shape (n_modes,)."""
         return np.asarray(np.abs(self.nominal.shapes).max(axis=1))
 
-    def modes(self, coordinates: FloatArray) -> Modes:
+    def modes(self, coordinates: FloatArray) -> UnitModes:
         """Return the modes at coordinates, shape (n_base,)."""
         x = coordinates.reshape(self.nominal.frequency.size, -1)
-        return Modes(
+        return UnitModes(
             self.nominal.frequency * np.exp(x[:, 0]),
             self.nominal.damping * np.exp(x[:, 1]),
             self.nominal.shapes + self.reach[:, None] * x[:, 2:],
@@ -103,7 +103,7 @@ class ModalBase:
         return np.asarray(slope.ravel() * sd)
 
 
-def port_shapes(modes: Modes, points: tuple[str, ...], port: Port) -> FloatArray:
+def port_shapes(modes: UnitModes, points: tuple[str, ...], port: Port) -> FloatArray:
     """Return the relative motion across a port in each mode, shape (n_modes,)."""
     first, second = port.between
     motion = modes.shapes[:, points.index(second)]

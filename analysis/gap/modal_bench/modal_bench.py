@@ -16,18 +16,18 @@ from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE, check_names
 from jointbench.analysis.gap.catalogue.probes import PROBES
 from jointbench.analysis.gap.modal_bench.level_records import LevelRecord, RecordSet
 from jointbench.analysis.gap.modal_bench.modal_base import ModalBase
-from jointbench.analysis.gap.modal_bench.modal_response import (
-    PortForces,
-    Shaken,
-    measured_forces,
-    respond_modes,
-    shaken,
-)
 from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.modal_bench.outline import outline
 from jointbench.analysis.gap.modal_bench.port_effects import (
     port_candidates,
     port_scales,
+)
+from jointbench.analysis.gap.modal_bench.port_response import (
+    PortForces,
+    Shaken,
+    measured_forces,
+    respond_modes,
+    shaken,
 )
 from jointbench.analysis.gap.model.campaign import TAIL, Campaign
 from jointbench.analysis.gap.model.diagnosis_record import View

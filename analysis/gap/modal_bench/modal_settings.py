@@ -7,7 +7,7 @@ from jointbench.analysis.gap.model.setting import numerical
 
 
 @dataclass(frozen=True, slots=True)
-class ModalSettings:
+class ModalBenchSettings:
     """Numbers of the algorithms; unit, purpose and basis are with each field."""
 
     frf_segments: int = numerical(
@@ -123,4 +123,4 @@ class ModalSettings:
     )
 
 
-MODAL = ModalSettings()
+MODAL = ModalBenchSettings()

@@ -4,7 +4,7 @@
 import numpy as np
 
 from jointbench.analysis.gap.modal_bench.level_records import LevelRecord, RecordSet
-from jointbench.analysis.gap.modal_bench.modal_response import Shaken
+from jointbench.analysis.gap.modal_bench.port_response import Shaken
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.lumped.lumped_model import (
     Body,

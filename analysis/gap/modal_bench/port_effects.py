@@ -11,8 +11,8 @@ import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.modal_bench.level_records import RecordSet
-from jointbench.analysis.gap.modal_bench.modal_base import Modes, port_shapes
-from jointbench.analysis.gap.modal_bench.modal_response import Shaken, modal_receptance
+from jointbench.analysis.gap.modal_bench.modal_base import UnitModes, port_shapes
+from jointbench.analysis.gap.modal_bench.port_response import Shaken, modal_receptance
 from jointbench.analysis.gap.model.effect import Candidate, Effect, Site
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 
@@ -55,7 +55,7 @@ def _word_at(word: str, port: str) -> str:
     return "/".join(parts)
 
 
-def port_scales(given: RecordSet, modes: Modes, data: Shaken) -> dict[str, float]:
+def port_scales(given: RecordSet, modes: UnitModes, data: Shaken) -> dict[str, float]:
     """Return characteristic sizes at each port, which scale starts and bounds.
 
     The stiffness of a port is the inverse of its static compliance in these modes,
@@ -83,7 +83,7 @@ def port_scales(given: RecordSet, modes: Modes, data: Shaken) -> dict[str, float
 
 
 def _port_scales(
-    modes: Modes, across: FloatArray, data: Shaken, motion: ComplexArray
+    modes: UnitModes, across: FloatArray, data: Shaken, motion: ComplexArray
 ) -> dict[str, float]:
     share = across**2 / modes.omega**2
     stiffness = 1.0 / max(float(share.sum()), 1e-300)

@@ -18,7 +18,7 @@ from jointbench.analysis.gap.modal_bench.level_records import (
     Port,
     RecordSet,
 )
-from jointbench.analysis.gap.modal_bench.modal_base import ModalBase, Modes
+from jointbench.analysis.gap.modal_bench.modal_base import ModalBase, UnitModes
 from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench, make_modal_bench
 from jointbench.analysis.gap.modal_bench.periods import one_period
 from jointbench.analysis.gap.model.effect import Term
@@ -92,12 +92,12 @@ def records(cubic: float = CUBIC, noise: float = 2e-7) -> RecordSet:
     )
 
 
-def true_modes() -> Modes:
+def true_modes() -> UnitModes:
     """Return the modes of the two masses."""
     root = np.diag(1.0 / np.sqrt(np.diag(MASS)))
     values, vectors = np.linalg.eigh(root @ STIFFNESS @ root)
     omega = np.sqrt(values)
-    return Modes(omega / (2 * np.pi), 1e-4 * omega, (root @ vectors).T)
+    return UnitModes(omega / (2 * np.pi), 1e-4 * omega, (root @ vectors).T)
 
 
 @pytest.fixture(scope="module")

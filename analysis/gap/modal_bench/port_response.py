@@ -9,7 +9,7 @@ import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.modal_bench.level_records import LevelRecord, RecordSet
-from jointbench.analysis.gap.modal_bench.modal_base import Modes, port_shapes
+from jointbench.analysis.gap.modal_bench.modal_base import UnitModes, port_shapes
 from jointbench.analysis.gap.modal_bench.modal_settings import MODAL
 from jointbench.analysis.gap.modal_bench.port_force import force_spectra
 from jointbench.analysis.gap.response.effect_hooks import HitConditions
@@ -119,7 +119,7 @@ def measured_forces(
     """
     ports = sorted({x.port for x in laws})
     motion = np.stack([port_motion(given, data, q) for q in ports])
-    still = Modes(np.ones(1), np.full(1, 0.5), np.zeros((1, 0)))
+    still = UnitModes(np.ones(1), np.full(1, 0.5), np.zeros((1, 0)))
     between = port_modes(still, np.zeros((1, len(ports))), len(data.records))
     own = [PortLaw(ports.index(x.port), x.law) for x in laws]
     spectra = force_spectra(data.excitation, motion, between, own, oversampling)
@@ -128,7 +128,7 @@ def measured_forces(
 
 def respond_modes(
     given: RecordSet,
-    modes: Modes,
+    modes: UnitModes,
     data: Shaken,
     laws: Sequence[PortLaw],
     *,
@@ -156,7 +156,7 @@ def respond_modes(
     modal = np.einsum("mi,ril->rml", push, data.spectrum) * receptance
     if laws:
         found = forces or _predicted(given, modes, data, modal, laws, oversampling)
-        across = port_rows(given, modes)[:, list(found.ports)]
+        across = _port_rows(given, modes)[:, list(found.ports)]
         modal = modal - np.einsum("mp,prl->rml", across, found.spectra) * receptance
     seen = modes.shapes[:, [points.index(p) for p in given.sensors]]
     spectra = np.einsum("ms,rml->rsl", seen, modal)
@@ -169,7 +169,7 @@ def respond_modes(
 
 def _predicted(
     given: RecordSet,
-    modes: Modes,
+    modes: UnitModes,
     data: Shaken,
     modal: ComplexArray,
     laws: Sequence[PortLaw],
@@ -177,7 +177,7 @@ def _predicted(
 ) -> PortForces:
     """Return the forces of laws along the predicted motion of their ports."""
     ports = sorted({x.port for x in laws})
-    across = port_rows(given, modes)[:, ports]
+    across = _port_rows(given, modes)[:, ports]
     spectra = force_spectra(
         data.excitation,
         np.einsum("mp,rml->prl", across, modal),
@@ -197,7 +197,7 @@ def port_motion(given: RecordSet, data: Shaken, index: int) -> ComplexArray:
     return motion
 
 
-def modal_receptance(modes: Modes, s: ComplexArray) -> ComplexArray:
+def modal_receptance(modes: UnitModes, s: ComplexArray) -> ComplexArray:
     """Return the receptance of each mode of unit mass, shape (n_modes, n_lines)."""
     omega = modes.omega[:, None]
     return np.asarray(
@@ -205,13 +205,13 @@ def modal_receptance(modes: Modes, s: ComplexArray) -> ComplexArray:
     )
 
 
-def port_rows(given: RecordSet, modes: Modes) -> FloatArray:
+def _port_rows(given: RecordSet, modes: UnitModes) -> FloatArray:
     """Return the relative motion at every port in each mode, (n_modes, n_ports)."""
     rows = [port_shapes(modes, given.points, port) for port in given.ports]
     return np.stack(rows, axis=1)
 
 
-def port_modes(modes: Modes, across: FloatArray, records: int) -> PortModes:
+def port_modes(modes: UnitModes, across: FloatArray, records: int) -> PortModes:
     """Return the modes between ports, for a number of records.
 
     Args:
