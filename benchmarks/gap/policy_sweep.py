@@ -42,6 +42,9 @@ from jointbench.analysis.gap.model_error.model_error_settings import (
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 from jointbench.analysis.gap.search.search_settings import SEARCH
+from jointbench.analysis.gap.second_method.second_method_settings import (
+    SECOND_METHOD,
+)
 from jointbench.simulators.campaigns.campaign_records import make_campaign
 from jointbench.simulators.campaigns.write_campaign import write_campaign
 
@@ -64,6 +67,7 @@ PARTS: Mapping[str, Any] = {
     "judgement": JUDGEMENT,
     "confidence": CONFIDENCE,
     "diagnosis": DIAGNOSIS,
+    "second method": SECOND_METHOD,
     "model error": MODEL_ERROR_SETTINGS,
     "modes and ports": MODAL,
 }

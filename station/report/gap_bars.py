@@ -7,15 +7,14 @@ from typing import Any
 import numpy as np
 
 from jointbench.analysis.gap.model.diagnosis_record import Gap, View
-from jointbench.station.report.gap_style import (
-    AFTER,
-    BEFORE,
-    LEGEND,
-    LOWEST_BAR,
-    SMALLEST_TOP,
-)
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.traces import Trace
+
+MEASURED, BEFORE, AFTER = "#1c2733", "#d1495b", "#0b5cab"
+LEGEND = {"orientation": "h", "x": 0, "yanchor": "bottom", "traceorder": "normal"}
+LOWEST_BAR = 0.5
+"""Where the bars of chi2/dof start: below 1, so that noise is seen as a short bar."""
+SMALLEST_TOP = 10.0
 
 
 def view_grid(names: Sequence[str], before: Gap, after: Gap | None) -> Figure:

@@ -8,7 +8,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.model.evidence_records import RecordEstimates, Spectra
-from jointbench.station.report.gap_style import (
+from jointbench.station.report.gap_bars import (
     AFTER,
     BEFORE,
     LOWEST_BAR,

@@ -9,10 +9,16 @@ import numpy as np
 
 from jointbench.analysis.gap.model.diagnosis_record import Gap
 from jointbench.analysis.gap.model.evidence_records import Curves, GapEvidence
-from jointbench.station.report.gap_bars import bar_axes, bars
+from jointbench.station.report.gap_bars import (
+    AFTER,
+    BEFORE,
+    LEGEND,
+    MEASURED,
+    bar_axes,
+    bars,
+)
 from jointbench.station.report.gap_figures import pretty, spectrum, spectrum_axes
 from jointbench.station.report.gap_sentences import PRIORS
-from jointbench.station.report.gap_style import AFTER, BEFORE, LEGEND, MEASURED
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.traces import Trace, band, line
 

@@ -223,7 +223,7 @@ _LOOSENING = LumpedEffect(
     stiffness=_loosening,
     rise=_loosening_rise,
 )
-_DELAY = LumpedEffect(
+DELAY = LumpedEffect(
     Effect(
         "delay",
         "sensor",
@@ -310,7 +310,7 @@ LINEAR: tuple[LumpedEffect, ...] = (
     _PRELOAD_STIFFNESS,
     _PRELOAD_DAMPING,
     _LOOSENING,
-    _DELAY,
+    DELAY,
     GAIN_ERROR,
     _SENSOR_LOWPASS,
     _POLARITY,

@@ -23,10 +23,9 @@ from jointbench.analysis.gap.judgement.campaign_limits import campaign_limits
 from jointbench.analysis.gap.judgement.expected_residual import noise_sd
 from jointbench.analysis.gap.judgement.held_out import HeldOut, hold_out
 from jointbench.analysis.gap.model.campaign import Campaign
-from jointbench.analysis.gap.model.check_records import EffectLimit
+from jointbench.analysis.gap.model.check_records import Closest, EffectLimit
 from jointbench.analysis.gap.model.confidence import Evidence, confidence_of
 from jointbench.analysis.gap.model.diagnosis_record import (
-    Closest,
     Diagnosis,
     Estimate,
     Finding,

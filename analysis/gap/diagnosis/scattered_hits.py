@@ -33,7 +33,8 @@ def scatter_found(bench: LumpedBench) -> ScatterFound:
                 if far or (record, column) in scatter.outstanding:
                     # Of the model minus the measurement; the hit is the reverse.
                     off = -float(value) * direction.scale
-                    hits.append(HitFound(record, direction.name, off, usual))
+                    name, unit = direction.name, direction.unit
+                    hits.append(HitFound(record, name, off, usual, unit))
     return ScatterFound(tuple(directions), scatter.rho, tuple(hits))
 
 

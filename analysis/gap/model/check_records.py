@@ -5,7 +5,23 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from jointbench.analysis.gap.model.confidence import Evidence
 from jointbench.analysis.gap.model.effect_parameter import Reported
+
+
+@dataclass(frozen=True, slots=True)
+class Closest:
+    """The best explanation before the acceptance criteria.
+
+    Attributes:
+        effects: name and site of each effect.
+        confidence: probability that names and sites are right [-].
+        evidence: quantities from which the confidence is computed.
+    """
+
+    effects: tuple[str, ...]
+    confidence: float
+    evidence: Evidence
 
 
 @dataclass(frozen=True, slots=True)

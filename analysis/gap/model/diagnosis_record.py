@@ -8,6 +8,7 @@ from typing import Any
 
 from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 from jointbench.analysis.gap.model.check_records import (
+    Closest,
     EffectLimit,
     SecondMethod,
     limits_json,
@@ -58,21 +59,6 @@ class NamedEffect:
     name: str
     site: str
     parameters: tuple[Estimate, ...]
-    confidence: float
-    evidence: Evidence
-
-
-@dataclass(frozen=True, slots=True)
-class Closest:
-    """The best explanation before the acceptance criteria.
-
-    Attributes:
-        effects: name and site of each effect.
-        confidence: probability that names and sites are right [-].
-        evidence: quantities from which the confidence is computed.
-    """
-
-    effects: tuple[str, ...]
     confidence: float
     evidence: Evidence
 

@@ -29,12 +29,14 @@ class HitFound:
         direction: along which it deviates; empty if no direction describes it.
         value: deviation in the unit of the direction; without one, its chi2/dof.
         sd: of the usual hits, same unit; 0 if they do not scatter.
+        unit: of value and sd, ``"-"`` or ``"s"``.
     """
 
     record: int
     direction: str
     value: float
     sd: float
+    unit: str = "-"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +76,7 @@ def hit_words(hit: HitFound) -> str:
     """Return one hit in words, for example ``record 3 (force gain +8 %)``."""
     if not hit.direction:
         return f"record {hit.record}"
-    if "delay" in hit.direction:
+    if hit.unit == "s":
         return f"record {hit.record} ({hit.direction} {1e6 * hit.value:+.2g} us)"
     return f"record {hit.record} ({hit.direction} {100 * hit.value:+.2g} %)"
 

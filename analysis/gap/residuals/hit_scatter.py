@@ -18,7 +18,6 @@ from jointbench.analysis.gap.residuals.scatter_likelihood import (
 from jointbench.analysis.gap.residuals.scatter_record import (
     HitScatter,
     ScatterDirection,
-    direction_of_columns,
 )
 from jointbench.analysis.gap.residuals.scatter_sizes import (
     SizeProblem,
@@ -79,7 +78,7 @@ def estimate_scatter(
         dof: number of residuals with weight.
         policy: thresholds.
     """
-    direction = direction_of_columns(directions)
+    direction = _direction_of_columns(directions)
     problem = SizeProblem(
         records,
         direction,
@@ -116,7 +115,7 @@ def with_unseen_hits(
         records: all of them, compressed.
         kept: hits that were seen, shape (n_seen,).
     """
-    direction = direction_of_columns(found.directions)
+    direction = _direction_of_columns(found.directions)
     sd = np.tile(found.size[direction], (len(records.along), 1))
     sd[kept] = found.sd
     hits = tuple((int(kept[record]), column) for record, column in found.outstanding)
@@ -347,3 +346,10 @@ def _stands_out(found: _Estimate, hit: tuple[int, int], seen: HitsSeen) -> bool:
         return int(problem.direction[column]) not in seen.joints
     rest = np.mean([values[i] for i in own[0] if i != record])
     return bool(abs(values[record] - rest) > 0.5 * abs(values[record]))
+
+
+def _direction_of_columns(directions: Sequence[ScatterDirection]) -> IntArray:
+    """Return the direction of each column, shape (n_columns,)."""
+    return np.concatenate(
+        [np.full(len(d.columns), k) for k, d in enumerate(directions)]
+    )

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.catalogue.linear_effects import DELAY
 from jointbench.analysis.gap.model.effect import Term
 from jointbench.analysis.gap.residuals.lumped_residual import LumpedResidual
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
@@ -27,8 +27,6 @@ from jointbench.analysis.gap.residuals.scatter_record import (
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.predict_records import respond
 from jointbench.analysis.lumped.lumped_model import LumpedModel
-
-_DELAY = next(entry for entry in CATALOGUE if entry.name == "delay")
 
 
 def scatter_directions(
@@ -159,7 +157,7 @@ def _later(
     """Return the change of the response per sample of delay, by the transform."""
     step = RESIDUALS.delay_step
     late = np.array([step / bench.campaign.sample_rate])
-    delay = Action(_DELAY, "channel", -1, late)
+    delay = Action(DELAY, "channel", -1, late)
     moved = respond(
         bench.campaign.model,
         bench.theta(base),

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
+from jointbench.acquisition.basics.arrays import FloatArray, freeze
 
 FORCE_GAIN = "force gain"
 CHANNEL_GAIN = "channel gain"
-DELAY_OF_HIT = "delay"
+DELAY_OF_HIT = "force delay"
 DELAY_OF_CHANNEL = "channel delay"
 JOINT = "stiffness of "
 
@@ -35,13 +35,6 @@ class ScatterDirection:
     def is_joint(self) -> bool:
         """Whether it is the stiffness of a joint."""
         return self.name.startswith(JOINT)
-
-
-def direction_of_columns(directions: Sequence[ScatterDirection]) -> IntArray:
-    """Return the direction of each column, shape (n_columns,)."""
-    return np.concatenate(
-        [np.full(len(d.columns), k) for k, d in enumerate(directions)]
-    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)

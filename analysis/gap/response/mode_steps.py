@@ -26,7 +26,7 @@ _REAL, _IMAGINARY, _TURN, _QUARTER, _START, _START_I, _END, _END_I, _POLE, _POLE
     i * LANES for i in range(10)
 )
 """Offsets within a mode: its state, growth, hold weights and pole (re, im)."""
-ONE_PORT_MODE = 10 * LANES
+_ONE_PORT_MODE = 10 * LANES
 _OLD, _OLD_I, _NEW, _NEW_I = (i * LANES for i in range(10, 14))
 """With several ports: drive at the start and, estimated, at the end of the step."""
 _PORTS = 14 * LANES
@@ -38,7 +38,7 @@ _AT_PORT = 4 * LANES
 @compiled(inline="always")
 def mode_size(n_ports: int) -> int:
     """Return the size of a mode in the state of the lanes."""
-    return ONE_PORT_MODE if n_ports == 1 else _PORTS + n_ports * _AT_PORT
+    return _ONE_PORT_MODE if n_ports == 1 else _PORTS + n_ports * _AT_PORT
 
 
 @compiled()
@@ -98,7 +98,7 @@ def resting_state(
 def predict_one_port(w: FloatArray, n_modes: int) -> None:
     """Advance the modes with an estimated force; add them to the motion of the port."""
     for m in range(n_modes):
-        at = PORT + m * ONE_PORT_MODE
+        at = PORT + m * _ONE_PORT_MODE
         for k in range(LANES):
             x, y = w[at + _REAL + k], w[at + _IMAGINARY + k]
             turn, quarter = w[at + _TURN + k], w[at + _QUARTER + k]
@@ -120,7 +120,7 @@ def add_speed_one_port(w: FloatArray, n_modes: int) -> None:
     """Add the speed of the modes to that of the port."""
     for m in range(n_modes):
         for k in range(LANES):
-            at = PORT + m * ONE_PORT_MODE + k
+            at = PORT + m * _ONE_PORT_MODE + k
             w[SPEED + k] += w[at + _POLE] * w[at + _REAL]
             w[SPEED + k] -= w[at + _POLE_I] * w[at + _IMAGINARY]
 
@@ -130,7 +130,7 @@ def correct_one_port(w: FloatArray, n_modes: int) -> None:
     """Correct the modes by the force minus its estimate, which is in `GUESS`."""
     for m in range(n_modes):
         for k in range(LANES):
-            at = PORT + m * ONE_PORT_MODE + k
+            at = PORT + m * _ONE_PORT_MODE + k
             w[at + _REAL] -= w[at + _END] * w[GUESS + k]
             w[at + _IMAGINARY] -= w[at + _END_I] * w[GUESS + k]
 

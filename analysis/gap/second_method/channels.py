@@ -13,7 +13,9 @@ from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.excitation import Excitation
 from jointbench.analysis.gap.second_method.laws import values_by_name
-from jointbench.analysis.gap.second_method.motion import UPSAMPLING
+from jointbench.analysis.gap.second_method.second_method_settings import (
+    SECOND_METHOD,
+)
 
 Values = Mapping[str, float]
 AT_SAMPLES = ("saturation", "hum")
@@ -21,7 +23,7 @@ AT_SAMPLES = ("saturation", "hum")
 
 
 def anti_alias(
-    signal: FloatArray, excitation: Excitation, points: int = UPSAMPLING
+    signal: FloatArray, excitation: Excitation, points: int = SECOND_METHOD.force_points
 ) -> FloatArray:
     """Take what lies above the pass band out of a signal between the samples.
 
@@ -49,7 +51,7 @@ def through_channels(
     """Pass signals through the linear faults of their channels.
 
     Args:
-        signal: `UPSAMPLING` points per sample, shape (n_records, n_channels, n_fine).
+        signal: `force_points` points per sample, shape (n_records, n_channels, n_fine).
         actions: effects; those not on channels are passed over.
         sample_rate: of the samples [Hz].
 
@@ -60,7 +62,7 @@ def through_channels(
         UsageError: an effect has no second route.
     """
     out = signal.copy()
-    step = 1.0 / (sample_rate * UPSAMPLING)
+    step = 1.0 / (sample_rate * SECOND_METHOD.force_points)
     for action in actions:
         name, p = action.entry.effect.name, values_by_name(action)
         if action.kind != "channel" or name in AT_SAMPLES:

@@ -17,10 +17,9 @@ from jointbench.analysis.gap.response.curve_integration import GRADE
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import Law
 from jointbench.analysis.gap.response.law_forces import CURVES
-
-SLIDERS_OF_IWAN = 14
-"""The catalogue's bank: equal steps of slip displacement, a slider in the mean of
-each."""
+from jointbench.analysis.gap.second_method.second_method_settings import (
+    SECOND_METHOD,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +163,7 @@ def _iwan(p: Values) -> ContinuousLaw:
 
 
 def iwan_bank(
-    kt: float, phimax: float, chi: float, count: int = SLIDERS_OF_IWAN
+    kt: float, phimax: float, chi: float, count: int = SECOND_METHOD.iwan_sliders
 ) -> tuple[FloatArray, FloatArray]:
     """Return stiffness [N/m] and slip displacement [m] of each slider, (count,).
 

@@ -17,11 +17,10 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.gap.response.excitation import Excitation
 from jointbench.analysis.gap.response.predict_records import undamped
+from jointbench.analysis.gap.second_method.second_method_settings import (
+    SECOND_METHOD,
+)
 from jointbench.analysis.gap.second_method.system import System
-
-UPSAMPLING = 16
-"""Points per sample between which a cubic spline carries the force: 2e-6 of a line at
-0.4 of the sample rate, 1e-8 of a hit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +29,7 @@ class Motion:
 
     Attributes:
         derivatives: displacement [m], velocity [m/s] and acceleration [m/s^2], shape
-            (3, n_records, n_bodies, n_fine), `UPSAMPLING` points per sample or more.
+            (3, n_records, n_bodies, n_fine), `force_points` points per sample or more.
         evaluations: of the equations of motion.
     """
 
@@ -39,7 +38,7 @@ class Motion:
 
 
 def force_between_samples(
-    excitation: Excitation, beyond: int, points: int = UPSAMPLING
+    excitation: Excitation, beyond: int, points: int = SECOND_METHOD.force_points
 ) -> CubicSpline:
     """Return the band-limited force, a spline through its up-sampled points.
 
@@ -66,7 +65,7 @@ def integrate_motion(
     *,
     beyond: int = 0,
     tolerance: float,
-    points: int = UPSAMPLING,
+    points: int = SECOND_METHOD.force_points,
 ) -> Motion:
     """Integrate all records from rest.
 
@@ -75,7 +74,7 @@ def integrate_motion(
         excitation: forces.
         beyond: samples to continue after the record.
         tolerance: local error over the size of the state [-].
-        points: per sample, at least `UPSAMPLING`; more where a force jumps.
+        points: per sample, at least `force_points`; more where a force jumps.
 
     Raises:
         BadData: the integrator gave up, as it does where a law runs away.

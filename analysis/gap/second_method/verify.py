@@ -25,13 +25,12 @@ from jointbench.analysis.gap.second_method.channels import (
     through_channels,
     through_converter,
 )
-from jointbench.analysis.gap.second_method.motion import UPSAMPLING, integrate_motion
+from jointbench.analysis.gap.second_method.motion import integrate_motion
+from jointbench.analysis.gap.second_method.second_method_settings import (
+    SECOND_METHOD,
+)
 from jointbench.analysis.gap.second_method.system import make_system
 from jointbench.analysis.lumped.lumped_model import LumpedModel
-
-TOLERANCE = 1e-9
-BEYOND = 64
-"""Samples integrated after the record, for leads and for the filter to end in."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,8 +63,8 @@ def second_response(
     actions: Sequence[Action] = (),
     *,
     measured: FloatArray | None = None,
-    tolerance: float = TOLERANCE,
-    points: int = UPSAMPLING,
+    tolerance: float = SECOND_METHOD.state_tolerance,
+    points: int = SECOND_METHOD.force_points,
 ) -> FloatArray:
     """Predict the channels by the second route; arguments as those of `respond`.
 
@@ -76,7 +75,7 @@ def second_response(
         actions: effects switched on.
         measured: from which hum takes its phase, shape as the result.
         tolerance: local error over the size of the state [-].
-        points: per sample, a multiple of `UPSAMPLING`; more where a force jumps.
+        points: per sample, a multiple of `force_points`; more where a force jumps.
 
     Returns:
         Response in the model's output, shape (n_records, n_channels, n_samples).
@@ -87,7 +86,7 @@ def second_response(
     """
     bent = [a for a in actions if a.entry.law is not None]
     straight = [a for a in actions if a.entry.law is None]
-    every = points // UPSAMPLING
+    every = points // SECOND_METHOD.force_points
     linear = _fine(model, theta, excitation, straight, tolerance, points)
     fine = linear[..., ::every]
     if bent:
@@ -95,7 +94,8 @@ def second_response(
         bend = anti_alias(whole - linear, excitation, points)
         fine = fine + bend[..., ::every]
     fine = through_channels(fine, actions, excitation.sample_rate)
-    samples = fine[..., : excitation.growth.size * UPSAMPLING : UPSAMPLING]
+    step = SECOND_METHOD.force_points
+    samples = fine[..., : excitation.growth.size * step : step]
     return through_converter(samples, actions, excitation.sample_rate, measured)
 
 
@@ -105,12 +105,16 @@ def _fine(
     excitation: Excitation,
     actions: Sequence[Action],
     tolerance: float,
-    points: int = UPSAMPLING,
+    points: int = SECOND_METHOD.force_points,
 ) -> FloatArray:
     """Return what the bodies under the channels do, between the samples as well."""
     system = make_system(model, theta, excitation, actions)
     motion = integrate_motion(
-        system, excitation, beyond=BEYOND, tolerance=tolerance, points=points
+        system,
+        excitation,
+        beyond=SECOND_METHOD.samples_beyond,
+        tolerance=tolerance,
+        points=points,
     )
     rows = [model.index(channel.body) for channel in model.channels]
     return np.asarray(motion.derivatives[int(model.output)][:, rows])
@@ -125,7 +129,7 @@ def verify_response(
     measured: FloatArray | None = None,
     sigma: FloatArray | None = None,
     oversampling: int = 8,
-    tolerance: float = TOLERANCE,
+    tolerance: float = SECOND_METHOD.state_tolerance,
 ) -> Verification:
     """Compare the two routes.
 
@@ -165,7 +169,7 @@ def verify_response(
 
 
 def verify_fit(
-    bench: LumpedBench, fit: Fit, *, tolerance: float = TOLERANCE
+    bench: LumpedBench, fit: Fit, *, tolerance: float = SECOND_METHOD.state_tolerance
 ) -> Verification:
     """Compare the two routes at a fit, over the noise of its bench.
 

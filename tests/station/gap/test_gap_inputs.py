@@ -228,8 +228,7 @@ def test_hits_of_one_level_are_not_judged(tmp_path: Path) -> None:
     """A plain stream is a single run; the verdict states what it lacks."""
     path = tmp_path / "s.h5"
     record_session_file(
-        "sim:two-body?seed=4&hits=5&level_scatter=0.02&double_rate=0&overload_rate=0"
-        "&interval=0.5&sample_rate=6400",
+        "sim:two-body?seed=4&hits=5&level_scatter=0.02&double_rate=0&overload_rate=0",
         path,
     )
     session = read_session(path)

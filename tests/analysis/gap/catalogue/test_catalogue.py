@@ -126,7 +126,8 @@ def test_no_module_of_the_engine_but_the_catalogue_knows_an_effect_by_its_name()
     found = [
         f"{path.relative_to(root)}:{node.lineno} {node.value!r}"
         for path in sorted(root.rglob("*.py"))
-        if path.parent.name != "catalogue"
+        # The second method formulates every effect once more, from its name.
+        if path.parent.name not in ("catalogue", "second_method")
         for node in ast.walk(ast.parse(path.read_text("utf-8")))
         if isinstance(node, ast.Constant) and node.value in names
     ]
