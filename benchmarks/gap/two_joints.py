@@ -115,13 +115,12 @@ def _two_joint_model() -> LumpedModel:
 
 def forward_of(key: str) -> dict[str, Any]:
     """Return the largest difference from solve_ivp over the peak, by steps."""
-    from second_route.verify import second_response
-
     from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
     from jointbench.analysis.gap.response.dynamic_stiffness import Action
     from jointbench.analysis.gap.response.effect_hooks import HitConditions
     from jointbench.analysis.gap.response.excitation import prepare_excitation
     from jointbench.analysis.gap.response.predict_records import respond
+    from jointbench.analysis.gap.second_method.verify import second_response
 
     rate, samples = 16384.0, 288
     when = np.arange(samples) / rate

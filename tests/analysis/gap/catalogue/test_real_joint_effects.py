@@ -6,7 +6,6 @@ from dataclasses import replace
 import gap_bench as made
 import numpy as np
 import pytest
-from second_route.verify import verify_response
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
@@ -20,6 +19,7 @@ from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import Law, LumpedEffect
 from jointbench.analysis.gap.response.law_loops import force_along
+from jointbench.analysis.gap.second_method.verify import verify_response
 
 TRAVEL = 1.8e-5  # [m], elongation of the joint under the hardest hit
 STIFFNESS = made.NOMINAL["kj"]

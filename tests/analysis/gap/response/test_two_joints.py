@@ -7,7 +7,6 @@ import gap_bench as made
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from second_route.verify import second_response
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import UsageError
@@ -26,6 +25,7 @@ from jointbench.analysis.gap.response.port_forces import (
     port_forces,
 )
 from jointbench.analysis.gap.response.predict_records import respond
+from jointbench.analysis.gap.second_method.verify import second_response
 
 TRAVEL = {"ground": 4.1e-5, "joint": 1.8e-5}  # [m], at the hardest hit
 STIFFNESS = {"ground": made.NOMINAL["k0"], "joint": made.NOMINAL["kj"]}
