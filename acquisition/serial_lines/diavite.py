@@ -36,7 +36,7 @@ TRAVERSES = (0.48e-3, 1.5e-3, 4.8e-3, 15e-3)
 """Traverse by its index [m]."""
 CUTOFFS = (None, 0.08e-3, 0.25e-3, 0.8e-3, 2.5e-3)
 """Cut-off by its index [m]."""
-HEIGHT_STEP = 1e-6 / 128
+_HEIGHT_STEP = 1e-6 / 128
 """Height of one count [m]."""
 _ESC, _ETX, _EOT, _ACK, _NAK = b"\x1b", b"\x03", b"\x04", b"\x06", b"\x15"
 _MOST_TEXT = 4096
@@ -160,7 +160,7 @@ def _profile(
 
 def _heights(body: bytes, *, signed: bool) -> FloatArray:
     counts = np.frombuffer(body, dtype="<i2" if signed else "<u2")
-    return HEIGHT_STEP * counts.astype(np.float64)
+    return _HEIGHT_STEP * counts.astype(np.float64)
 
 
 def _request(line: Line, command: bytes) -> None:

@@ -27,14 +27,14 @@ from jointbench.station.results.result_tables import result_tables
 from jointbench.station.results.results_read import is_results, read_result
 from jointbench.station.screen.terminal import console, table, working, write_json
 
-LEDGER, TABLE = ".ledger.jsonl", ".nc"
+_LEDGER, TABLE = ".ledger.jsonl", ".nc"
 DAMAGED = "damaged"
 MOST_SHOWN = 20
 CORRUPTED = (
     "the content does not match its digest; compute it again with `jointbench "
     "process`, `reprocess` or `modal`, or use another copy"
 )
-STATE_WORDS = {"whole": "intact", "unsigned": "no digest", "rotten": "corrupted"}
+_STATE_WORDS = {"whole": "intact", "unsigned": "no digest", "rotten": "corrupted"}
 """The states of files as the terminal shows them; JSON has the stored words."""
 
 
@@ -69,7 +69,7 @@ def verify_all(patterns: Sequence[str], *, json_target: str | None) -> bool:
         UsageError: a pattern matches no file.
         BadData: the only file is a session that cannot be read at all.
     """
-    paths = archive_files(patterns, (TABLE, LEDGER))
+    paths = archive_files(patterns, (TABLE, _LEDGER))
     if len(paths) == 1 and _kind(paths[0]) == "session":
         return run_verify(paths[0], json_target=json_target)
     check_outputs(paths, [json_target])
@@ -115,7 +115,7 @@ def check_file(path: Path) -> Checked:
 
 def _kind(path: Path) -> str:
     """Return the kind of a file from its content, else from its name."""
-    if path.name.endswith(LEDGER):
+    if path.name.endswith(_LEDGER):
         return "ledger"
     try:
         if is_results(path):
@@ -169,7 +169,7 @@ def _show(found: Sequence[Checked], json_target: str | None) -> None:
     kinds = list(dict.fromkeys(one.kind for one in found))
     counts = Counter((one.kind, str(one.state)) for one in found)
     rows = [(kind, *(str(counts[kind, state]) for state in states)) for kind in kinds]
-    heads = [STATE_WORDS.get(state, state) for state in states]
+    heads = [_STATE_WORDS.get(state, state) for state in states]
     screen.print(table("Checked files", ("kind", *heads), rows))
     faults = [one for one in found if one.problems]
     for one in faults[:MOST_SHOWN]:
@@ -177,7 +177,7 @@ def _show(found: Sequence[Checked], json_target: str | None) -> None:
             name = visible(str(one.path))
             line = word if name in word else f"{name}: {word}"
             screen.print(
-                f"{STATE_WORDS.get(one.state, one.state)}: {line}", soft_wrap=True
+                f"{_STATE_WORDS.get(one.state, one.state)}: {line}", soft_wrap=True
             )
     if len(faults) > MOST_SHOWN:
         screen.print(f"and {len(faults) - MOST_SHOWN} more; use --json for all")
