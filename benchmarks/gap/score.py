@@ -31,7 +31,8 @@ def judge(names: set[str], found: Diagnosis, *, hidden: bool) -> str:
     if verdict == "unknown":
         return "unknown"
     if verdict == "mostly":
-        return "mostly right" if names <= named else "mostly WRONG"
+        partial = found.partial
+        return "mostly right" if partial and partial.effect in names else "mostly other"
     if verdict == "ambiguous":
         return "ambiguous with truth" if names <= named else "ambiguous without"
     return "right" if named == names and not hidden else "WRONG"

@@ -230,7 +230,7 @@ def _with_systematic(found: _Estimate, seen: HitsSeen, policy: Policy) -> _Estim
         return found
     candidates = [*_trends(found.problem, seen), *_single_hits(found.problem)]
     for _ in range(RESIDUALS.most_systematic):
-        best = _likeliest(found, candidates, seen, policy)
+        best = _likeliest(found, candidates, seen, policy) if candidates else None
         if best is None:
             break
         chosen, found = best
