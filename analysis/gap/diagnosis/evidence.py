@@ -12,6 +12,7 @@ from jointbench.analysis.gap.diagnosis.evidence_facts import gather
 from jointbench.analysis.gap.diagnosis.findings import advise, describe
 from jointbench.analysis.gap.diagnosis.law_curves_of_fit import law_curves
 from jointbench.analysis.gap.diagnosis.location import (
+    condition_of,
     counted_samples,
     locate,
     most_significant_view,
@@ -153,7 +154,7 @@ def _curves(
     sigma = float(bench.noise.sigma[record, channel])
     return Curves(
         record=record,
-        condition=_condition(bench, record),
+        condition=condition_of(bench, record),
         channel=bench.campaign.model.channels[channel].name,
         unit=_UNITS[bench.campaign.model.output],
         share=share,
@@ -164,16 +165,6 @@ def _curves(
         residual_before=-sigma * whitened[0][record, channel, cut],
         residual_after=-sigma * whitened[1][record, channel, cut],
         sigma=sigma,
-    )
-
-
-def _condition(bench: LumpedBench, record: int) -> str:
-    labels = bench.blocks.labels[record]
-    if bench.campaign.continuous:
-        return f"shaken at {labels['hit point']}, rms level {labels['level']}"
-    return (
-        f"hit on {labels['hit point']}, {labels['level']}, preload "
-        + (labels["preload"])
     )
 
 
@@ -232,7 +223,7 @@ def _spectra(
         )
 
     return Spectra(
-        condition=_condition(bench, record),
+        condition=condition_of(bench, record),
         channel=campaign.model.channels[channel].name,
         unit=f"{_UNITS[campaign.model.output]}/N",
         frequency=centres,

@@ -203,3 +203,14 @@ def _uneven_words(bench: LumpedBench, excess: FloatArray, view: str) -> str:
         return ""
     where = f"hits on {top}" if view == "hit point" else f"preload {top}"
     return f"over {ratio:.2g} times stronger for {where}"
+
+
+def condition_of(bench: LumpedBench, record: int) -> str:
+    """Return hit point, level and preload of a record in words."""
+    labels = bench.blocks.labels[record]
+    if bench.campaign.continuous:
+        return f"shaken at {labels['hit point']}, rms level {labels['level']}"
+    return (
+        f"hit on {labels['hit point']}, {labels['level']}, preload "
+        + (labels["preload"])
+    )

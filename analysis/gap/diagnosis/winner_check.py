@@ -7,6 +7,7 @@ import numpy as np
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
+from jointbench.analysis.gap.diagnosis.location import condition_of
 from jointbench.analysis.gap.model.check_records import SecondMethod
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
@@ -25,8 +26,7 @@ def check_winner(bench: LumpedBench, fit: Fit) -> SecondMethod:
     peak = np.abs(campaign.response).max(axis=2) / sigma
     record = int(np.argmax(peak.max(axis=1)))
     labels = tuple(c.label for c in fit.candidates) or ("none",)
-    words = ", ".join(f"{k} {v}" for k, v in bench.blocks.labels[record].items())
-    found = SecondMethod(labels, record, words)
+    found = SecondMethod(labels, record, condition_of(bench, record))
     if campaign.response.shape[2] > DIAGNOSIS.longest_check:
         return replace(found, reason="the records are too long for it")
     try:
