@@ -95,14 +95,14 @@ def test_a_file_that_changes_while_it_is_read_is_tried_again(
 ) -> None:
     """Its digest would be that of another content: no result, and no lasting fault."""
     path = make_session("s.h5")
-    reading = process_file.read_session
+    reading = process_file.open_session
 
     def rewritten(file: Path):
         session = reading(file)
         os.utime(file, (1e9, 1e9))
         return session
 
-    monkeypatch.setattr(process_file, "read_session", rewritten)
+    monkeypatch.setattr(process_file, "open_session", rewritten)
     outcome = done(path)
     assert (outcome.state, outcome.lasting) == (State.FAILED, False)
     assert "changed while it was read" in outcome.reason
