@@ -190,7 +190,7 @@ def _met(task: Task, recipe: Recipe, key: str, traces: Traces, begun: float) -> 
     with one_thread():
         session = _unchanged_session(task.path, traces.session)
         origin = Origin(task.path, traces.input_sha256, key)
-        outcome = _done(task, session, recipe, origin, begun)
+        outcome = _done(task, session, recipe, origin, begun, traces.session)
     own = Traces(result=mark_of(task.result))
     return replace(outcome, corrupted=corrupted, traces=own)
 
@@ -229,19 +229,31 @@ def mark_of(path: Path) -> _Mark:
 def _unchanged_session(path: Path, before: _Mark) -> Session:
     """Read a session whose digest was taken when it had the mark `before`."""
     session = open_session(path)
-    if mark_of(path) != before:
-        raise OSError(errno.EBUSY, "it changed while it was read")
+    _require_unchanged(path, before)
     return session
 
 
+def _require_unchanged(path: Path, before: _Mark) -> None:
+    """Raise OSError if a file no longer has the mark that it had."""
+    if mark_of(path) != before:
+        raise OSError(errno.EBUSY, "it changed while it was read")
+
+
 def _done(
-    task: Task, session: Session, recipe: Recipe, origin: Origin, begun: float
+    task: Task,
+    session: Session,
+    recipe: Recipe,
+    origin: Origin,
+    begun: float,
+    before: _Mark,
 ) -> Outcome:
     stages = StageStore(None if task.again else task.stages)
     try:
         result = process_session(session, origin.sha256, recipe, stages)
     except BadData as error:
         raise type(error)(f"{named(task.path)}: {error}") from error
+    # Samples of large sessions are read while they are processed.
+    _require_unchanged(task.path, before)
     origin = replace(origin, seconds=time.perf_counter() - begun)
     try:
         write_processed(task.result, result, recipe, origin)

@@ -5,6 +5,7 @@ import json
 import os
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -90,19 +91,20 @@ def test_a_changed_input_is_done_again(make_session) -> None:
     assert done(path).state is State.DONE
 
 
+@pytest.mark.parametrize("step", ["open_session", "process_session"])
 def test_a_file_that_changes_while_it_is_read_is_tried_again(
-    make_session, monkeypatch
+    make_session, monkeypatch, step: str
 ) -> None:
     """Its digest would be that of another content: no result, and no lasting fault."""
     path = make_session("s.h5")
-    reading = process_file.open_session
+    reading = getattr(process_file, step)
 
-    def rewritten(file: Path):
-        session = reading(file)
-        os.utime(file, (1e9, 1e9))
-        return session
+    def rewritten(*arguments: Any):
+        found = reading(*arguments)
+        os.utime(path, (1e9, 1e9))
+        return found
 
-    monkeypatch.setattr(process_file, "open_session", rewritten)
+    monkeypatch.setattr(process_file, step, rewritten)
     outcome = done(path)
     assert (outcome.state, outcome.lasting) == (State.FAILED, False)
     assert "changed while it was read" in outcome.reason
