@@ -128,7 +128,7 @@ def conclude(
         evidence = replace(evidence, advice="")
     found = Diagnosis(
         verdict=finding,
-        effects=_effects(outcome, bench, shown),
+        effects=effects_of(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
         gap_before=_gap(bench, base, held),
         gap_after=_gap(bench, best, held_after),
@@ -259,8 +259,8 @@ def closest_of(outcome: SearchOutcome, bench: LumpedBench) -> Closest | None:
     return Closest(_labels(fit), confidence_of(evidence), evidence)
 
 
-def _effects(
-    outcome: SearchOutcome, bench: LumpedBench, fits: Sequence[Fit]
+def effects_of(
+    outcome: SearchOutcome, bench: MeasuredBench, fits: Sequence[Fit]
 ) -> tuple[NamedEffect, ...]:
     """Return the effects of explanations, each as in the first that contains it.
 
@@ -333,7 +333,6 @@ __all__ = [
     "closest_of",
     "conclude",
     "diagnose",
-    "estimates_of",
-    "evidence_of",
+    "effects_of",
     "noise_sd",
 ]

@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
-from jointbench.analysis.gap.diagnosis.diagnose import estimates_of, evidence_of
+from jointbench.analysis.gap.diagnosis.diagnose import effects_of
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.level_verdict import level_verdict
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome, investigate
@@ -23,13 +23,11 @@ from jointbench.analysis.gap.modal_bench.base_from_records import (
 from jointbench.analysis.gap.modal_bench.level_records import RecordSet
 from jointbench.analysis.gap.modal_bench.modal_base import ModalBase
 from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench, make_modal_bench
-from jointbench.analysis.gap.model.confidence import confidence_of
 from jointbench.analysis.gap.model.diagnosis_record import (
     Diagnosis,
     Estimate,
     Finding,
     Gap,
-    NamedEffect,
     Ranked,
 )
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
@@ -118,7 +116,7 @@ def _conclude(outcome: SearchOutcome, bench: ModalBench, say: Progress) -> Diagn
     after = held if best is base else hold_out(best, bench, held)
     return Diagnosis(
         verdict=finding,
-        effects=_effects(outcome, bench, shown),
+        effects=effects_of(outcome, bench, shown),
         candidates=_ranked(outcome, bench),
         gap_before=_gap(bench, base, held),
         gap_after=_gap(bench, best, after),
@@ -175,29 +173,6 @@ def _ranked(outcome: SearchOutcome, bench: ModalBench) -> tuple[Ranked, ...]:
         )
         for f in rows
     )
-
-
-def _effects(
-    outcome: SearchOutcome, bench: ModalBench, fits: Sequence[Fit]
-) -> tuple[NamedEffect, ...]:
-    """Return the effects of explanations, each as in the first that contains it."""
-    found: dict[str, NamedEffect] = {}
-    for fit in fits:
-        evidence = evidence_of(outcome, bench, fit)
-        confidence = confidence_of(evidence) / len(fits)
-        for k, (label, term) in enumerate(zip(_labels(fit), fit.terms, strict=True)):
-            if label in found:
-                one = found[label]
-                found[label] = replace(one, confidence=one.confidence + confidence)
-                continue
-            found[label] = NamedEffect(
-                term.candidate.effect.name,
-                str(term.candidate.site),
-                estimates_of(bench, fit, k),
-                confidence,
-                evidence,
-            )
-    return tuple(found.values())
 
 
 def _base_estimates(bench: ModalBench, fit: Fit) -> tuple[Estimate, ...]:
