@@ -22,11 +22,11 @@ from jointbench.analysis.gap.residuals.scatter_record import (
 )
 from jointbench.analysis.gap.residuals.scatter_sizes import (
     SizeProblem,
+    bounded_by_repeats,
     descended,
     likeliest_sizes,
     of_repeats,
     regressed_sizes,
-    repeat_limits,
 )
 
 
@@ -38,14 +38,14 @@ class HitsSeen:
         patterns: possible trends over the records, shape (n_patterns, n_records).
         groups: records of each condition that was measured more than once.
         joints: directions that are the stiffness of a joint.
-        misfit: whether the records leave the model by more than noise beside every
+        unexplained: whether the records leave the model by more than noise beside every
             direction; it may then do so along them as well, in every repeat.
     """
 
     patterns: FloatArray
     groups: tuple[IntArray, ...]
     joints: frozenset[int] = frozenset()
-    misfit: bool = False
+    unexplained: bool = False
 
 
 def repeat_groups(
@@ -93,8 +93,8 @@ def estimate_scatter(
     )
     joints = frozenset(k for k, d in enumerate(directions) if d.is_joint)
     beside = 1.0 + policy.chi2_limit * chi2_sd(dof)
-    misfit = bool(records.beside.sum() > beside * dof)
-    seen = replace(seen, joints=joints, misfit=misfit)
+    unexplained = bool(records.beside.sum() > beside * dof)
+    seen = replace(seen, joints=joints, unexplained=unexplained)
     start = np.maximum(regressed_sizes(records, direction), 1e-4)
     found = _Estimate(problem, likeliest_sizes(problem, start), ())
     found = _within_repeats(found, seen)
@@ -170,22 +170,14 @@ def _within_repeats(found: _Estimate, seen: HitsSeen) -> _Estimate:
         return found
     free = replace(found.problem, highest=np.full(found.size.size, np.inf))
     repeats = of_repeats(_less(free, found.outstanding), seen.groups)
-    likeliest = likeliest_sizes(repeats, np.where(found.size > 0.0, found.size, 1e-4))
     wider = 1.0
     if free.rho > 0.0:
         # Correlated repeats differ by less than their scatter.
         lag = np.concatenate([np.diff(rows) for rows in seen.groups])
         wider = 1.0 / np.sqrt(1.0 - float(np.mean(free.rho**lag)))
-    bound, size = free, found.size
-    # A direction may take over what another one, now bounded, no longer explains.
-    for _ in range(size.size):
-        limits = wider * repeat_limits(repeats, likeliest, size)
-        if seen.misfit:
-            limits = np.where(np.isfinite(limits), wider * likeliest, limits)
-        bound = replace(bound, highest=np.minimum(bound.highest, limits))
-        if np.all(size <= bound.highest):
-            break
-        size = likeliest_sizes(bound, np.minimum(size, bound.highest))
+    bound, size = bounded_by_repeats(
+        free, repeats, found.size, wider=wider, likeliest=seen.unexplained
+    )
     return replace(found, problem=bound, size=size)
 
 
