@@ -14,6 +14,7 @@ from jointbench.analysis.gap.search.descent import (
     fit_coarse_to_fine,
     minimise,
 )
+from jointbench.analysis.gap.search.hit_stiffness import settled_near
 
 
 @one_thread()
@@ -23,7 +24,7 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     The last resolution does not account for scatter. In a quiet campaign the fit may
     follow the settling of the hits, and end too far from the records for a noise
     estimate. Then the fit of the previous resolution, with a more tolerant window, is
-    continued with the estimated settling of each hit.
+    continued with the joint's stiffness in each hit.
     """
     problem = make_problem(bench, ())
     early = fit_coarse_to_fine(problem, np.zeros(problem.n_base), BASE_RESOLUTIONS[:-1])
@@ -31,8 +32,11 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
     found = settled_base(bench, late)
     if not far_off(*found):
         return found
-    expanded = bench.refine(early.base, (), diverged=True)
-    again = minimise(make_problem(expanded, ()), early.x)
+    near = settled_near(bench, early.base, ())
+    if near is None:
+        return found
+    expanded, start = near
+    again = minimise(make_problem(expanded, ()), start)
     if again.chi2 > DIAGNOSIS.settled_share * found[1].chi2:
         return found
     settled = settled_base(expanded, again)

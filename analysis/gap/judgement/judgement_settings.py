@@ -38,12 +38,6 @@ class JudgementSettings:
         "sd of the noise",
         "maximum from which a record is checked for clipping",
     )
-    noise_share: float = numerical(
-        0.2,
-        "of the samples",
-        "effective number of samples of the noise estimate",
-        "0.39 of the spectrum, halved by the taper",
-    )
     refit_growth: float = numerical(
         1.5,
         "-",

@@ -16,6 +16,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.candidate_starts import started
 from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.hit_stiffness import settled_near
 from jointbench.analysis.gap.search.restarts import caught_up
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, finish, score
@@ -102,10 +103,12 @@ def _brought_near(
     r = there.residual(fit.base, fit.terms, FULL)
     if float(r @ r) < bench.policy.far_chi2 * bench.blocks.dof:
         return bench, fit
-    there = bench.refine(fit.base, fit.terms, diverged=True)
-    if not there.expanded:
+    near = settled_near(bench, fit.base, fit.terms)
+    if near is None:
         return None
-    again = finish(make_problem(there, fit.candidates), fit.x, progress)
+    there, base = near
+    start = np.concatenate([base, fit.x[base.size :]])
+    again = finish(make_problem(there, fit.candidates), start, progress)
     return None if far_off(there, again) else (there, again)
 
 

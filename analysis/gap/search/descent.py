@@ -45,7 +45,16 @@ def jacobian_of(
         columns[i] -= residual
         columns[i] /= steps[i]
 
-    each(difference, x.size)
+    shared = x.size - problem.own
+    each(difference, shared)
+    if problem.own:
+        moved = x.copy()
+        moved[shared:] += steps[shared:]
+        change = problem.residual(moved, resolution) - residual
+        change = change.reshape(problem.own, -1) / steps[shared:, None]
+        columns[shared:] = 0.0
+        for i, rows in enumerate(change):
+            columns[shared + i].reshape(problem.own, -1)[i] = rows
     return columns.T
 
 
