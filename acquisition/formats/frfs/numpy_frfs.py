@@ -60,7 +60,8 @@ def recognise_numpy_frfs(path: Path, options: FrfOptions) -> bool:
     if head.startswith(_ZIP):
         return path.suffix.lower() == ".npz"
     # A type of complex numbers in the header: hits and heights are real.
-    return head.startswith(_NPY) and (b"<c" in head or b">c" in head)
+    kinds = (b"<c", b">c", b"|O") if names_frfs(options.columns) else (b"<c", b">c")
+    return head.startswith(_NPY) and any(kind in head for kind in kinds)
 
 
 def read_numpy_frfs(path: Path, options: FrfOptions) -> tuple[FrfFunction, ...]:

@@ -114,3 +114,12 @@ def test_a_line_at_0_hz_without_a_number_is_left_out(tmp_path):
     np.testing.assert_allclose(one.response, VALUES[1:])
     assert one.coherence is not None and one.coherence.shape == (6,)
     assert [done.name for done in one.provenance] == ["read_frf", "leave_out_line"]
+
+
+def test_an_array_of_objects_is_refused_with_its_reason(tmp_path):
+    """Frequencies and FRFs of unequal shapes in one array: reading runs code."""
+    pair = np.empty(2, object)
+    pair[0], pair[1] = LINES, np.stack([VALUES, VALUES])
+    np.save(tmp_path / "a.npy", pair, allow_pickle=True)
+    with pytest.raises(FormatError, match="Python objects"):
+        read(tmp_path / "a.npy", "frf:m/s^2/N@0.5Hz")
