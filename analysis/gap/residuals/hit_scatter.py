@@ -196,7 +196,9 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
     """Return the estimate with correlated hits and no trends, if that is likelier.
 
     A slow drift of the scatter resembles a trend; the restricted likelihood, which
-    charges for each systematic value, decides.
+    charges for each systematic value, decides. Of the correlations that the records do
+    not exclude the largest is taken: a few hits hardly resolve it, and the mean of hits
+    with a long memory is the least certain.
     """
     size = found.size
     if not np.any(size > 0.0) or len(found.problem.records.along) > (
@@ -219,6 +221,12 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
         own = likeliest_sizes(tried[at], np.where(size > 0.0, size, 1e-4))
         if (now := tried[at].deviance(own)) < least:
             best, least = _Estimate(tried[at], own, found.outstanding), now
+    least += RESIDUALS.correlation_doubt
+    for problem in tried if best is not found else ():
+        if problem.rho > best.problem.rho:
+            own = likeliest_sizes(problem, best.size)
+            if problem.deviance(own) < least:
+                best = _Estimate(problem, own, found.outstanding)
     return best
 
 

@@ -137,6 +137,13 @@ class ResidualSettings:
         "-2 log likelihood",
         "gain below which hits are not correlated",
     )
+    correlation_doubt: float = numerical(
+        4.0,
+        "-2 log likelihood",
+        "loss up to which a larger correlation than the likeliest is taken",
+        "closed form: a chance of 5 %; null 701051 of benchmarks/gap/scatter.py: from "
+        "0.5 to 0.97 the loss is 1.2 with eight hits",
+    )
     most_correlated: int = numerical(
         64,
         "hits",
