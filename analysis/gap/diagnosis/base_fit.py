@@ -44,11 +44,18 @@ def fit_base(bench: Bench) -> tuple[Bench, Fit]:
 
 
 def settled_base(bench: Bench, fit: Fit) -> tuple[Bench, Fit]:
-    """Alternate base fit and noise estimate until they converge."""
+    """Alternate base fit and noise estimate until they converge.
+
+    Far from the records they do not: the scatter found at one base moves the next. The
+    alternation then ends when it has ceased to approach the records.
+    """
     for _ in range(DIAGNOSIS.base_rounds):
         before = fit.cost
         bench = bench.refine(fit.base, ())
         fit = minimise(make_problem(bench, ()), fit.x)
-        if abs(fit.cost - before) < DIAGNOSIS.base_settled_cost:
+        apart = (
+            far_off(bench, fit) and fit.cost > DIAGNOSIS.base_approach_share * before
+        )
+        if apart or abs(fit.cost - before) < DIAGNOSIS.base_settled_cost:
             break
     return bench, fit

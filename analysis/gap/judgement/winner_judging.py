@@ -243,24 +243,38 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     """Alternate fit and noise estimate until they converge or the fit diverges.
 
     A trend that counts as scatter in every other round makes the iteration alternate
-    without end. Then the fit with the higher cost is used: it has the least scatter.
+    without end, and a law that leaves a residual makes it wander. Then the fit with the
+    higher cost is used: it has the least scatter.
     """
-    earlier, before = np.inf, fit.cost
+    rounds: list[tuple[Bench, Fit]] = []
+    costs = [np.inf, fit.cost]
     for _ in range(JUDGEMENT.settling_rounds):
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
+        rounds = [*rounds, (bench, fit)][-JUDGEMENT.wandering_rounds :]
         alternates = (
-            abs(fit.cost - earlier) < JUDGEMENT.repeated_cost and fit.cost > before
+            abs(fit.cost - costs[-2]) < JUDGEMENT.repeated_cost and fit.cost > costs[-1]
         )
-        if (
-            abs(fit.cost - before) < JUDGEMENT.settled_cost
-            or alternates
-            or far_off(bench, fit)
-        ):
+        converged = abs(fit.cost - costs[-1]) < JUDGEMENT.settled_cost
+        if converged or alternates or far_off(bench, fit):
             break
-        earlier, before = before, fit.cost
+        costs.append(fit.cost)
+        if _wanders(costs[2:], bench.blocks.dof):
+            return max(rounds, key=lambda found: found[1].cost)
     return bench, fit
+
+
+def _wanders(costs: Sequence[float], dof: int) -> bool:
+    """Return whether rounds far above the noise no longer approach the records."""
+    count = JUDGEMENT.wandering_rounds
+    if len(costs) <= count:
+        return False
+    lately, before = min(costs[-count:]) - dof, min(costs[:-count]) - dof
+    return (
+        lately > JUDGEMENT.wandering_excess * dof
+        and lately > JUDGEMENT.approach_share * before
+    )
 
 
 def _left_by(bench: Bench, fit: Fit) -> Screening:
