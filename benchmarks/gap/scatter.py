@@ -182,8 +182,8 @@ def page(runs: Sequence[Run], engine: str) -> str:
     """Return docs/gap-scatter.md."""
     nulls = [r for r in runs if r["kind"] == "null"]
     singles = [r for r in runs if r["kind"] == "single"]
-    named = [r for r in nulls if r["found"]["verdict"] in {"named", "ambiguous"}]
     apart = [r for r in nulls if r["way"] not in CORRELATED]
+    correlated = [r for r in nulls if r["way"] in CORRELATED]
     lines = [
         "# Gap engine on hits that scatter",
         "",
@@ -205,9 +205,9 @@ def page(runs: Sequence[Run], engine: str) -> str:
         lines.append(f"| {way} | " + " | ".join(cells) + " |")
     lines += [
         "",
-        f"None: {_share(nulls, is_none)}; without the correlated ones "
-        f"{_share(apart, is_none)}. A name where nothing is missing: "
-        f"{share_text(len(named), len(nulls))}.",
+        f"Hits that do not depend on each other: none {_share(apart, is_none)}, a name "
+        f"{_share(apart, is_named)}. Correlated hits ({', '.join(CORRELATED)}): none "
+        f"{_share(correlated, is_none)}, a name {_share(correlated, is_named)}.",
         "",
         "## One effect, first-order margin of 100 or more over that scatter",
         "",
@@ -243,6 +243,11 @@ def page(runs: Sequence[Run], engine: str) -> str:
 def is_none(run: Run) -> bool:
     """Return whether the verdict is none."""
     return bool(run["found"]["verdict"] == "none")
+
+
+def is_named(run: Run) -> bool:
+    """Return whether the verdict names an effect."""
+    return run["found"]["verdict"] in {"named", "ambiguous"}
 
 
 def _expected(run: Run) -> bool:
