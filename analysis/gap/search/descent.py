@@ -216,7 +216,8 @@ def _step(
     Effects and base can exchange stiffness and damping, so the valleys of the cost are
     long and curved. A step that raises the cost is first corrected along the
     well-determined directions, with the known slopes, and only then shortened. At a
-    minimum even the longest step promises nothing, and none is tried.
+    minimum even the longest step promises nothing, and none is tried; the promise is
+    that of the whole step, because a step cut at a bound is corrected afterwards.
     """
     problem, x, gradient, cost = near.problem, near.x, near.gradient, near.cost
     free = ~(
@@ -229,9 +230,9 @@ def _step(
     for _ in range(9):
         step = np.zeros(x.size)
         step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
-        trial = _moved(problem, x, step / size)
-        if near.predicted_drop(trial) < near.least:
+        if near.predicted_drop(x + step / size) < near.least:
             break
+        trial = _moved(problem, x, step / size)
         try_r, try_cost = _looked_at(problem, trial, resolution)
         for _ in range(SEARCH.corrections):
             if try_cost < cost or not np.isfinite(try_cost):
