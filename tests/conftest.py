@@ -1,5 +1,6 @@
-"""The limit of one test: CPU time, so that a busy machine fails nothing."""
+"""The limits of one test: CPU time, so that a busy machine fails nothing."""
 
+import os
 import signal
 from collections.abc import Generator
 from types import FrameType
@@ -7,11 +8,16 @@ from types import FrameType
 import pytest
 
 CPU_LIMIT = 120.0
-"""CPU time of this process, all threads, that one test may take [s]."""
+"""CPU time of this process, all threads, after which a test is stopped [s]."""
+MOST_CPU = 20.0
+"""CPU time, child processes included, that a test may take without a mark [s].
+
+Twice what the slowest tests take, compilation included: machines differ.
+"""
 
 
 class CpuTimeExceeded(Exception):
-    """A test took more CPU time than the limit."""
+    """A test took more CPU time than a limit."""
 
 
 def _exceeded(signum: int, frame: FrameType | None) -> None:
@@ -34,3 +40,26 @@ def pytest_runtest_protocol() -> Generator[None, object, object]:
     finally:
         signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.signal(signal.SIGPROF, before)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, object, object]:
+    """Fail a test that costs much and does not state why.
+
+    A campaign that is shorter, a fixture that is shared, or a statistic that moves to
+    `benchmarks` makes it cheaper; where nothing does, it is marked `heavy`.
+    """
+    begun = _cpu_time()
+    result = yield
+    taken = _cpu_time() - begun
+    if taken > MOST_CPU and item.get_closest_marker("heavy") is None:
+        raise CpuTimeExceeded(
+            f"{taken:.1f} s of CPU time in one test (limit {MOST_CPU:g} s); make it "
+            "smaller, or mark it `@pytest.mark.heavy(reason=...)`"
+        )
+    return result
+
+
+def _cpu_time() -> float:
+    """Return the CPU time of this process and of the children it waited for [s]."""
+    return sum(os.times()[:4])

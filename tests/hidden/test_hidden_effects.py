@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from gap_bench import first_samples
 from gap_contradictions import contradictions
+from short_campaigns import SHORT, write_short
 
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.analysis.gap.diagnosis import base_fit
@@ -23,15 +23,11 @@ from jointbench.simulators.campaigns.campaign_records import (
     campaign_noise_free,
     quick_campaign,
 )
-from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.simulators.hidden.campaign_response import simulate_records
 from jointbench.simulators.hidden.campaign_sampling import SAMPLES
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
 
 pytestmark = pytest.mark.timeout(400)
-
-SHORT = 768
-"""Samples of a record; the simulator writes 2,048, which take twice the time."""
 
 
 def diagnosed(
@@ -46,9 +42,8 @@ def diagnosed(
     Its sentences must not contradict each other or the hidden effects.
     """
     path = folder / "campaign.h5"
-    write_campaign(campaign, path)
-    records = first_samples(read_campaign(path), samples)
-    found = diagnose(records, without=frozenset(without), progress=progress)
+    write_short(campaign, path, samples)
+    found = diagnose(read_campaign(path), without=frozenset(without), progress=progress)
     assert contradictions(found, frozenset(e.name for e in campaign.effects)) == []
     return found
 

@@ -9,11 +9,11 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from short_campaigns import write_short
 
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.intake.read_campaign import read_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Finding
-from jointbench.simulators.campaigns.write_campaign import write_campaign
 
 SIMULATION = Path(__file__).parents[2] / "benchmarks" / "gap" / "scattered_campaigns.py"
 
@@ -35,7 +35,7 @@ def drawing() -> ModuleType:
 def test_scatter_of_hits_is_no_effect(way: str, size: float, tmp_path: Path) -> None:
     """Gains of each channel and hit, independent and correlated: nothing is missing."""
     campaign, _ = drawing().scattered_null(7, way, size, grid="small")
-    write_campaign(campaign, tmp_path / "campaign.h5")
+    write_short(campaign, tmp_path / "campaign.h5")
     found = diagnose(read_campaign(tmp_path / "campaign.h5"))
     assert found.verdict is Finding.NONE
     assert found.scatter is not None
@@ -47,7 +47,7 @@ def test_scatter_of_hits_is_no_effect(way: str, size: float, tmp_path: Path) -> 
 def test_one_bad_hit_among_good_ones_is_listed(tmp_path: Path) -> None:
     """24 % too strong or too weak, with its sign; the verdict is none."""
     campaign, truth = drawing().scattered_null(9, "bad", 0.03, grid="middle")
-    write_campaign(campaign, tmp_path / "campaign.h5")
+    write_short(campaign, tmp_path / "campaign.h5")
     found = diagnose(read_campaign(tmp_path / "campaign.h5"))
     assert found.verdict is Finding.NONE
     assert found.scatter is not None

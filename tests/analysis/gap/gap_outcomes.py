@@ -28,6 +28,7 @@ def outcome_of(
     rivals: int = 1,
     continuous: bool = False,
     at_truth: bool = False,
+    samples: int = made.SAMPLES,
 ) -> tuple[SearchOutcome, LumpedBench]:
     """Fit the base and the tried effects to a campaign with hidden ones.
 
@@ -38,8 +39,9 @@ def outcome_of(
         rivals: number of them that cannot be distinguished.
         continuous: as if excited by a shaker without a pause.
         at_truth: start each fit at the hidden values, which is fast and reliable.
+        samples: of a record.
     """
-    campaign = made.made_campaign(hidden, seed=seed)
+    campaign = made.made_campaign(hidden, seed=seed, samples=samples)
     if continuous:
         campaign = replace(campaign, continuous=True, repeatability=1e-4)
     start = make_bench(campaign)

@@ -35,6 +35,12 @@ NAMES = ("ground.stiffness", "joint.stiffness", "ground.damping", "joint.damping
 VALUES = (4.1e7, 1.6e7, 310.0, 95.0)
 
 
+@pytest.fixture(scope="module")
+def precise():
+    """Links identified from frequencies to 1e-7 and masses to 1 %."""
+    return identify_links(chain(mass_sd=0.01), measure(TRUTH, frequency_sd=1e-7))
+
+
 def measure(
     model, *, shapes=True, damping=True, seed=None, frequency_sd=2e-4, damping_sd=0.02
 ):
@@ -135,12 +141,10 @@ def test_standard_deviations_are_those_of_repeated_measurements():
     assert np.all((spread > 0.65) & (spread < 1.3))
 
 
-def test_the_uncertainty_of_the_masses_enters_that_of_the_stiffness():
+def test_the_uncertainty_of_the_masses_enters_that_of_the_stiffness(precise):
     """1 % on both masses with exact frequencies: 1 % on each stiffness at most."""
-    measured = measure(TRUTH, frequency_sd=1e-7)
-    result = identify_links(chain(mass_sd=0.01), measured)
     for name in NAMES[:2]:
-        one = result.parameter(name)
+        one = precise.parameter(name)
         assert 0.005 < one.sd / one.value < 0.02
 
 
@@ -266,10 +270,9 @@ def test_a_link_with_two_solutions_has_the_interval_of_both():
     assert reported["interval_95"] == [low, high]
 
 
-def test_a_search_that_ran_out_of_steps_is_no_rival():
+def test_a_search_that_ran_out_of_steps_is_no_rival(precise):
     """Frequencies to 1e-7 make a narrow valley; unfinished ends are no solutions."""
-    result = identify_links(chain(mass_sd=0.01), measure(TRUTH, frequency_sd=1e-7))
-    assert result.verdict is IdentificationVerdict.DETERMINED
+    assert precise.verdict is IdentificationVerdict.DETERMINED
 
 
 def test_three_bodies_are_found_from_three_modes_with_shapes():

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from short_campaigns import write_short
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
 from jointbench.simulators.campaigns.campaign_records import quick_campaign
-from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.station.commands.gap_command import run_gap
 
 KEYS = {
@@ -29,7 +29,7 @@ def diagnosis(
 ) -> dict[str, Any]:
     """Hide effects in a fresh campaign and return what the command says."""
     path, target = folder / "campaign.h5", folder / "gap.json"
-    write_campaign(quick_campaign(77, effects=effects, grid="small"), path)
+    write_short(quick_campaign(77, effects=effects, grid="small"), path)
     page = folder / "gap.html"
     run_gap(path, without=without, report=page, json_target=str(target))
     assert "</html>" in page.read_text(encoding="utf-8")

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 from package_commands import EFFECT_TEXT, PACKAGE, add, content_of, run
+from short_campaigns import write_short
 
 from jointbench.simulators.campaigns.campaign_records import quick_campaign
-from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.station.schemas.recipe import GapPart, Recipe, recipe_digest
 
 SLOW = "bouc_wen,iwan,jenkins,coulomb,hidden_mode,maxwell,hum"
@@ -24,7 +24,7 @@ def test_gap_names_a_hidden_effect_that_a_package_adds(
         8, effects=("quintic_stiffness",), size=0.003, grid="small", noise=0.05
     )
     path, page, found = (tmp_path / n for n in ("c.h5", "gap.html", "gap.json"))
-    write_campaign(campaign, path)
+    write_short(campaign, path)
     command = ("gap", path, f"--without={SLOW}", "--report", page, "--json", found)
     assert run(monkeypatch, *command) == 0
     content = content_of(found)
@@ -46,7 +46,7 @@ def test_without_takes_the_effect_of_a_package_out(
     """Its name is known as a built-in one is; a misspelt one gets it as near match."""
     path = tmp_path / "c.h5"
     campaign = quick_campaign(8, effects=("delay",), grid="small", noise=0.05)
-    write_campaign(campaign, path)
+    write_short(campaign, path)
     assert run(monkeypatch, "gap", path, "--without=quintic_stifness") == 2
     error = capsys.readouterr().err
     assert "no effect is called 'quintic_stifness'" in error
@@ -62,7 +62,7 @@ def test_an_effect_that_fails_in_a_fit_is_one_line_that_names_its_package(
     add(monkeypatch, tmp_path / "faulty", "effects", ("own", "EFFECT"), text)
     path = tmp_path / "c.h5"
     campaign = quick_campaign(8, effects=("delay",), grid="small", noise=0.05)
-    write_campaign(campaign, path)
+    write_short(campaign, path)
     assert run(monkeypatch, "gap", path, f"--without={SLOW}") == 2
     error = " ".join(capsys.readouterr().err.split())
     assert "'own' of package added-faulty 1.0 fails (IndexError" in error

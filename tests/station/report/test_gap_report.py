@@ -192,7 +192,7 @@ def test_an_effect_that_only_the_priors_show_is_titled_by_prior_deviation() -> N
 def test_a_weak_effect_is_titled_by_its_directed_test() -> None:
     """A delay of 0.2 us leaves hardly a gap and no prior deviation."""
     outcome, bench = outcomes.outcome_of(
-        [("delay", "channel:a0", [2e-7])], ("delay", "channel:a0")
+        [("delay", "channel:a0", [2e-7])], ("delay", "channel:a0"), samples=1024
     )
     diagnosis = conclude(outcome, bench)
     assert diagnosis.gap_before.value < 0.3

@@ -137,7 +137,7 @@ def test_a_recording_that_is_killed_can_be_recovered_with_its_hits(
     """``kill -9`` in the middle: every block that was there, to the last bit."""
     path = tmp_path / "s.h5"
     with start(LONG, "--out", str(path)) as process:
-        seen = wait_for(path, 120_000)
+        seen = wait_for(path, 90_000)
         process.kill()
         process.communicate(timeout=60)
     assert not run_verify(path, json_target=None)
@@ -145,7 +145,7 @@ def test_a_recording_that_is_killed_can_be_recovered_with_its_hits(
         run_recover(path, out=None, overwrite=False, json_target=None)
     )
     (recording,) = recovered.recordings
-    assert recording.samples.shape[1] >= seen >= 120_000
+    assert recording.samples.shape[1] >= seen >= 90_000
     first = next(iter(open_runs(LONG).runs[0].blocks()))
     size = first.shape[1]
     np.testing.assert_array_equal(
@@ -161,7 +161,7 @@ def test_a_recording_that_is_stopped_is_finished(tmp_path: Path, name: str) -> N
     """Exit code 5 as of `measure`; hits are judged, no lock is left."""
     path, said = tmp_path / "s.h5", tmp_path / "s.json"
     with start(LONG, "--out", str(path), "--json", str(said)) as process:
-        wait_for(path, 60_000)
+        wait_for(path, 40_000)
         process.send_signal(getattr(signal, name))
         process.communicate(timeout=60)
     assert process.returncode == 5

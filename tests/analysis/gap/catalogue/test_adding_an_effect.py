@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from short_campaigns import write_short
 
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
@@ -19,7 +20,6 @@ from jointbench.analysis.gap.response.curve_integration import (
 from jointbench.analysis.gap.response.curve_law import curve_law
 from jointbench.analysis.gap.response.effect_hooks import LumpedEffect
 from jointbench.simulators.campaigns.campaign_records import quick_campaign
-from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.station.commands.gap_command import run_gap
 from jointbench.station.schemas.effects_file import read_effects, with_own
 
@@ -50,7 +50,7 @@ def test_an_effect_from_the_page_is_named_where_it_is_hidden(tmp_path: Path) -> 
         8, effects=("quintic_stiffness",), size=0.003, grid="small", noise=0.05
     )
     path = tmp_path / "campaign.h5"
-    write_campaign(campaign, path)
+    write_short(campaign, path)
     found = run_gap(
         path,
         without="bouc_wen,iwan,jenkins,coulomb,hidden_mode,maxwell,hum",

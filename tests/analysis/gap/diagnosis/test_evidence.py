@@ -43,7 +43,7 @@ def case(name: str) -> tuple[SearchOutcome, LumpedBench, GapEvidence]:
         "mass": ([HEAVY], ()),
         "preload": ([PRELOADED], ()),
     }[name]
-    outcome, bench = outcomes.outcome_of(hidden, *tried)
+    outcome, bench = outcomes.outcome_of(hidden, *tried, samples=1024)
     finding = Finding.NAMED if tried else Finding.UNKNOWN
     return outcome, bench, make_evidence(bench, outcome.base, outcome, finding)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import gap_bench as made
 import numpy as np
 import pytest
+from short_campaigns import write_short
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
@@ -19,7 +20,6 @@ from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.residuals.make_bench import make_bench
 from jointbench.analysis.gap.response.excitation import pass_band_end
 from jointbench.simulators.campaigns.campaign_records import SimulatedCampaign
-from jointbench.simulators.campaigns.write_campaign import write_campaign
 from jointbench.simulators.hidden.campaign_design import draw_design
 from jointbench.simulators.hidden.campaign_response import simulate_records
 from jointbench.simulators.hidden.hidden_effects import HiddenEffect
@@ -90,7 +90,7 @@ def test_a_large_stop_seen_through_a_low_filter_is_named(tmp_path: Path) -> None
     clean += NOISE * rng.standard_normal(clean.shape)
     seen = SimulatedCampaign(design, (stop,), (), force, clean)
     path = tmp_path / "early.h5"
-    write_campaign(seen, path)
+    write_short(seen, path)
     found = diagnose(read_campaign(path), entries=ENTRIES)
     assert found.gap_before.chi2_per_dof > 1000.0
     assert [e.name for e in found.effects] == ["gap"]

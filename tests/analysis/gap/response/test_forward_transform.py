@@ -12,7 +12,8 @@ from jointbench.analysis.gap.response.effect_hooks import HitConditions
 from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation
 from jointbench.analysis.gap.response.predict_records import respond
 
-CAMPAIGN = made.quiet_campaign()
+SAMPLES = 1024
+CAMPAIGN = made.quiet_campaign(samples=SAMPLES)
 BENCH = make_bench(CAMPAIGN)
 FORCE_NOISE = 0.1
 DELAY = ("delay", "channel:a1", [20e-6])
@@ -54,7 +55,7 @@ def ring_of(monkeypatch: pytest.MonkeyPatch, *, faded: float) -> float:
         patched.setattr(forward, "PADDED", 6.0)
         patched.setattr(forward, "DAMPING_EXPONENT", 24.0)
         error = np.abs(short - response_to(force, DELAY))
-    return float(error[..., 3 * made.SAMPLES // 4 : -64].max())
+    return float(error[..., 3 * SAMPLES // 4 : -64].max())
 
 
 def test_noise_at_the_end_of_the_band_does_not_ring(
