@@ -123,14 +123,17 @@ def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     Returns:
         Shape (n_lines, 2 n_modes + 9).
     """
+    return np.hstack((modal_columns(lines, pole), _residual_terms(lines)))
+
+
+def modal_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+    """Return the columns of Re and Im of each residue, shape (n_lines, 2 n_modes)."""
     s = lines.laplace
     own, mirrored = (1.0 / (s[:, None] - p) for p in (pole, pole.conj()))
-    columns = np.empty((s.size, modal_size(pole)), complex)
-    columns[:, 0 : 2 * pole.size : 2] = own + mirrored
-    columns[:, 1 : 2 * pole.size : 2] = 1j * (own - mirrored)
-    columns[:, : 2 * pole.size] *= (s**lines.derivatives)[:, None]
-    columns[:, 2 * pole.size :] = _residual_terms(lines)
-    return columns
+    columns = np.empty((s.size, 2 * pole.size), complex)
+    columns[:, ::2] = own + mirrored
+    columns[:, 1::2] = 1j * (own - mirrored)
+    return np.asarray(columns * (s**lines.derivatives)[:, None])
 
 
 def _residual_terms(lines: FrfLines) -> ComplexArray:

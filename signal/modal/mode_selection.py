@@ -24,6 +24,7 @@ from jointbench.signal.modal.doubtful_neighbours import (
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
+    line_variance,
     local_level,
     model_error,
     residual_around,
@@ -121,15 +122,16 @@ def fit_modes(
     report("refining modes", 0.4)
     # The response itself is rough at resonances; the residual of a fit is not.
     noise = line_noise(lines.response, scatter, poles.residual)
-    if refine:
+    error, variance = _weighed(lines, noise, poles)
+    for _ in range(_SEARCHES if refine else 0):
         whole = _whole(lines, poles.pole, poles.beyond, noise, variance)
         beyond = find_beyond(whole)
-        if beyond.size != poles.beyond.size:
-            poles = _again(lines, poles.pole, beyond, variance)
-            noise = line_noise(lines.response, scatter, poles.residual)
-    error = model_error(poles.residual, noise, lines.response)
-    variance = noise + error**2 * level
-    start = _Start(candidates, held, noise, variance, error, steps)
+        if beyond.size == poles.beyond.size:
+            break
+        poles = _again(lines, poles.pole, beyond, variance)
+        noise = line_noise(lines.response, scatter, poles.residual)
+        error, variance = _weighed(lines, noise, poles)
+    start = _Start(candidates, held, noise, variance, error, steps, chosen)
     kept = needed(lines, poles.pole, held[chosen], noise, variance, poles.beyond)
     report("refining modes", 0.7)
     done = _settled(lines, start, chosen, kept, poles)
@@ -164,6 +166,7 @@ class _Start:
         variance: noise and model error.
         error: the model error, as a share of the local level [-].
         steps: most evaluations of a refinement.
+        before: candidates of the first fit, to be tried again; None once they were.
     """
 
     candidates: ComplexArray
@@ -172,6 +175,7 @@ class _Start:
     variance: FloatArray
     error: float
     steps: int
+    before: IntArray | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -215,6 +219,14 @@ def _settled(
         kept = np.flatnonzero(~bad)
 
 
+def _weighed(
+    lines: FrfLines, noise: FloatArray, poles: RefinedPoles
+) -> tuple[float, FloatArray]:
+    """Return the model error of a fit, and the variance of the lines with it."""
+    error = model_error(poles.residual, noise, lines.response)
+    return error, line_variance(noise, error, poles.residual, lines.response)
+
+
 def _completed(
     lines: FrfLines,
     start: _Start,
@@ -234,10 +246,16 @@ def _completed(
     everything = np.append(start.candidates, added)
     held = np.append(start.held, np.zeros(added.size, bool))
     place = np.arange(start.candidates.size, everything.size)
-    begun = _again(lines, np.append(poles.pole, added), beyond, start.variance)
+    if start.before is not None:
+        # Dropped while more of the residual counted as model error.
+        again = np.setdiff1d(start.before, done.chosen)
+        place = np.append(again[~unresolved(lines, everything[again])], place)
+    begun = _again(
+        lines, np.append(poles.pole, everything[place]), beyond, start.variance
+    )
     noise = line_noise(lines.response, scatter, begun.residual)
     error = min(start.error, model_error(begun.residual, noise, lines.response))
-    variance = noise + error**2 * local_level(lines.response)
+    variance = line_variance(noise, error, begun.residual, lines.response)
     wider = replace(
         start,
         candidates=everything,
@@ -245,6 +263,7 @@ def _completed(
         noise=noise,
         variance=variance,
         error=error,
+        before=None,
     )
     chosen = np.append(done.chosen, place)
     left = needed(lines, begun.pole, held[chosen], noise, variance, begun.beyond)
@@ -263,7 +282,8 @@ def _doubts(
     if not tried:
         nothing = np.zeros((done.poles.pole.size, 2, 2))
         return DoubtfulNeighbours(np.empty(0), nothing)
-    return doubtful_neighbours(_final(lines, start, done))
+    own = done.poles.covariance * done.poles.inflation[:, None, None]
+    return doubtful_neighbours(_final(lines, start, done), own)
 
 
 def _again(
