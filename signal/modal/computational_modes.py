@@ -30,6 +30,9 @@ _DISTANCES = (0.004, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3)
 _DECAYS = (0.004, 0.012, 0.03)
 # Log Bayes factor from which a place is refined.
 _LEAST_EVIDENCE = 2.0
+# Places refined, until one is needed; distance of two poles over the sum of their decay
+# rates, below which they are one.
+_STARTS, _ONE_POLE = 3, 0.1
 # A pole is kept where chi-squared falls by this many times its unknowns, in units of
 # what it leaves.
 _GAIN = 3.0
@@ -69,16 +72,34 @@ def _beyond_edge(whole: WholeFit, group: Group, *, above: bool) -> ComplexArray:
     fitted: RefinedPoles | None = None
     rows = _rows(whole, group, above=above)
     for _ in range(_MOST):
-        start = _best_start(whole, group, np.append(pole, beyond), rows, above=above)
-        if start is None:
+        starts = _starts(whole, group, np.append(pole, beyond), rows, above=above)
+        if starts.size == 0:
             break
         fitted = fitted or _refined(group, pole, beyond)
+        better = _first_needed(whole, group, fitted, starts)
+        if better is None:
+            break
+        fitted, pole, beyond = better, better.pole, better.beyond
+    return beyond
+
+
+def _first_needed(
+    whole: WholeFit, group: Group, fitted: RefinedPoles, starts: ComplexArray
+) -> RefinedPoles | None:
+    """Return the fit with the first further pole that it needs, or None."""
+    for start in starts:
         trial = _refined(group, fitted.pole, np.append(fitted.beyond, start))
         outside = unresolved(whole.lines, trial.beyond).all()
-        if not outside or not _gained(group, fitted, trial):
-            break
-        fitted, pole, beyond = trial, trial.pole, trial.beyond
-    return beyond
+        if outside and _apart(trial.beyond) and _gained(group, fitted, trial):
+            return trial
+    return None
+
+
+def _apart(pole: ComplexArray) -> bool:
+    """Return whether no two poles are one."""
+    size = -pole.real
+    away = np.abs(pole[:, None] - pole) / (size[:, None] + size)
+    return bool(np.all(away[np.triu_indices(pole.size, 1)] > _ONE_POLE))
 
 
 def _refined(group: Group, pole: ComplexArray, beyond: ComplexArray) -> RefinedPoles:
@@ -101,15 +122,15 @@ def _rows(whole: WholeFit, group: Group, *, above: bool) -> IntArray:
     return np.argsort(-np.mean(ratio, axis=1))[:_FEW_FRFS]
 
 
-def _best_start(
+def _starts(
     whole: WholeFit,
     group: Group,
     pole: ComplexArray,
     rows: IntArray,
     *,
     above: bool,
-) -> complex | None:
-    """Return the likeliest place beyond an edge, or None where none is likely."""
+) -> ComplexArray:
+    """Return the likeliest places beyond an edge, none where none is likely."""
     low, high = whole.lines.laplace.imag[[0, -1]]
     away = (high - low) * np.array(_DISTANCES)
     place = high + away if above else np.maximum(low - away, 0.5 * low)
@@ -120,6 +141,5 @@ def _best_start(
     )
     scale = residue_scale(whole)[rows]
     found = try_poles(lines, group.variance[rows], pole, trials, scale)
-    best = int(np.argmax(found.log_factor))
-    known = found.log_factor[best] > _LEAST_EVIDENCE
-    return complex(trials[best]) if known else None
+    best = np.argsort(-found.log_factor)[:_STARTS]
+    return np.asarray(trials[best][found.log_factor[best] > _LEAST_EVIDENCE])

@@ -32,6 +32,8 @@ _AWAY = (0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5, 6.0)
 _DECAYS = (0.5, 1.0, 2.0)
 _FEW_AWAY, _FEW_DECAYS = (0.3, 0.75, 1.5, 3.0), (1.0,)
 _FEW_FRFS = 16
+# Sizes of their residues over the rms of those found; weak modes are those missed.
+_SHARES = (1.0, 0.3, 0.1, 0.03)
 # Residual power over noise up to which a model with one more mode is admissible: else
 # leakage or a nonlinear structure is left, which no neighbour explains.
 _ADMISSIBLE = 4.0
@@ -97,12 +99,15 @@ def doubtful_neighbours(
             whole.pole[index],
             trials,
             residue_scale(whole),
+            _SHARES,
         )
-        weight = _weights(found.log_factor, cell * whole.n_modes / np.ptp(whole.lines.laplace.imag))
+        share = whole.n_modes / (len(_SHARES) * np.ptp(whole.lines.laplace.imag))
+        weight = _weights(found.log_factor, share * np.tile(cell, len(_SHARES)))
         own = int(np.flatnonzero(index == number)[0])
         _add(shift[number], covariance[number], found, weight, own)
         if 1.0 - weight[0] > _STATED:
-            places.append(float(trials[int(np.argmax(weight[1:]))].imag))
+            likeliest = int(np.argmax(weight[1:])) % trials.size
+            places.append(float(trials[likeliest].imag))
     return DoubtfulNeighbours(_distinct(places, width), shift)
 
 
@@ -110,7 +115,9 @@ def _group(whole: WholeFit, number: int, width: FloatArray) -> Group:
     pitch = float(np.median(np.diff(whole.lines.laplace.imag)))
     reach = max(_REACH_WIDTHS * float(width[number]), _REACH_LINES * pitch)
     place = float(whole.pole[number].imag)
-    return group_around(whole, place, reach, with_beyond=True)
+    low, high = whole.lines.laplace.imag[[0, -1]]
+    edge = place - reach < low or place + reach > high
+    return group_around(whole, place, reach, with_beyond=bool(edge))
 
 
 def _places(

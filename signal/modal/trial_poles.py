@@ -9,6 +9,7 @@ the trial over that without is a Bayes factor. It weighs what the trial explains
 what its residues could have explained by chance.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -34,9 +35,9 @@ class Trials:
 
     Attributes:
         log_factor: log Bayes factor of the model with it over that without, shape
-            (n_trials,).
+            (n_shares n_places,).
         shift: change of (Re p, Im p) of each pole of the group [rad/s], shape
-            (n_trials, n_poles, 2).
+            (n_shares n_places, n_poles, 2).
         variance: of (Re p, Im p) with it [rad^2/s^2], same shape.
         before: the same without it, shape (n_poles, 2).
     """
@@ -63,6 +64,7 @@ def try_poles(
     pole: ComplexArray,
     trials: ComplexArray,
     scale: FloatArray,
+    shares: Sequence[float] = (1.0,),
 ) -> Trials:
     """Return the evidence for one more pole at each place.
 
@@ -72,9 +74,12 @@ def try_poles(
         pole: that may move, at the optimum of a fit [rad/s], shape (n_poles,).
         trials: places [rad/s], shape (n_trials,).
         scale: usual size of residue times frequency, shape (n_frf,).
+        shares: sizes of the residues of the trials over the usual one, one after the
+            other.
 
     Returns:
-        Log Bayes factors, and changes of the poles.
+        Log Bayes factors and changes of the poles: all places with the first share,
+        then with the next.
 
     Source:
         Gelman et al., Bayesian Data Analysis (2013), sec. 7.4 and 14.2 (marginal
@@ -84,41 +89,50 @@ def try_poles(
     n_own = 2 * pole.size
     turn = slope_turns(own)
     across = np.swapaxes(turn, 1, 2)
-    width = np.repeat(measured_width(lines, pole), 2)
+    leash = _LEASH * np.repeat(measured_width(lines, pole), 2)
     gram = np.sum(across @ products[:, :n_own, :n_own] @ turn, axis=0)
-    gram += np.diag(1.0 / (_LEASH * width) ** 2)
+    gram += np.diag(1.0 / leash**2)
     force = np.einsum("fij,fi->j", turn, right[:, :n_own])
     inverse = inverses(gram)
-    found = _Sums(trials.size, n_own)
-    for number in range(variance.shape[0]):
-        size = np.maximum(scale[number], 1e-300) / np.abs(trials)
-        found.add(
-            across[number] @ products[number, :n_own, n_own:],
-            products[number, n_own:, n_own:],
-            right[number, n_own:],
-            2.0 / size**2,
-        )
-    later = inverses(gram - found.gram)
-    moved = np.einsum("tij,tj->ti", later, force - found.force)
     still = inverse @ force
-    log_factor = 0.5 * (
-        found.log_factor
-        + np.einsum("ti,ti->t", force - found.force, moved)
-        - force @ still
-        + np.linalg.slogdet(later)[1]
-        - np.linalg.slogdet(inverse)[1]
-    )
-    spread = np.diagonal(later, axis1=1, axis2=2)
-    change, leash = moved - still, _LEASH * width
-    # Beyond first order, or beyond the precision of the inverse.
-    lost = np.any((spread <= 0.0) | (np.abs(change) > leash), axis=1)
-    log_factor[lost | ~np.isfinite(log_factor)] = -np.inf
-    shape = (trials.size, -1, 2)
+    known = force @ still + np.linalg.slogdet(inverse)[1]
+    found = []
+    for share in shares:
+        sums = _Sums(trials.size, n_own)
+        for number in range(variance.shape[0]):
+            size = share * np.maximum(scale[number], 1e-300) / np.abs(trials)
+            sums.add(
+                across[number] @ products[number, :n_own, n_own:],
+                products[number, n_own:, n_own:],
+                right[number, n_own:],
+                2.0 / size**2,
+            )
+        later = inverses(gram - sums.gram)
+        pull = force - sums.force
+        moved = np.einsum("tij,tj->ti", later, pull)
+        explained = np.einsum("ti,ti->t", pull, moved) + np.linalg.slogdet(later)[1]
+        spread = np.diagonal(later, axis1=1, axis2=2)
+        factor = 0.5 * (sums.log_factor + explained - known)
+        found.append(_checked(factor, moved - still, spread, leash))
+    log_factor, change, spread = (np.concatenate(part) for part in zip(*found, strict=True))
+    shape = (log_factor.size, -1, 2)
     return Trials(
         log_factor,
-        np.clip(change, -leash, leash).reshape(shape),
-        np.clip(spread, 0.0, leash**2).reshape(shape),
+        change.reshape(shape),
+        spread.reshape(shape),
         np.clip(np.diag(inverse), 0.0, leash**2).reshape(-1, 2),
+    )
+
+
+def _checked(
+    log_factor: FloatArray, change: FloatArray, spread: FloatArray, leash: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Rule out trials beyond first order, or beyond the precision of the inverse."""
+    lost = np.any((spread <= 0.0) | (np.abs(change) > leash), axis=1)
+    return (
+        np.where(lost | ~np.isfinite(log_factor), -np.inf, log_factor),
+        np.clip(change, -leash, leash),
+        np.clip(spread, 0.0, leash**2),
     )
 
 
