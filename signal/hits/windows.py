@@ -34,6 +34,8 @@ _SAMPLES_KEPT = 64
 # Samples kept before the trigger, or this share of the pulse if that is longer.
 _LEAD_SAMPLES = 16
 _LEAD_PULSES = 0.25
+# Mean square of half a cosine from 1 to 0.
+_TAPER_POWER = 3.0 / 8.0
 # Samples before a hit that give the offset of its force, at least and at most.
 _LEAST_QUIET, _MOST_QUIET = 16, 4096
 # A response that ends above this share of its start has not decayed.
@@ -198,7 +200,6 @@ def window_weights(
     return read_only(force), read_only(both)
 
 
-@remembered
 def force_offset(recording: Recording, hit: Hit) -> float:
     """Return the offset of the force channel at a hit [N].
 
@@ -215,14 +216,34 @@ def force_offset(recording: Recording, hit: Hit) -> float:
         Mean from half-way since the previous trigger; where that leaves too few
         samples, `quiet_mean` of the segment.
     """
+    return _quiet_moments(recording, hit)[0]
+
+
+def force_variance(recording: Recording, hit: Hit) -> float:
+    """Return the variance of the quiet force before a hit [N^2]; 0 if too short."""
+    return _quiet_moments(recording, hit)[1]
+
+
+@remembered
+def _quiet_moments(recording: Recording, hit: Hit) -> tuple[float, float]:
+    """Return mean and variance of the force before a hit."""
     row = recording.row(Quantity.FORCE)
-    previous = max((h.trigger for h in recording.hits if h.trigger < hit.trigger), default=-hit.trigger)
-    first = max(0, (previous + hit.trigger + 1) // 2, hit.trigger - _MOST_QUIET)
+    earlier = [h.trigger for h in recording.hits if h.trigger < hit.trigger]
+    between = (max(earlier) + hit.trigger + 1) // 2 if earlier else 0
+    first = max(between, hit.trigger - _MOST_QUIET)
     last = hit.trigger - _LEAD_SAMPLES
     if last - first < _LEAST_QUIET:
         trigger = hit.trigger - hit.start
-        return quiet_mean(recording.samples[row, hit.start : hit.trigger], trigger)
-    return float(recording.samples[row, first:last].mean())
+        start = recording.samples[row, hit.start : hit.trigger]
+        return quiet_mean(start, trigger), 0.0
+    quiet = recording.samples[row, first:last]
+    return float(quiet.mean()), float(quiet.var(ddof=1))
+
+
+def kept_samples(window: HammerWindow, sample_rate: float) -> float:
+    """Return the sum of squared weights of a force window after the trigger [-]."""
+    width = sample_rate * (window.force_width or 0.0)
+    return width * (1.0 + 0.5 * _TAPER_POWER)
 
 
 def quiet_mean(force: FloatArray, trigger: int) -> float:

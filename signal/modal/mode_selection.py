@@ -38,7 +38,11 @@ from jointbench.signal.modal.refined_pole_covariance import (
     refine_poles,
     unresolved,
 )
-from jointbench.signal.modal.shared_errors import shared_covariance
+from jointbench.signal.modal.shared_errors import (
+    ForceNoise,
+    force_covariance,
+    shared_covariance,
+)
 
 # Relative model error assumed before a fit has estimated it [-].
 _FIRST_MODEL_ERROR = 0.02
@@ -65,7 +69,8 @@ class FittedModes:
         model_error: of the fit, as a share of the local level [-].
         residual_ratio: around each mode, rms residual over noise [-], shape (n_modes,).
         shared: covariance of (Re p, Im p) from errors common to the FRFs of a
-            reference [rad^2/s^2], shape (n_modes, 2, 2).
+            reference, as the residual shows them [rad^2/s^2], shape (n_modes, 2, 2).
+        forced: the same from the noise of the force before the hits.
         doubts: neighbours that may be missing.
     """
 
@@ -78,6 +83,7 @@ class FittedModes:
     model_error: float
     residual_ratio: FloatArray
     shared: FloatArray
+    forced: FloatArray
     doubts: DoubtfulNeighbours
 
 
@@ -89,6 +95,7 @@ def fit_modes(
     held: BoolArray | None = None,
     seen: Seen | None = None,
     n_inputs: int = 1,
+    force: ForceNoise | None = None,
     refine: bool = True,
     progress: Progress | None = None,
 ) -> FittedModes:
@@ -106,6 +113,7 @@ def fit_modes(
         seen: whether a pole that the residual shows is one of the FRF; None adds no
             modes, as where some were dropped by hand and their residual is wanted.
         n_inputs: references; inputs vary fastest over the rows of the lines.
+        force: noise of the force, None where it is not known.
         refine: False keeps the poles of LSCF.
         progress: called with the current step and its share; None for no reports.
 
@@ -151,6 +159,7 @@ def fit_modes(
         start.error,
         residual_around(lines, done.poles.pole, done.poles.residual, start.noise),
         shared_covariance(lines, done.poles, done.fit, start.variance, n_inputs),
+        _forced(lines, start, done, force),
         _doubts(lines, start, done, tried=refine and seen is not None),
     )
 
@@ -274,6 +283,14 @@ def _final(lines: FrfLines, start: _Start, done: _Settled) -> WholeFit:
     everything = np.append(done.poles.pole, done.poles.beyond)
     n_modes = done.poles.pole.size
     return WholeFit(lines, everything, n_modes, done.fit, start.noise, start.variance)
+
+
+def _forced(
+    lines: FrfLines, start: _Start, done: _Settled, force: ForceNoise | None
+) -> FloatArray:
+    if force is None:
+        return np.zeros((done.poles.pole.size, 2, 2))
+    return force_covariance(lines, done.poles, done.fit, start.variance, force)
 
 
 def _doubts(

@@ -45,7 +45,7 @@ _FREQUENCY = 18
 _DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
 _ROTATIONS = {4: "+rx", -4: "-rx", 5: "+ry", -5: "-ry", 6: "+rz", -6: "-rz"}
 _OWN = "jointbench"
-_NOISE = re.compile(r"(?P<name>variance|innovation_noise) of ")
+_NOISE = re.compile(r"(?P<name>variance|innovation_noise|force_noise) of ")
 _DETAIL = re.compile(r"(\w+)=(\S+)")
 _DIGITS = 1e-5
 """Share of itself by which a printed number of six digits may differ, and more."""
@@ -122,6 +122,7 @@ def _function(
         unit_of(path, where, _unit(one), given),
         averages=int(detail.get("averages", 0)),
         decay_rate=detail.get("decay", 0.0),
+        force_width=detail.get("force", 0.0),
         usable_band=None if band[0] is None or band[1] is None else (band[0], band[1]),
         provenance=done,
     )
