@@ -36,7 +36,7 @@ _STARTS, _ONE_POLE = 3, 0.1
 # A pole is kept where chi-squared falls by this many times its unknowns, in units of
 # what it leaves.
 _GAIN = 3.0
-# Poles added beyond one edge, at most.
+# Poles added at once, at most.
 _MOST = 5
 _STEPS = 15
 
@@ -48,31 +48,35 @@ def find_beyond(whole: WholeFit) -> ComplexArray:
         whole: fit of all lines with modes and poles beyond the band so far.
 
     Returns:
-        The poles beyond the band so far, and up to five more at each edge.
+        The poles beyond the band so far, and further ones.
     """
-    lines = whole.lines
-    low, high = lines.laplace.imag[[0, -1]]
+    low, high = whole.lines.laplace.imag[[0, -1]]
     known = whole.pole[whole.n_modes :]
-    for above in (False, True):
-        # There are no modes below a band that begins next to zero.
-        if not above and low < _EDGE * high:
-            continue
-        reach = (1.0 if whole.n_modes <= _FEW_MODES else _REACH) * (high - low)
-        place = high if above else low
-        group = group_around(whole, place, 1.01 * reach, with_beyond=True)
+    if whole.n_modes == 0:
+        return known
+    # There are no modes below a band that begins next to zero.
+    edges = (True,) if low < _EDGE * high else (True, False)
+    if whole.n_modes <= _FEW_MODES:
+        group = group_around(whole, high, 1.01 * (high - low), with_beyond=True)
+        return _beyond_edges(whole, group, edges)
+    for above in edges:
+        reach = 1.01 * _REACH * (high - low)
+        group = group_around(whole, high if above else low, reach, with_beyond=True)
         # A group replaces the poles that it held.
         known = known[~np.isin(known, whole.pole[group.beyond])]
-        known = np.append(known, _beyond_edge(whole, group, above=above))
+        known = np.append(known, _beyond_edges(whole, group, (above,)))
     return known
 
 
-def _beyond_edge(whole: WholeFit, group: Group, *, above: bool) -> ComplexArray:
-    """Add poles beyond an edge to those of a group while the fit needs them."""
+def _beyond_edges(
+    whole: WholeFit, group: Group, edges: tuple[bool, ...]
+) -> ComplexArray:
+    """Add poles beyond edges to those of a group while the fit needs them."""
     pole, beyond = whole.pole[group.modes], whole.pole[group.beyond]
     fitted: RefinedPoles | None = None
-    rows = _rows(whole, group, above=above)
+    rows = _rows(whole, edges)
     for _ in range(_MOST):
-        starts = _starts(whole, group, np.append(pole, beyond), rows, above=above)
+        starts = _starts(whole, group, np.append(pole, beyond), rows, edges)
         if starts.size == 0:
             break
         fitted = fitted or _refined(group, pole, beyond)
@@ -114,12 +118,13 @@ def _gained(group: Group, before: RefinedPoles, after: RefinedPoles) -> bool:
     return gain > _GAIN * (2 * group.variance.shape[0] + 2)
 
 
-def _rows(whole: WholeFit, group: Group, *, above: bool) -> IntArray:
-    """Return the FRFs whose residual at an edge is largest."""
+def _rows(whole: WholeFit, edges: tuple[bool, ...]) -> IntArray:
+    """Return the FRFs whose residual at the edges is largest."""
     width = max(10, int(_EDGE * whole.lines.laplace.size))
-    edge = slice(-width, None) if above else slice(None, width)
-    ratio = np.abs(whole.residual[:, edge]) ** 2 / whole.noise[:, edge]
-    return np.argsort(-np.mean(ratio, axis=1))[:_FEW_FRFS]
+    ratio = np.abs(whole.residual) ** 2 / whole.noise
+    ends = [ratio[:, -width:] if above else ratio[:, :width] for above in edges]
+    worst = np.argsort(-np.mean(np.hstack(ends), axis=1))
+    return np.asarray(worst[:_FEW_FRFS])
 
 
 def _starts(
@@ -127,13 +132,13 @@ def _starts(
     group: Group,
     pole: ComplexArray,
     rows: IntArray,
-    *,
-    above: bool,
+    edges: tuple[bool, ...],
 ) -> ComplexArray:
-    """Return the likeliest places beyond an edge, none where none is likely."""
+    """Return the likeliest places beyond the edges, none where none is likely."""
     low, high = whole.lines.laplace.imag[[0, -1]]
     away = (high - low) * np.array(_DISTANCES)
-    place = high + away if above else np.maximum(low - away, 0.5 * low)
+    beyond = [high + away if above else np.maximum(low - away, 0.5 * low) for above in edges]
+    place = np.unique(np.concatenate(beyond))
     decay = (high - low) * np.array(_DECAYS)
     trials = (1j * place[:, None] - decay).ravel()
     lines = FrfLines(

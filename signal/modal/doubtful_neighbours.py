@@ -9,7 +9,7 @@ width holds, and a shift. The interval of the mode is that of the mixture: the v
 kept, and 95 % of the probability lie within.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.special
@@ -17,11 +17,12 @@ import scipy.special
 from jointbench.acquisition.basics.arrays import (
     ComplexArray,
     FloatArray,
+    IntArray,
     freeze,
 )
 from jointbench.signal.modal.frf_lines import measured_width
-from jointbench.signal.modal.line_noise import residual_around
 from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
+from jointbench.signal.modal.missing_modes import refined_group
 from jointbench.signal.modal.trial_poles import Trials, residue_scale, try_poles
 
 # Lines around a mode: half-power half-widths, and lines at least, each side.
@@ -34,11 +35,17 @@ _FEW_AWAY, _FEW_DECAYS = (0.3, 0.75, 1.5, 3.0), (1.0,)
 _FEW_FRFS = 16
 # Sizes of their residues over the rms of those found; weak modes are those missed.
 _SHARES = (1.0, 0.3, 0.1, 0.03)
+# Density of modes that may be missing over that of the modes found.
+_DENSITY = 2.0
 # Residual power over noise up to which a model with one more mode is admissible: else
 # leakage or a nonlinear structure is left, which no neighbour explains.
 _ADMISSIBLE = 4.0
 # Probability of a neighbour from which it is stated.
 _STATED = 0.9
+# Residual power over the variance from which it counts in place of it.
+_CLEAN = 1.1
+# Log Bayes factor of a neighbour whose evidence is beyond first order.
+_CERTAIN = 700.0
 # Places named in the remark.
 _LISTED = 6
 # Share of the probability in an interval, and its half-width in sd of a normal law.
@@ -83,32 +90,74 @@ def doubtful_neighbours(
     places: list[float] = []
     modes = whole.pole[: whole.n_modes]
     width = measured_width(whole.lines, modes)
-    excess = residual_around(whole.lines, modes, whole.residual, whole.variance)
     for number in range(whole.n_modes):
         group = _group(whole, number, width)
-        ratio = float(np.mean(np.abs(whole.residual) ** 2 / whole.noise))
-        if ratio > _ADMISSIBLE:
-            continue
         trials, cell = _places(whole, modes[number], float(width[number]))
         if trials.size == 0:
             continue
         index = np.append(group.modes, group.beyond)
-        found = try_poles(
-            group.lines,
-            group.variance * max(1.0, float(excess[number])),
-            whole.pole[index],
-            trials,
-            residue_scale(whole),
-            _SHARES,
-        )
-        share = whole.n_modes / (len(_SHARES) * np.ptp(whole.lines.laplace.imag))
-        weight = _weights(found.log_factor, share * np.tile(cell, len(_SHARES)))
+        found = _tried(whole, group, index, trials)
+        if found is None:
+            continue
+        density = _DENSITY * whole.n_modes / float(np.ptp(whole.lines.laplace.imag))
+        prior = density / len(_SHARES) * np.tile(cell, len(_SHARES))
+        weight = _weights(found.log_factor, prior)
         own = int(np.flatnonzero(index == number)[0])
         _add(shift[number], covariance[number], found, weight, own)
         if 1.0 - weight[0] > _STATED:
             likeliest = int(np.argmax(weight[1:])) % trials.size
             places.append(float(trials[likeliest].imag))
     return DoubtfulNeighbours(_distinct(places, width), shift)
+
+
+def _tried(
+    whole: WholeFit, group: Group, index: IntArray, trials: ComplexArray
+) -> Trials | None:
+    """Return what one more mode changes; None where none is admissible.
+
+    What the likeliest leaves counts as noise: leakage, a nonlinear structure.
+    """
+    scale, pole = residue_scale(whole), whole.pole[index]
+    found = try_poles(group.lines, group.variance, pole, trials, scale, _SHARES)
+    power = 2.0 * np.abs(group.residual) ** 2
+    best, count = float(found.gain.max()), 2.0 * power.size
+    noise = float(np.sum(power / group.noise))
+    left = float(np.sum(power / group.variance)) - best
+    if noise * left / (left + best) > _ADMISSIBLE * count:
+        likeliest = int(np.argmax(found.log_factor)) % trials.size
+        return _refined(whole, group, found, complex(trials[likeliest]))
+    if left < _CLEAN * count:
+        return found
+    variance = group.variance * left / count
+    return try_poles(group.lines, variance, pole, trials, scale, _SHARES)
+
+
+def _refined(
+    whole: WholeFit, group: Group, found: Trials, start: complex
+) -> Trials | None:
+    """Return the likeliest neighbour beyond first order; None if it is not admissible.
+
+    Nothing else is left to weigh where its evidence is so strong.
+    """
+    without = refined_group(whole, group)
+    fitted = refined_group(whole, group, start)
+    ratio = float(np.mean(np.abs(fitted.residual) ** 2 / group.noise))
+    if ratio > _ADMISSIBLE or fitted.pole[-1].real >= 0.0:
+        return None
+    before = np.append(without.pole, without.beyond)
+    after = np.append(fitted.pole[:-1], fitted.beyond)
+    spread = np.zeros((before.size, 2))
+    own = fitted.covariance[:-1] * np.maximum(fitted.inflation[:-1, None, None], 1.0)
+    spread[: group.modes.size] = np.diagonal(own, axis1=1, axis2=2)
+    change = (after - before).view(np.float64).reshape(-1, 2)
+    certain = np.full(found.log_factor.size, -np.inf)
+    certain[int(np.argmax(found.log_factor))] = _CERTAIN
+    return replace(
+        found,
+        log_factor=certain,
+        shift=np.broadcast_to(change, found.shift.shape),
+        variance=np.broadcast_to(spread, found.variance.shape),
+    )
 
 
 def _group(whole: WholeFit, number: int, width: FloatArray) -> Group:

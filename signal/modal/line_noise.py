@@ -181,10 +181,7 @@ def _power(standard: ComplexArray, modes: int) -> float:
     left = n_frf * (n_lines - modes) - modes
     if left <= 0:
         return 1.0
-    ratio = float(np.sum(np.abs(standard) ** 2) / left)
-    # Few lines are small by chance; the variance itself is known from so many.
-    shared = (_LOCAL_LINES + left * ratio) / (_LOCAL_LINES + left)
-    return max(ratio, shared)
+    return float(np.sum(np.abs(standard) ** 2) / left)
 
 
 def _correlation_length(standard: ComplexArray) -> float:

@@ -57,6 +57,7 @@ class Group:
         lines: around them, without all other poles.
         noise: noise variance of these lines, shape (n_frf, n_lines).
         variance: noise and model error, same shape.
+        residual: of the whole fit on these lines, same shape.
         modes: indices of the modes of the group.
         beyond: indices of its computational poles.
     """
@@ -64,6 +65,7 @@ class Group:
     lines: FrfLines
     noise: FloatArray
     variance: FloatArray
+    residual: ComplexArray
     modes: IntArray
     beyond: IntArray
 
@@ -99,6 +101,7 @@ def group_around(
         ),
         whole.noise[:, keep],
         whole.variance[:, keep],
+        whole.residual[:, keep],
         index[index < whole.n_modes],
         index[index >= whole.n_modes],
     )

@@ -26,6 +26,8 @@ from jointbench.signal.modal.normal_equations import (
 _SMALL_STEP = 1e-4
 # ... and chi-squared falls by less than this, in units of what is left.
 _SMALL_GAIN = 0.05
+# Where others still move, a pole that moved less than this has converged.
+_SETTLED = 1e-2
 # A pole that leaves its start by this many half-power half-widths has diverged.
 _LEASH = 1.0
 _LEASH_DAMPING = 10.0
@@ -179,6 +181,7 @@ def _search(
     """Return the poles at the optimum, their cost terms, and which converged."""
     free, damping = np.ones(pole.size, bool), 1e-3
     here, settled = _evaluate(lines, pole, variance), False
+    moved = np.full(pole.size, np.inf)
     for _ in range(steps):
         trial = pole + np.where(free, _step(here, prior, pole, free, damping), 0.0)
         trial[prior.n_modes :] = _kept_beyond(lines, prior, pole, trial)
@@ -202,7 +205,7 @@ def _search(
             settled &= gained < _SMALL_GAIN * unit
         if settled:
             break
-    return pole, here, free & settled
+    return pole, here, free & (settled | (moved < _SETTLED))
 
 
 def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Point:

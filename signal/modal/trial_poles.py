@@ -36,6 +36,7 @@ class Trials:
     Attributes:
         log_factor: log Bayes factor of the model with it over that without, shape
             (n_shares n_places,).
+        gain: chi-squared that it explains [-], same shape.
         shift: change of (Re p, Im p) of each pole of the group [rad/s], shape
             (n_shares n_places, n_poles, 2).
         variance: of (Re p, Im p) with it [rad^2/s^2], same shape.
@@ -43,6 +44,7 @@ class Trials:
     """
 
     log_factor: FloatArray
+    gain: FloatArray
     shift: FloatArray
     variance: FloatArray
     before: FloatArray
@@ -95,7 +97,7 @@ def try_poles(
     force = np.einsum("fij,fi->j", turn, right[:, :n_own])
     inverse = inverses(gram)
     still = inverse @ force
-    known = force @ still + np.linalg.slogdet(inverse)[1]
+    volume = np.linalg.slogdet(inverse)[1]
     found = []
     for share in shares:
         sums = _Sums(trials.size, n_own)
@@ -110,14 +112,17 @@ def try_poles(
         later = inverses(gram - sums.gram)
         pull = force - sums.force
         moved = np.einsum("tij,tj->ti", later, pull)
-        explained = np.einsum("ti,ti->t", pull, moved) + np.linalg.slogdet(later)[1]
+        gain = sums.gain + np.einsum("ti,ti->t", pull, moved) - force @ still
+        factor = gain + sums.log_volume + np.linalg.slogdet(later)[1] - volume
         spread = np.diagonal(later, axis1=1, axis2=2)
-        factor = 0.5 * (sums.log_factor + explained - known)
-        found.append(_checked(factor, moved - still, spread, leash))
-    log_factor, change, spread = (np.concatenate(part) for part in zip(*found, strict=True))
+        found.append((*_checked(0.5 * factor, moved - still, spread, leash), gain))
+    log_factor, change, spread, gain = (
+        np.concatenate(part) for part in zip(*found, strict=True)
+    )
     shape = (log_factor.size, -1, 2)
     return Trials(
         log_factor,
+        np.where(np.isfinite(log_factor), gain, 0.0),
         change.reshape(shape),
         spread.reshape(shape),
         np.clip(np.diag(inverse), 0.0, leash**2).reshape(-1, 2),
@@ -139,12 +144,13 @@ def _checked(
 class _Sums:
     """Sums over FRFs of what their residues at the trial poles explain."""
 
-    __slots__ = ("force", "gram", "log_factor")
+    __slots__ = ("force", "gain", "gram", "log_volume")
 
     def __init__(self, n_trials: int, n_own: int) -> None:
         self.gram = np.zeros((n_trials, n_own, n_own))
         self.force = np.zeros((n_trials, n_own))
-        self.log_factor = np.zeros(n_trials)
+        self.gain = np.zeros(n_trials)
+        self.log_volume = np.zeros(n_trials)
 
     def add(
         self,
@@ -163,8 +169,8 @@ class _Sums:
         explained = np.einsum("tij,tj->ti", inverse, right[two])
         self.gram += shared @ inverse @ shared.transpose(0, 2, 1)
         self.force += np.einsum("tij,tj->ti", shared, explained)
-        self.log_factor += np.einsum("ti,ti->t", right[two], explained)
-        self.log_factor += 2.0 * np.log(precision) - np.linalg.slogdet(own)[1]
+        self.gain += np.einsum("ti,ti->t", right[two], explained)
+        self.log_volume += 2.0 * np.log(precision) - np.linalg.slogdet(own)[1]
 
 
 def _projected(
