@@ -137,7 +137,9 @@ def _starts(
     """Return the likeliest places beyond the edges, none where none is likely."""
     low, high = whole.lines.laplace.imag[[0, -1]]
     away = (high - low) * np.array(_DISTANCES)
-    beyond = [high + away if above else np.maximum(low - away, 0.5 * low) for above in edges]
+    beyond = [
+        high + away if above else np.maximum(low - away, 0.5 * low) for above in edges
+    ]
     place = np.unique(np.concatenate(beyond))
     decay = (high - low) * np.array(_DECAYS)
     trials = (1j * place[:, None] - decay).ravel()

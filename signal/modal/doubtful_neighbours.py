@@ -71,9 +71,7 @@ class DoubtfulNeighbours:
         freeze(self, "frequency", "shift")
 
 
-def doubtful_neighbours(
-    whole: WholeFit, covariance: FloatArray
-) -> DoubtfulNeighbours:
+def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeighbours:
     """Try one more mode around each mode.
 
     Args:

@@ -6,7 +6,7 @@ away are taken from the FRF as they are, the smooth rest is left to the residual
 and only the group is fitted: a trial costs a small share of a fit of the whole band.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -34,6 +34,7 @@ class WholeFit:
         fit: residues and synthesis with all of them.
         noise: noise variance of the lines, shape (n_frf, n_lines).
         variance: noise and model error, same shape.
+        residual: measured less fitted FRF, same shape.
     """
 
     lines: FrfLines
@@ -42,11 +43,12 @@ class WholeFit:
     fit: LinearFit
     noise: FloatArray
     variance: FloatArray
+    residual: ComplexArray = field(init=False)
 
-    @property
-    def residual(self) -> ComplexArray:
-        """Measured less fitted FRF, shape (n_frf, n_lines)."""
-        return np.asarray(self.lines.response - self.fit.synthesis)
+    def __post_init__(self) -> None:
+        """Subtract the fit once."""
+        residual = self.lines.response - self.fit.synthesis
+        object.__setattr__(self, "residual", residual)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

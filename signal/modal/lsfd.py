@@ -199,12 +199,22 @@ def fit_residues(
     )
     coefficients[:, used] = (solved @ right[:, :, None])[:, :, 0]
     inverse[np.ix_(np.arange(n_frf), used, used)] = solved
-    significance = _wald(coefficients, inverse, pole.size)
+    modal = inverse[:, : 2 * pole.size, : 2 * pole.size]
+    significance = wald_significance(coefficients, modal)
     return LinearFit(coefficients, coefficients @ basis.T, significance)
 
 
-def _wald(coefficients: FloatArray, inverse: FloatArray, n_modes: int) -> FloatArray:
-    """Return the chi-squared of each residue against zero, summed over FRFs."""
+def wald_significance(coefficients: FloatArray, inverse: FloatArray) -> FloatArray:
+    """Return the chi-squared of each residue against zero, summed over FRFs.
+
+    Args:
+        coefficients: residues first, shape (n_frf, n).
+        inverse: covariance of the residues, shape (n_frf, 2 n_modes, 2 n_modes).
+
+    Returns:
+        Shape (n_modes,).
+    """
+    n_modes = inverse.shape[1] // 2
     pairs = coefficients[:, : 2 * n_modes].reshape(coefficients.shape[0], n_modes, 2)
     index = np.arange(2 * n_modes).reshape(n_modes, 2)
     blocks = inverse[:, index[:, :, None], index[:, None, :]]
@@ -225,6 +235,7 @@ def needed(
     noise: FloatArray,
     variance: FloatArray,
     beyond: ComplexArray,
+    residual: ComplexArray | None = None,
 ) -> IntArray:
     """Drop the least needed pole until all that are left are needed.
 
@@ -235,6 +246,7 @@ def needed(
         noise: noise variance of the lines, shape (n_frf, n_lines).
         variance: noise and model error, same shape.
         beyond: computational poles [rad/s].
+        residual: of the fit with all of them, None if it is not known.
 
     Returns:
         Indices of the poles that are left.
@@ -242,8 +254,11 @@ def needed(
     left = np.arange(pole.size)
     limit = least_significance(lines)
     while left.size:
-        fit = fit_residues(lines, np.append(pole[left], beyond), variance)
-        found = significance(lines, fit, pole[left], noise, beyond)
+        if residual is None:
+            fit = fit_residues(lines, np.append(pole[left], beyond), variance)
+            residual = lines.response - fit.synthesis
+        found = significance(lines, residual, pole[left], noise, beyond)
+        residual = None
         weak: BoolArray = (found < limit) & ~held[left]
         if not weak.any():
             break
@@ -256,7 +271,7 @@ def needed(
 
 def significance(
     lines: FrfLines,
-    fit: LinearFit,
+    residual: ComplexArray,
     pole: ComplexArray,
     noise: FloatArray,
     beyond: ComplexArray,
@@ -265,7 +280,7 @@ def significance(
 
     Args:
         lines: lines of the fit.
-        fit: with all poles.
+        residual: of a fit with all poles, shape (n_frf, n_lines).
         pole: modes [rad/s], shape (n_modes,).
         noise: noise variance of the lines, shape (n_frf, n_lines).
         beyond: computational poles [rad/s].
@@ -273,7 +288,7 @@ def significance(
     Returns:
         Increase of chi-squared without each mode, shape (n_modes,).
     """
-    local = local_residual(lines.response - fit.synthesis)
+    local = local_residual(residual)
     everything = np.append(pole, beyond)
     judged = fit_residues(lines, everything, np.maximum(noise, local))
     apparent = np.nan_to_num(judged.significance[: pole.size])

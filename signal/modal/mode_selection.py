@@ -31,7 +31,7 @@ from jointbench.signal.modal.line_noise import (
 )
 from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lscf import Progress
-from jointbench.signal.modal.lsfd import LinearFit, fit_residues, needed, significance
+from jointbench.signal.modal.lsfd import LinearFit, needed, significance
 from jointbench.signal.modal.missing_modes import Seen, find_missing
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
@@ -132,7 +132,7 @@ def fit_modes(
     noise = line_noise(lines.response, scatter, poles.residual)
     error, variance = _weighed(lines, noise, poles)
     for _ in range(_SEARCHES if refine else 0):
-        whole = _whole(lines, poles.pole, poles.beyond, noise, variance)
+        whole = _whole(lines, poles, noise, variance)
         beyond = find_beyond(whole)
         if beyond.size == poles.beyond.size:
             break
@@ -140,7 +140,15 @@ def fit_modes(
         noise = line_noise(lines.response, scatter, poles.residual)
         error, variance = _weighed(lines, noise, poles)
     start = _Start(candidates, held, noise, variance, error, steps, chosen)
-    kept = needed(lines, poles.pole, held[chosen], noise, variance, poles.beyond)
+    kept = needed(
+        lines,
+        poles.pole,
+        held[chosen],
+        noise,
+        variance,
+        poles.beyond,
+        poles.residual,
+    )
     report("refining modes", 0.7)
     done = _settled(lines, start, chosen, kept, poles)
     for _ in range(_SEARCHES if refine and seen else 0):
@@ -218,12 +226,11 @@ def _settled(
             steps=start.steps,
         )
         beyond = poles.beyond
-        fit = fit_residues(lines, np.append(poles.pole, beyond), start.variance)
-        found = significance(lines, fit, poles.pole, start.noise, beyond)
+        found = significance(lines, poles.residual, poles.pole, start.noise, beyond)
         aside = unresolved(lines, poles.pole) & ~held[chosen]
         bad = (_vague(lines, poles, found) & ~held[chosen]) | aside
         if not bad.any():
-            return _Settled(chosen, poles, fit, found)
+            return _Settled(chosen, poles, poles.fit, found)
         beyond = np.append(beyond, poles.pole[aside])
         kept = np.flatnonzero(~bad)
 
@@ -275,14 +282,20 @@ def _completed(
         before=None,
     )
     chosen = np.append(done.chosen, place)
-    left = needed(lines, begun.pole, held[chosen], noise, variance, begun.beyond)
+    left = needed(
+        lines,
+        begun.pole,
+        held[chosen],
+        noise,
+        variance,
+        begun.beyond,
+        begun.residual,
+    )
     return wider, _settled(lines, wider, chosen, left, begun)
 
 
 def _final(lines: FrfLines, start: _Start, done: _Settled) -> WholeFit:
-    everything = np.append(done.poles.pole, done.poles.beyond)
-    n_modes = done.poles.pole.size
-    return WholeFit(lines, everything, n_modes, done.fit, start.noise, start.variance)
+    return _whole(lines, done.poles, start.noise, start.variance)
 
 
 def _forced(
@@ -314,15 +327,10 @@ def _again(
 
 
 def _whole(
-    lines: FrfLines,
-    pole: ComplexArray,
-    beyond: ComplexArray,
-    noise: FloatArray,
-    variance: FloatArray,
+    lines: FrfLines, poles: RefinedPoles, noise: FloatArray, variance: FloatArray
 ) -> WholeFit:
-    everything = np.append(pole, beyond)
-    fit = fit_residues(lines, everything, variance)
-    return WholeFit(lines, everything, pole.size, fit, noise, variance)
+    everything = np.append(poles.pole, poles.beyond)
+    return WholeFit(lines, everything, poles.pole.size, poles.fit, noise, variance)
 
 
 def _silent(what: str, share: float) -> None:

@@ -15,7 +15,12 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import residual_around
-from jointbench.signal.modal.lsfd import modal_basis, modal_size
+from jointbench.signal.modal.lsfd import (
+    LinearFit,
+    modal_basis,
+    modal_size,
+    wald_significance,
+)
 from jointbench.signal.modal.normal_equations import (
     correlations,
     gram_matrices,
@@ -73,6 +78,7 @@ class RefinedPoles:
         linearised: how residues depend on poles, computational poles last.
         beyond: computational poles after the refinement [rad/s], shape (n,).
         residual: measured less fitted FRF, shape (n_frf, n_lines).
+        fit: residues of modes and computational poles, with these variances.
     """
 
     pole: ComplexArray
@@ -82,6 +88,7 @@ class RefinedPoles:
     linearised: Linearised
     beyond: ComplexArray
     residual: ComplexArray
+    fit: LinearFit
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,6 +103,7 @@ class _Point:
     gram: FloatArray
     gradient: FloatArray
     residual: ComplexArray
+    coefficients: FloatArray
     residue_noise: FloatArray
     residue_slope: FloatArray
 
@@ -168,6 +176,11 @@ def refine_poles(
         Linearised(joint, here.residue_noise, here.residue_slope),
         pole[n_modes:],
         here.residual,
+        LinearFit(
+            here.coefficients,
+            lines.response - here.residual,
+            wald_significance(here.coefficients, here.residue_noise),
+        ),
     )
 
 
@@ -234,6 +247,7 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
         gram=np.sum(gram, axis=0),
         gradient=np.einsum("fij,fi->j", turn, slope),
         residual=residual,
+        coefficients=solved,
         residue_noise=inverse[:, :n_poles, :n_poles],
         residue_slope=-(inverse[:, :n_poles] @ overlap),
     )

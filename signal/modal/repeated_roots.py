@@ -40,8 +40,8 @@ _LEASH = 1.0
 # One mode in its place must leave this many times the chi-squared that two leave; else
 # a second singular value above this share of the first makes it possible.
 _GAIN, _LEAST_SHARE = 2.0, 0.003
-# Second singular value over the first up to which the aim of the hammer explains it: hits
-# a few per cent off their point give residues of rank two.
+# Second singular value over the first up to which the aim of the hammer explains it:
+# hits a few per cent off their point give residues of rank two.
 _AIMED = 0.02
 _MOST_OTHERS = 2
 # Chi-squared over the number of values up to which two modes explain the lines, and up

@@ -27,6 +27,7 @@ from jointbench.signal.modal.refined_pole_covariance import pole_slopes, slope_t
 
 # Sd of (Re p, Im p) without data, in half-power half-widths, as in a refinement.
 _LEASH = 1.0
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,23 +94,24 @@ def try_poles(
     across = np.swapaxes(turn, 1, 2)
     leash = _LEASH * np.repeat(measured_width(lines, pole), 2)
     gram = np.sum(across @ products[:, :n_own, :n_own] @ turn, axis=0)
-    gram += np.diag(1.0 / leash**2)
+    # Rounding can leave the information of a line-narrow pole below zero.
+    np.fill_diagonal(gram, np.maximum(np.diag(gram), 0.0) + 1.0 / leash**2)
     force = np.einsum("fij,fi->j", turn, right[:, :n_own])
-    inverse = inverses(gram)
+    inverse, scaling = inverses(gram), 1.0 / np.sqrt(np.diag(gram))
+    unit = np.outer(scaling, scaling)
     still = inverse @ force
     volume = np.linalg.slogdet(inverse)[1]
     found = []
     for share in shares:
-        sums = _Sums(trials.size, n_own)
-        for number in range(variance.shape[0]):
-            size = share * np.maximum(scale[number], 1e-300) / np.abs(trials)
-            sums.add(
-                across[number] @ products[number, :n_own, n_own:],
-                products[number, n_own:, n_own:],
-                right[number, n_own:],
-                2.0 / size**2,
-            )
-        later = inverses(gram - sums.gram)
+        size = share * np.maximum(scale, 1e-300)[:, None] / np.abs(trials)
+        sums = _explained(
+            across @ products[:, :n_own, n_own:],
+            products[:, n_own:, n_own:],
+            right[:, n_own:],
+            2.0 / size**2,
+        )
+        rest = (gram - sums.gram) * unit + _ROUNDING * np.eye(n_own)
+        later = np.linalg.inv(rest) * unit
         pull = force - sums.force
         moved = np.einsum("tij,tj->ti", later, pull)
         gain = sums.gain + np.einsum("ti,ti->t", pull, moved) - force @ still
@@ -141,36 +143,47 @@ def _checked(
     )
 
 
-class _Sums:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Explained:
     """Sums over FRFs of what their residues at the trial poles explain."""
 
-    __slots__ = ("force", "gain", "gram", "log_volume")
+    gram: FloatArray
+    force: FloatArray
+    gain: FloatArray
+    log_volume: FloatArray
 
-    def __init__(self, n_trials: int, n_own: int) -> None:
-        self.gram = np.zeros((n_trials, n_own, n_own))
-        self.force = np.zeros((n_trials, n_own))
-        self.gain = np.zeros(n_trials)
-        self.log_volume = np.zeros(n_trials)
 
-    def add(
-        self,
-        across: FloatArray,
-        products: FloatArray,
-        right: FloatArray,
-        precision: FloatArray,
-    ) -> None:
-        """Add one FRF: products with the slopes and among the trial's own columns."""
-        n = precision.size
-        two = np.arange(2 * n).reshape(n, 2)
-        own = products[two[:, :, None], two[:, None, :]]
-        own = own + precision[:, None, None] * np.eye(2)
-        inverse = np.linalg.inv(own)
-        shared = across[:, two].transpose(1, 0, 2)
-        explained = np.einsum("tij,tj->ti", inverse, right[two])
-        self.gram += shared @ inverse @ shared.transpose(0, 2, 1)
-        self.force += np.einsum("tij,tj->ti", shared, explained)
-        self.gain += np.einsum("ti,ti->t", right[two], explained)
-        self.log_volume += 2.0 * np.log(precision) - np.linalg.slogdet(own)[1]
+def _explained(
+    across: FloatArray, products: FloatArray, right: FloatArray, precision: FloatArray
+) -> _Explained:
+    """Solve for the residues of each trial in each FRF.
+
+    Args:
+        across: products of slopes and trial columns, shape (n_frf, n, 2 n_trials).
+        products: among the trial columns, shape (n_frf, 2 n_trials, 2 n_trials).
+        right: of the trial columns with the response, shape (n_frf, 2 n_trials).
+        precision: prior of a residue, shape (n_frf, n_trials).
+    """
+    n_frf, n = precision.shape
+    two = np.arange(2 * n).reshape(n, 2)
+    own = products[:, two[:, :, None], two[:, None, :]]
+    # Rounding can leave the square of a column that is explained below zero.
+    first = np.maximum(own[..., 0, 0], 0.0) + precision
+    second = np.maximum(own[..., 1, 1], 0.0) + precision
+    mixed = own[..., 0, 1]
+    volume = np.maximum(first * second - mixed**2, _ROUNDING * first * second)
+    inverse = np.empty_like(own)
+    inverse[..., 0, 0], inverse[..., 1, 1] = second / volume, first / volume
+    inverse[..., 0, 1] = inverse[..., 1, 0] = -mixed / volume
+    shared = across.reshape(n_frf, -1, n, 2).transpose(0, 2, 1, 3)
+    pulled = right.reshape(n_frf, n, 2)
+    solved = np.einsum("ftij,ftj->fti", inverse, pulled)
+    return _Explained(
+        np.einsum("ftab,ftbc,ftdc->tad", shared, inverse, shared, optimize=True),
+        np.einsum("ftab,ftb->ta", shared, solved),
+        np.einsum("fti,fti->t", pulled, solved),
+        np.sum(2.0 * np.log(precision) - np.log(volume), axis=0),
+    )
 
 
 def _projected(
