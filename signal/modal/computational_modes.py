@@ -115,7 +115,7 @@ def _gained(group: Group, before: RefinedPoles, after: RefinedPoles) -> bool:
     left = [2.0 * np.abs(f.residual) ** 2 / group.variance for f in (before, after)]
     unit = max(1.0, 0.5 * float(np.mean(left[1])))
     gain = float(np.sum(left[0]) - np.sum(left[1])) / unit
-    return gain > _GAIN * (2 * group.variance.shape[0] + 2)
+    return bool(gain > _GAIN * (2 * group.variance.shape[0] + 2))
 
 
 def _rows(whole: WholeFit, edges: tuple[bool, ...]) -> IntArray:

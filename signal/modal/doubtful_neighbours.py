@@ -182,7 +182,8 @@ def _places(
     added = float(whole.lines.laplace.real[0])
     trials = (added + 1j * place[inside, None] - width * decays).ravel()
     damped = trials.real < 0.0
-    return trials[damped], np.repeat(cell[inside], decays.size)[damped]
+    cells = np.repeat(cell[inside], decays.size)[damped]
+    return np.asarray(trials[damped]), np.asarray(cells)
 
 
 def _weights(log_factor: FloatArray, prior: FloatArray) -> FloatArray:

@@ -112,9 +112,9 @@ def try_poles(
         )
         rest = (gram - sums.gram) * unit + _ROUNDING * np.eye(n_own)
         later = np.linalg.inv(rest) * unit
-        pull = force - sums.force
-        moved = np.einsum("tij,tj->ti", later, pull)
-        gain = sums.gain + np.einsum("ti,ti->t", pull, moved) - force @ still
+        drive = force - sums.force
+        moved = np.einsum("tij,tj->ti", later, drive)
+        gain = sums.gain + np.einsum("ti,ti->t", drive, moved) - force @ still
         factor = gain + sums.log_volume + np.linalg.slogdet(later)[1] - volume
         spread = np.diagonal(later, axis1=1, axis2=2)
         found.append((*_checked(0.5 * factor, moved - still, spread, leash), gain))
@@ -176,12 +176,12 @@ def _explained(
     inverse[..., 0, 0], inverse[..., 1, 1] = second / volume, first / volume
     inverse[..., 0, 1] = inverse[..., 1, 0] = -mixed / volume
     shared = across.reshape(n_frf, -1, n, 2).transpose(0, 2, 1, 3)
-    pulled = right.reshape(n_frf, n, 2)
-    solved = np.einsum("ftij,ftj->fti", inverse, pulled)
+    matched = right.reshape(n_frf, n, 2)
+    solved = np.einsum("ftij,ftj->fti", inverse, matched)
     return _Explained(
         np.einsum("ftab,ftbc,ftdc->tad", shared, inverse, shared, optimize=True),
         np.einsum("ftab,ftb->ta", shared, solved),
-        np.einsum("fti,fti->t", pulled, solved),
+        np.einsum("fti,fti->t", matched, solved),
         np.sum(2.0 * np.log(precision) - np.log(volume), axis=0),
     )
 
