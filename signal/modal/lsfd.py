@@ -21,7 +21,6 @@ from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
@@ -29,6 +28,7 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     IntArray,
 )
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import local_residual
 from jointbench.signal.modal.normal_equations import (
@@ -225,7 +225,7 @@ def wald_significance(coefficients: FloatArray, inverse: FloatArray) -> FloatArr
 def least_significance(lines: FrfLines) -> float:
     """Return the chi-squared above which a mode is needed [-]."""
     chance = _CHANCE / lines.laplace.size
-    return float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
+    return chi2_limit(chance, 2 * lines.response.shape[0])
 
 
 def needed(
