@@ -28,6 +28,8 @@ class FrfFunction:
         variance: E|error|^2 [unit of the response squared], same shape, or None.
         innovation_noise: variance of white noise of the channel [unit of the response
             squared], same shape, or None; for weights only.
+        force_noise: variance due to the noise of the force, likewise.
+        force_width: of the force window [s], 0 for none.
         averages: number of averages; 0 if not stated.
         added_decay_rate: of an exponential window [1/s], 0 for none.
         usable_band: lowest and highest excited frequency [Hz], or None.
@@ -42,6 +44,8 @@ class FrfFunction:
     coherence: FloatArray | None = None
     variance: FloatArray | None = None
     innovation_noise: FloatArray | None = None
+    force_noise: FloatArray | None = None
+    force_width: float = 0.0
     averages: int = 0
     added_decay_rate: float = 0.0
     usable_band: tuple[float, float] | None = None
@@ -63,5 +67,5 @@ class FrfFunction:
         freeze(self, "frequency", "response", *NOISE_ARRAYS)
 
 
-NOISE_ARRAYS = ("coherence", "variance", "innovation_noise")
+NOISE_ARRAYS = ("coherence", "variance", "innovation_noise", "force_noise")
 """Attributes that state how noisy each line is."""

@@ -18,7 +18,7 @@ from jointbench.acquisition.records.recordings import (
 )
 from jointbench.signal.frf.frf import KIND_OF_RESPONSE
 from jointbench.signal.hits.find_hits import accepted_hits
-from jointbench.signal.hits.windows import choose_window, quiet_mean
+from jointbench.signal.hits.windows import choose_window, force_offset
 
 # The force window keeps ten pulse lengths; the pulse itself is over after two.
 _PULSE_OVER = 0.2
@@ -170,6 +170,5 @@ def _impulse(recording: Recording, hit: Hit, start: int) -> float:
     trigger = hit.trigger - hit.start
     past = max(hit.stop, hit.trigger + start)
     force = recording.samples[recording.row(Quantity.FORCE), hit.start : past]
-    offset = quiet_mean(force[: hit.stop - hit.start], trigger)
-    pulse = force[trigger : trigger + start] - offset
+    pulse = force[trigger : trigger + start] - force_offset(recording, hit)
     return float(pulse.sum() / recording.sample_rate)

@@ -18,7 +18,7 @@ from jointbench.acquisition.basics.errors import ShapeError
 from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.recordings import Quantity, Recording
 from jointbench.signal.frf.estimators import Estimator, bias_bound, pair_of_sums
-from jointbench.signal.frf.innovation_noise import innovation_noise
+from jointbench.signal.frf.innovation_noise import force_noise, innovation_noise
 from jointbench.signal.frf.spectral_sums import (
     SpectralSums,
     sum_hits,
@@ -77,6 +77,10 @@ class Frf:
         usable_band: (lowest, highest) excited frequency [Hz], or None.
         innovation_noise: variance due to the noise estimated by the Kalman stage [unit
             of response squared], same shape, or None; for weights only.
+        force_noise: variance due to the noise of the windowed force [unit of response
+            squared], same shape, or None. All outputs of an input share it.
+        force_width: time after the trigger in which the force was kept [s], so that its
+            noise is correlated from line to line; 0 for the whole block.
     """
 
     frequency: FloatArray
@@ -91,6 +95,8 @@ class Frf:
     provenance: Provenance = field(default=())
     usable_band: tuple[float, float] | None = None
     innovation_noise: FloatArray | None = None
+    force_noise: FloatArray | None = None
+    force_width: float = 0.0
 
     def __post_init__(self) -> None:
         """Check shapes once and make the arrays read-only."""
@@ -98,7 +104,7 @@ class Frf:
         require_finite("frequency", self.frequency)
         require_shape("response", self.response, (None, None, self.frequency.size))
         require_finite("response", self.response)
-        for name in ("coherence", "variance", "innovation_noise"):
+        for name in ("coherence", "variance", "innovation_noise", "force_noise"):
             array = getattr(self, name)
             if array is not None:
                 require_shape(name, array, self.response.shape)
@@ -119,6 +125,7 @@ class Frf:
             "coherence",
             "variance",
             "innovation_noise",
+            "force_noise",
         )
 
 
@@ -211,6 +218,7 @@ def _average(
     done = _record(sums, window, averages, estimator, coherence)
     decay = window.decay_rate or 0.0
     noise = innovation_noise(sums, inherited, decay)
+    forced = force_noise(sums, window)
     return Frf(
         frequency=sums.frequency,
         response=np.array([a.response for a in averaged]).reshape(shape),
@@ -224,6 +232,8 @@ def _average(
         provenance=(*inherited, done),
         usable_band=excited_band_of(sums.power, sums.frequency),
         innovation_noise=None if noise is None else noise.reshape(shape),
+        force_noise=None if forced is None else forced.reshape(shape),
+        force_width=window.force_width or 0.0,
     )
 
 

@@ -106,6 +106,8 @@ def frf_of_functions(functions: Sequence[FrfFunction]) -> Frf:
         provenance=_provenance(ordered, averages, source),
         usable_band=first.usable_band,
         innovation_noise=_stack(ordered, "innovation_noise", shape),
+        force_noise=_stack(ordered, "force_noise", shape),
+        force_width=min(one.force_width for one in ordered),
     )
 
 

@@ -25,7 +25,7 @@ from jointbench.signal.hits.hit_spectra import (
     plan_spectra,
     response_spectra,
 )
-from jointbench.signal.hits.windows import HammerWindow
+from jointbench.signal.hits.windows import HammerWindow, force_variance
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,6 +123,8 @@ class SpectralSums:
         quantity: what all responses measure.
         block: samples of the common block.
         block_reason: how it was chosen.
+        force_variance: of the noise of the force at the hits of each pair [N^2], 0
+            where it is not known, shape (n_pairs,).
     """
 
     frequency: FloatArray
@@ -133,6 +135,7 @@ class SpectralSums:
     quantity: Quantity
     block: int
     block_reason: str
+    force_variance: FloatArray
 
 
 @dataclass(slots=True, eq=False)
@@ -191,7 +194,7 @@ def sum_hits(recordings: Sequence[Recording], window: HammerWindow) -> SpectralS
         force = force_spectrum(recording, hit, window, plan.block)
         responses = response_spectra(recording, hit, window, plan.block)
         adder.add(force, responses, labels, hit.point)
-    return _sums(adder, plan)
+    return _sums(adder, plan, [force_variance(*one) for one in plan.chosen])
 
 
 def sums_of_spectra(spectra: HitSpectra) -> SpectralSums:
@@ -206,10 +209,12 @@ def sums_of_spectra(spectra: HitSpectra) -> SpectralSums:
     )
     for force, response, labels, point in rows:
         adder.add(force, response, labels, point)
-    return _sums(adder, spectra)
+    return _sums(adder, spectra, [0.0] * len(spectra.points))
 
 
-def _sums(adder: _Adder, common: HitSpectra | SpectraPlan) -> SpectralSums:
+def _sums(
+    adder: _Adder, common: HitSpectra | SpectraPlan, variance: Sequence[float]
+) -> SpectralSums:
     outputs, inputs, pairs = pair_up(common)
     # All hits of a pair measured one output from one input: the first names both.
     first = [(int(pair.hits[0]), int(pair.rows[0])) for pair in pairs]
@@ -225,6 +230,7 @@ def _sums(adder: _Adder, common: HitSpectra | SpectraPlan) -> SpectralSums:
         quantity=common.quantity,
         block=common.block,
         block_reason=common.block_reason,
+        force_variance=np.array([np.mean(np.take(variance, p.hits)) for p in pairs]),
     )
 
 

@@ -29,7 +29,7 @@ from jointbench.signal.hits.hit_pairs import LabelledHits, Pair
 from jointbench.signal.hits.windows import (
     HammerWindow,
     apply_window,
-    quiet_mean,
+    force_offset,
     window_weights,
 )
 
@@ -297,7 +297,7 @@ def force_spectrum(
     stop, weights = _weights(recording, hit, window, block)
     row = recording.row(Quantity.FORCE)
     force = recording.samples[row, hit.start : stop]
-    force = (force - quiet_mean(force, hit.trigger - hit.start)) * weights[0]
+    force = (force - force_offset(recording, hit)) * weights[0]
     return np.asarray(scipy.fft.rfft(force, block) / recording.sample_rate)
 
 
@@ -357,6 +357,7 @@ def windowed_hit(
         samples[list(response_rows(recording))],
         trigger=hit.trigger - hit.start,
         sample_rate=recording.sample_rate,
+        offset=force_offset(recording, hit),
     )
     missing = block - force.size
     return np.pad(force, (0, missing)), np.pad(response, ((0, 0), (0, missing)))

@@ -34,6 +34,10 @@ _SAMPLES_KEPT = 64
 # Samples kept before the trigger, or this share of the pulse if that is longer.
 _LEAD_SAMPLES = 16
 _LEAD_PULSES = 0.25
+# Mean square of half a cosine from 1 to 0.
+_TAPER_POWER = 3.0 / 8.0
+# Samples before a hit that give the offset of its force, at least and at most.
+_LEAST_QUIET, _MOST_QUIET = 16, 4096
 # A response that ends above this share of its start has not decayed.
 _DECAYED = 0.03
 # Share of the response that an exponential window leaves at the end of the block.
@@ -147,6 +151,7 @@ def apply_window(
     *,
     trigger: int,
     sample_rate: float,
+    offset: float | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Remove offsets from one hit's segment and window it.
 
@@ -156,13 +161,14 @@ def apply_window(
         response: SI units, shape (n_responses, n).
         trigger: index of the trigger in the segment.
         sample_rate: [Hz].
+        offset: of the force [N]; None for its mean before the trigger.
 
     Returns:
-        Force without its pre-trigger mean and response without its mean over the
+        Force without its offset and response without its mean over the
         segment (which changes line 0 only), both windowed; new arrays.
     """
     on_force, on_response = window_weights(window, force.size, trigger, sample_rate)
-    force = force - quiet_mean(force, trigger)
+    force = force - (quiet_mean(force, trigger) if offset is None else offset)
     response = response - response.mean(axis=1, keepdims=True)
     return force * on_force, response * on_response
 
@@ -192,6 +198,52 @@ def window_weights(
     if window.force_width is not None:
         force = both * _keep_then_taper(time, window.force_width)
     return read_only(force), read_only(both)
+
+
+def force_offset(recording: Recording, hit: Hit) -> float:
+    """Return the offset of the force channel at a hit [N].
+
+    All of the quiet force before a hit counts, not that of its segment alone: the
+    offset is multiplied by the length of the force window, and its error bends the
+    lowest lines of all FRFs of a reference. The samples into which filters smear the
+    pulse are left out.
+
+    Args:
+        recording: holds the hit.
+        hit: which.
+
+    Returns:
+        Mean from half-way since the previous trigger; where that leaves too few
+        samples, `quiet_mean` of the segment.
+    """
+    return _quiet_moments(recording, hit)[0]
+
+
+def force_variance(recording: Recording, hit: Hit) -> float:
+    """Return the variance of the quiet force before a hit [N^2]; 0 if too short."""
+    return _quiet_moments(recording, hit)[1]
+
+
+@remembered
+def _quiet_moments(recording: Recording, hit: Hit) -> tuple[float, float]:
+    """Return mean and variance of the force before a hit."""
+    row = recording.row(Quantity.FORCE)
+    earlier = [h.trigger for h in recording.hits if h.trigger < hit.trigger]
+    between = (max(earlier) + hit.trigger + 1) // 2 if earlier else 0
+    first = max(between, hit.trigger - _MOST_QUIET)
+    last = hit.trigger - _LEAD_SAMPLES
+    if last - first < _LEAST_QUIET:
+        trigger = hit.trigger - hit.start
+        start = recording.samples[row, hit.start : hit.trigger]
+        return quiet_mean(start, trigger), 0.0
+    quiet = recording.samples[row, first:last]
+    return float(quiet.mean()), float(quiet.var(ddof=1))
+
+
+def kept_samples(window: HammerWindow, sample_rate: float) -> float:
+    """Return the sum of squared weights of a force window after the trigger [-]."""
+    width = sample_rate * (window.force_width or 0.0)
+    return width * (1.0 + 0.5 * _TAPER_POWER)
 
 
 def quiet_mean(force: FloatArray, trigger: int) -> float:

@@ -2,30 +2,43 @@
 """Computational modes: poles beyond the band, fitted but not reported.
 
 The residual terms are polynomials; they represent distant modes but not the flank of a
-mode just beyond the edge, and that error biases the modes within. So where the residual
-at an edge exceeds the noise, poles beyond it are fitted too, one after the other.
+mode just beyond the edge, and that error biases the modes within. So one more pole is
+tried at many places beyond each edge. The likeliest is refined together with the modes
+and kept where the fit needs it, and then the next is tried.
 """
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import ComplexArray, IntArray
+from jointbench.signal.modal.frf_lines import FrfLines
 from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
-from jointbench.signal.modal.lsfd import fit_residues
-from jointbench.signal.modal.refined_pole_covariance import refine_poles, unresolved
+from jointbench.signal.modal.refined_pole_covariance import (
+    RefinedPoles,
+    refine_poles,
+    unresolved,
+)
+from jointbench.signal.modal.trial_poles import residue_scale, try_poles
 
-# Lines at an edge whose residual is tested for a pole beyond: share of the band.
+# Lines at an edge whose residual is compared with the noise: share of the band.
 _EDGE = 0.1
 # Modes up to which poles beyond are fitted on all lines; else on this share of them.
 _FEW_MODES, _REACH = 16, 0.4
-# Least residual power over noise that indicates one.
-_EDGE_RESIDUAL = 1.2
-# Start of the search: distance and decay rate as shares of the band.
-_STARTS = ((0.01, 0.005), (0.03, 0.01), (0.1, 0.03), (0.3, 0.05))
-# A computational mode is kept where it leaves less than this share of the excess.
-_LEFT = 0.5
-# Poles added beyond one edge, at most.
-_MOST = 4
-_STEPS = 12
+# FRFs on which places are compared, those with the largest residual at the edge.
+_FEW_FRFS = 4
+# Places: distance from the edge and decay rate, as shares of the band.
+_DISTANCES = (0.004, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3)
+_DECAYS = (0.004, 0.012, 0.03)
+# Log Bayes factor from which a place is refined.
+_LEAST_EVIDENCE = 2.0
+# Places refined, until one is needed; distance of two poles over the sum of their decay
+# rates, below which they are one.
+_STARTS, _ONE_POLE = 3, 0.1
+# A pole is kept where chi-squared falls by this many times its unknowns, in units of
+# what it leaves.
+_GAIN = 3.0
+# Poles added at once, at most.
+_MOST = 5
+_STEPS = 15
 
 
 def find_beyond(whole: WholeFit) -> ComplexArray:
@@ -35,79 +48,105 @@ def find_beyond(whole: WholeFit) -> ComplexArray:
         whole: fit of all lines with modes and poles beyond the band so far.
 
     Returns:
-        The poles beyond the band so far, and up to four more at each edge.
+        The poles beyond the band so far, and further ones.
     """
-    lines = whole.lines
-    low, high = lines.laplace.imag[[0, -1]]
-    width = max(10, int(_EDGE * lines.laplace.size))
+    low, high = whole.lines.laplace.imag[[0, -1]]
     known = whole.pole[whole.n_modes :]
-    for above in (False, True):
-        edge = slice(-width, None) if above else slice(None, width)
-        # There are no modes below a band that begins next to zero.
-        if not above and low < _EDGE * high:
-            continue
-        if _excess(whole.residual, whole.noise, edge) < _EDGE_RESIDUAL:
-            continue
-        reach = (1.0 if whole.n_modes <= _FEW_MODES else _REACH) * (high - low)
-        place = high if above else low
-        group = group_around(whole, place, 1.01 * reach, with_beyond=True)
+    if whole.n_modes == 0:
+        return known
+    # There are no modes below a band that begins next to zero.
+    edges = (True,) if low < _EDGE * high else (True, False)
+    if whole.n_modes <= _FEW_MODES:
+        group = group_around(whole, high, 1.01 * (high - low), with_beyond=True)
+        return _beyond_edges(whole, group, edges)
+    for above in edges:
+        reach = 1.01 * _REACH * (high - low)
+        group = group_around(whole, high if above else low, reach, with_beyond=True)
         # A group replaces the poles that it held.
         known = known[~np.isin(known, whole.pole[group.beyond])]
-        known = np.append(known, _beyond_edge(whole, group, edge, above=above))
+        known = np.append(known, _beyond_edges(whole, group, (above,)))
     return known
 
 
-def _beyond_edge(
-    whole: WholeFit, group: Group, edge: slice, *, above: bool
+def _beyond_edges(
+    whole: WholeFit, group: Group, edges: tuple[bool, ...]
 ) -> ComplexArray:
-    """Add poles beyond an edge to those of a group while each explains the residual."""
+    """Add poles beyond edges to those of a group while the fit needs them."""
     pole, beyond = whole.pole[group.modes], whole.pole[group.beyond]
-    fitted = refine_poles(
-        group.lines, pole, group.variance, beyond=beyond, steps=_STEPS
-    )
-    before = _excess(fitted.residual, group.noise, edge)
+    fitted: RefinedPoles | None = None
+    rows = _rows(whole, edges)
     for _ in range(_MOST):
-        if before < _EDGE_RESIDUAL:
+        starts = _starts(whole, group, np.append(pole, beyond), rows, edges)
+        if starts.size == 0:
             break
-        start = _best_start(whole, group, fitted.pole, fitted.beyond, above=above)
-        trial = refine_poles(
-            group.lines,
-            fitted.pole,
-            group.variance,
-            beyond=np.append(fitted.beyond, start),
-            steps=_STEPS,
-        )
-        after = _excess(trial.residual, group.noise, edge)
+        fitted = fitted or _refined(group, pole, beyond)
+        better = _first_needed(whole, group, fitted, starts)
+        if better is None:
+            break
+        fitted, pole, beyond = better, better.pole, better.beyond
+    return beyond
+
+
+def _first_needed(
+    whole: WholeFit, group: Group, fitted: RefinedPoles, starts: ComplexArray
+) -> RefinedPoles | None:
+    """Return the fit with the first further pole that it needs, or None."""
+    for start in starts:
+        trial = _refined(group, fitted.pole, np.append(fitted.beyond, start))
         outside = unresolved(whole.lines, trial.beyond).all()
-        if not outside or after - 1.0 > _LEFT * (before - 1.0):
-            break
-        fitted, before = trial, after
-    return fitted.beyond
+        if outside and _apart(trial.beyond) and _gained(group, fitted, trial):
+            return trial
+    return None
 
 
-def _excess(residual: ComplexArray, noise: FloatArray, edge: slice) -> float:
-    """Return the residual over the noise at an edge of the band [-]."""
-    return float(np.mean(np.abs(residual[:, edge]) ** 2 / noise[:, edge]))
+def _apart(pole: ComplexArray) -> bool:
+    """Return whether no two poles are one."""
+    size = -pole.real
+    away = np.abs(pole[:, None] - pole) / (size[:, None] + size)
+    return bool(np.all(away[np.triu_indices(pole.size, 1)] > _ONE_POLE))
 
 
-def _best_start(
+def _refined(group: Group, pole: ComplexArray, beyond: ComplexArray) -> RefinedPoles:
+    return refine_poles(group.lines, pole, group.variance, beyond=beyond, steps=_STEPS)
+
+
+def _gained(group: Group, before: RefinedPoles, after: RefinedPoles) -> bool:
+    """Return whether chi-squared falls by more than the unknowns of a pole explain."""
+    left = [2.0 * np.abs(f.residual) ** 2 / group.variance for f in (before, after)]
+    unit = max(1.0, 0.5 * float(np.mean(left[1])))
+    gain = float(np.sum(left[0]) - np.sum(left[1])) / unit
+    return bool(gain > _GAIN * (2 * group.variance.shape[0] + 2))
+
+
+def _rows(whole: WholeFit, edges: tuple[bool, ...]) -> IntArray:
+    """Return the FRFs whose residual at the edges is largest."""
+    width = max(10, int(_EDGE * whole.lines.laplace.size))
+    ratio = np.abs(whole.residual) ** 2 / whole.noise
+    ends = [ratio[:, -width:] if above else ratio[:, :width] for above in edges]
+    worst = np.argsort(-np.mean(np.hstack(ends), axis=1))
+    return np.asarray(worst[:_FEW_FRFS])
+
+
+def _starts(
     whole: WholeFit,
     group: Group,
     pole: ComplexArray,
-    known: ComplexArray,
-    *,
-    above: bool,
-) -> complex:
-    """Return the start beyond an edge with the smallest residual."""
+    rows: IntArray,
+    edges: tuple[bool, ...],
+) -> ComplexArray:
+    """Return the likeliest places beyond the edges, none where none is likely."""
     low, high = whole.lines.laplace.imag[[0, -1]]
-    best, least = 0.0j, np.inf
-    for distance, decay in _STARTS:
-        away = distance * (high - low)
-        omega = high + away if above else max(low - away, 0.5 * low)
-        start = complex(-decay * (high - low), omega)
-        everything = np.concatenate((pole, known, [start]))
-        fit = fit_residues(group.lines, everything, group.variance)
-        left = np.abs(group.lines.response - fit.synthesis) ** 2 / group.variance
-        if float(np.sum(left)) < least:
-            best, least = start, float(np.sum(left))
-    return best
+    away = (high - low) * np.array(_DISTANCES)
+    beyond = [
+        high + away if above else np.maximum(low - away, 0.5 * low) for above in edges
+    ]
+    place = np.unique(np.concatenate(beyond))
+    decay = (high - low) * np.array(_DECAYS)
+    trials = (1j * place[:, None] - decay).ravel()
+    lines = FrfLines(
+        group.lines.laplace, group.lines.response[rows], group.lines.derivatives
+    )
+    scale = residue_scale(whole)[rows]
+    found = try_poles(lines, group.variance[rows], pole, trials, scale)
+    best = np.argsort(-found.log_factor)[:_STARTS]
+    return np.asarray(trials[best][found.log_factor[best] > _LEAST_EVIDENCE])

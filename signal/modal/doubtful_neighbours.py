@@ -1,47 +1,56 @@
 # SPDX-License-Identifier: MIT
-"""Neighbours that the residual hints at and no fit could settle.
+"""Neighbours that may be missing, with their probability, in the intervals of modes.
 
 Between "the residual is white" and "the FRF needs one more mode" lies the case in which
 a neighbour may be missing: its own pole would be too uncertain to report, yet it moves
-the modes around it. Both models are admissible there. So the interval of each mode is
-that of their mixture: the value is kept, and its variance is the weighted mean of
-variance and squared shift of the fits with and without the neighbour.
+the modes around it. So one more mode is tried at places all around each mode. Every
+place has a probability, from its Bayes factor and from how many modes a band of that
+width holds, and a shift. The interval of the mode is that of the mixture: the value is
+kept, and 95 % of the probability lie within.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.special
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
-    BoolArray,
     ComplexArray,
     FloatArray,
     IntArray,
     freeze,
 )
 from jointbench.signal.modal.frf_lines import measured_width
-from jointbench.signal.modal.local_fit import Group, WholeFit
-from jointbench.signal.modal.missing_modes import (
-    refined_group,
-    trial_group,
-    trial_starts,
-)
-from jointbench.signal.modal.refined_pole_covariance import RefinedPoles, unresolved
+from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
+from jointbench.signal.modal.missing_modes import refined_group
+from jointbench.signal.modal.trial_poles import Trials, residue_scale, try_poles
 
-# Probability that noise anywhere in the band hints at a neighbour.
-_CHANCE = 0.1
-_TRIALS = 16
+# Lines around a mode: half-power half-widths, and lines at least, each side.
+_REACH_WIDTHS, _REACH_LINES = 8.0, 40
+# Places: half-power half-widths from the mode, and decay rates over its own; with many
+# FRFs fewer, as these leave less open.
+_AWAY = (0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.5, 6.0)
+_DECAYS = (0.5, 1.0, 2.0)
+_FEW_AWAY, _FEW_DECAYS = (0.3, 0.75, 1.5, 3.0), (1.0,)
+_FEW_FRFS = 16
+# Sizes of their residues over the rms of those found; weak modes are those missed.
+_SHARES = (1.0, 0.3, 0.1, 0.03)
+# Density of modes that may be missing over that of the modes found.
+_DENSITY = 2.0
 # Residual power over noise up to which a model with one more mode is admissible: else
 # leakage or a nonlinear structure is left, which no neighbour explains.
 _ADMISSIBLE = 4.0
-# Half-power half-widths on each side of a mode that a group must hold.
-_PEAK = 1.0
-# Weight of a neighbour from which it is stated.
-_STATED = 0.5
+# Probability of a neighbour from which it is stated.
+_STATED = 0.9
+# Residual power over the variance from which it counts in place of it.
+_CLEAN = 1.1
+# Log Bayes factor of a neighbour whose evidence is beyond first order.
+_CERTAIN = 700.0
 # Places named in the remark.
 _LISTED = 6
+# Share of the probability in an interval, and its half-width in sd of a normal law.
+_HELD, _NORMAL = 0.95, 1.959964
+_HALVINGS = 40
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,40 +71,157 @@ class DoubtfulNeighbours:
         freeze(self, "frequency", "shift")
 
 
-def doubtful_neighbours(whole: WholeFit) -> DoubtfulNeighbours:
-    """Try one more mode wherever the residual hints at one.
+def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeighbours:
+    """Try one more mode around each mode.
 
     Args:
         whole: final fit of all lines.
+        covariance: of (Re p, Im p) of each mode [rad^2/s^2], shape (n_modes, 2, 2).
 
     Returns:
-        Places and changes; of several neighbours of a mode the largest change counts.
+        Places, and what they add to the covariance.
 
     Source:
-        Burnham and Anderson, Model Selection and Multimodel Inference (2002), sec. 4.3
-        and 2.9 (weights of Akaike, unconditional variance).
+        Hoeting et al., Bayesian model averaging, Statistical Science 14 (1999) 382.
     """
-    n_frf, n_lines = whole.noise.shape
-    limit = float(scipy.stats.chi2.isf(_CHANCE / n_lines, 2 * n_frf))
     shift = np.zeros((whole.n_modes, 2, 2))
     places: list[float] = []
-    for start in trial_starts(whole, limit, apart=0.0, most=_TRIALS):
-        group = trial_group(whole, start)
-        without = refined_group(whole, group)
-        fitted = refined_group(whole, group, start)
-        pole = fitted.pole[-1:]
-        if pole[0].real >= 0.0 or bool(unresolved(whole.lines, pole)[0]):
+    modes = whole.pole[: whole.n_modes]
+    width = measured_width(whole.lines, modes)
+    for number in range(whole.n_modes):
+        group = _group(whole, number, width)
+        trials, cell = _places(whole, modes[number], float(width[number]))
+        if trials.size == 0:
             continue
-        if _left(group, fitted) > _ADMISSIBLE:
+        index = np.append(group.modes, group.beyond)
+        found = _tried(whole, group, index, trials)
+        if found is None:
             continue
-        weight = _weight(group, without, fitted)
-        inside = _inside(group, without.pole)
-        change = weight * _change(without, fitted)
-        _widen(shift, change[inside], group.modes[inside])
-        near = np.abs(np.array(places, float) - pole[0].imag) < abs(pole[0].real)
-        if weight > _STATED and not near.any():
-            places.append(float(pole[0].imag))
-    return DoubtfulNeighbours(np.sort(places) / (2.0 * np.pi), shift)
+        density = _DENSITY * whole.n_modes / float(np.ptp(whole.lines.laplace.imag))
+        prior = density / len(_SHARES) * np.tile(cell, len(_SHARES))
+        weight = _weights(found.log_factor, prior)
+        own = int(np.flatnonzero(index == number)[0])
+        _add(shift[number], covariance[number], found, weight, own)
+        if 1.0 - weight[0] > _STATED:
+            likeliest = int(np.argmax(weight[1:])) % trials.size
+            places.append(float(trials[likeliest].imag))
+    return DoubtfulNeighbours(_distinct(places, width), shift)
+
+
+def _tried(
+    whole: WholeFit, group: Group, index: IntArray, trials: ComplexArray
+) -> Trials | None:
+    """Return what one more mode changes; None where none is admissible.
+
+    What the likeliest leaves counts as noise: leakage, a nonlinear structure.
+    """
+    scale, pole = residue_scale(whole), whole.pole[index]
+    found = try_poles(group.lines, group.variance, pole, trials, scale, _SHARES)
+    power = 2.0 * np.abs(group.residual) ** 2
+    best, count = float(found.gain.max()), 2.0 * power.size
+    noise = float(np.sum(power / group.noise))
+    left = float(np.sum(power / group.variance)) - best
+    if noise * left / (left + best) > _ADMISSIBLE * count:
+        likeliest = int(np.argmax(found.log_factor)) % trials.size
+        return _refined(whole, group, found, complex(trials[likeliest]))
+    if left < _CLEAN * count:
+        return found
+    variance = group.variance * left / count
+    return try_poles(group.lines, variance, pole, trials, scale, _SHARES)
+
+
+def _refined(
+    whole: WholeFit, group: Group, found: Trials, start: complex
+) -> Trials | None:
+    """Return the likeliest neighbour beyond first order; None if it is not admissible.
+
+    Nothing else is left to weigh where its evidence is so strong.
+    """
+    without = refined_group(whole, group)
+    fitted = refined_group(whole, group, start)
+    ratio = float(np.mean(np.abs(fitted.residual) ** 2 / group.noise))
+    if ratio > _ADMISSIBLE or fitted.pole[-1].real >= 0.0:
+        return None
+    before = np.append(without.pole, without.beyond)
+    after = np.append(fitted.pole[:-1], fitted.beyond)
+    spread = np.zeros((before.size, 2))
+    own = fitted.covariance[:-1] * np.maximum(fitted.inflation[:-1, None, None], 1.0)
+    spread[: group.modes.size] = np.diagonal(own, axis1=1, axis2=2)
+    change = (after - before).view(np.float64).reshape(-1, 2)
+    certain = np.full(found.log_factor.size, -np.inf)
+    certain[int(np.argmax(found.log_factor))] = _CERTAIN
+    return replace(
+        found,
+        log_factor=certain,
+        shift=np.broadcast_to(change, found.shift.shape),
+        variance=np.broadcast_to(spread, found.variance.shape),
+    )
+
+
+def _group(whole: WholeFit, number: int, width: FloatArray) -> Group:
+    pitch = float(np.median(np.diff(whole.lines.laplace.imag)))
+    reach = max(_REACH_WIDTHS * float(width[number]), _REACH_LINES * pitch)
+    place = float(whole.pole[number].imag)
+    low, high = whole.lines.laplace.imag[[0, -1]]
+    edge = place - reach < low or place + reach > high
+    return group_around(whole, place, reach, with_beyond=bool(edge))
+
+
+def _places(
+    whole: WholeFit, pole: complex, width: float
+) -> tuple[ComplexArray, FloatArray]:
+    """Return trial poles around a mode, and the band that each stands for [rad/s]."""
+    many = whole.noise.shape[0] > _FEW_FRFS
+    away = width * np.array(_FEW_AWAY if many else _AWAY)
+    decays = np.array(_FEW_DECAYS if many else _DECAYS)
+    edges = np.concatenate(([0.0], 0.5 * (away[1:] + away[:-1]), away[-1:]))
+    place = pole.imag + np.concatenate((-away, away))
+    cell = np.tile(np.diff(edges), 2) / decays.size
+    low, high = whole.lines.laplace.imag[[0, -1]]
+    inside = (place > low) & (place < high)
+    added = float(whole.lines.laplace.real[0])
+    trials = (added + 1j * place[inside, None] - width * decays).ravel()
+    damped = trials.real < 0.0
+    cells = np.repeat(cell[inside], decays.size)[damped]
+    return np.asarray(trials[damped]), np.asarray(cells)
+
+
+def _weights(log_factor: FloatArray, prior: FloatArray) -> FloatArray:
+    """Return probabilities: of no further mode, then of one at each place."""
+    log_odds = np.append(0.0, log_factor + np.log(prior))
+    return np.asarray(scipy.special.softmax(log_odds))
+
+
+def _add(
+    shift: FloatArray,
+    covariance: FloatArray,
+    found: Trials,
+    weight: FloatArray,
+    own: int,
+) -> None:
+    """Widen the variances of a mode to those of the mixture."""
+    base = np.diag(covariance)
+    moved = np.vstack((np.zeros(2), found.shift[:, own]))
+    grown = np.maximum(found.variance[:, own] - found.before[own], 0.0)
+    sd = np.sqrt(base + np.vstack((np.zeros(2), grown)))
+    low, high = np.zeros(2), np.max(np.abs(moved) + 6.0 * sd, axis=0)
+    for _ in range(_HALVINGS):
+        half = 0.5 * (low + high)
+        held = scipy.special.ndtr((half - moved) / sd)
+        held = held - scipy.special.ndtr((-half - moved) / sd)
+        more = weight @ held < _HELD
+        low, high = np.where(more, half, low), np.where(more, high, half)
+    both = np.arange(2)
+    shift[both, both] = np.maximum((high / _NORMAL) ** 2 - base, 0.0)
+
+
+def _distinct(places: list[float], width: FloatArray) -> FloatArray:
+    """Return frequencies [Hz], ascending, each once."""
+    kept: list[float] = []
+    for place in sorted(places):
+        if not kept or place - kept[-1] > float(np.median(width)):
+            kept.append(place)
+    return np.array(kept) / (2.0 * np.pi)
 
 
 def neighbour_words(doubts: DoubtfulNeighbours) -> tuple[str, ...]:
@@ -118,47 +244,3 @@ def neighbour_words(doubts: DoubtfulNeighbours) -> tuple[str, ...]:
         "to be reported; the intervals of the modes around include it; another "
         "accelerometer or hammer point, or more hits, would show it",
     )
-
-
-def _weight(group: Group, without: RefinedPoles, fitted: RefinedPoles) -> float:
-    """Return the Akaike weight of the model with one more mode [-].
-
-    Chi-squared counts in units of what that model leaves: noise, or what neither has.
-    """
-    n_frf, n_lines = group.noise.shape
-    before, after = _left(group, without), _left(group, fitted)
-    gain = 2.0 * n_frf * n_lines * (before - after) / max(1.0, after)
-    return float(scipy.special.expit(0.5 * gain - 2 * (n_frf + 1)))
-
-
-def _left(group: Group, fitted: RefinedPoles) -> float:
-    """Return the mean residual power over the noise [-]."""
-    return float(np.mean(np.abs(fitted.residual) ** 2 / group.noise))
-
-
-def _inside(group: Group, pole: ComplexArray) -> BoolArray:
-    """Return which modes have their peaks within the lines of the group.
-
-    Of the others only a flank was fitted again.
-    """
-    low, high = group.lines.laplace.imag[[0, -1]]
-    width = _PEAK * measured_width(group.lines, pole)
-    return np.asarray((pole.imag - width > low) & (pole.imag + width < high))
-
-
-def _change(without: RefinedPoles, fitted: RefinedPoles) -> FloatArray:
-    """Return squared shift and growth of the variance, shape (n_members, 2, 2)."""
-    moved = (fitted.pole[:-1] - without.pole).view(np.float64).reshape(-1, 2)
-    own = fitted.covariance[:-1] * fitted.inflation[:-1, None, None]
-    grown = own - without.covariance * without.inflation[:, None, None]
-    both = np.arange(2)
-    larger = np.zeros_like(grown)
-    larger[:, both, both] = np.maximum(grown[:, both, both], 0.0)
-    return np.asarray(moved[:, :, None] * moved[:, None, :] + larger)
-
-
-def _widen(shift: FloatArray, change: FloatArray, modes: IntArray) -> None:
-    """Keep the larger change of each mode, by its trace."""
-    known = np.trace(shift[modes], axis1=1, axis2=2)
-    more = np.trace(change, axis1=1, axis2=2) > known
-    shift[modes[more]] = change[more]

@@ -123,6 +123,29 @@ def model_error(
     return float(np.sqrt(max(0.0, share)))
 
 
+def line_variance(
+    noise: FloatArray, error: float, residual: ComplexArray, response: ComplexArray
+) -> FloatArray:
+    """Return the variance of the lines from noise and model error.
+
+    Args:
+        noise: variance of the lines, shape (n_frf, n_lines).
+        error: of the model, as a share of the local level [-].
+        residual: of a fit, shape (n_frf, n_lines).
+        response: the FRF, same shape.
+
+    Returns:
+        E|error|^2, same shape.
+
+    Note:
+        The share is that of most lines. At peaks, which stand far above them, a fit
+        often does much better: where the residual shows that, it counts. Else poles
+        would be taken from flanks, with an interval from peaks.
+    """
+    excess = np.maximum(local_residual(residual) - noise, 0.0)
+    return np.asarray(noise + np.minimum(error**2 * local_level(response), excess))
+
+
 def residual_around(
     lines: FrfLines, pole: ComplexArray, residual: ComplexArray, variance: FloatArray
 ) -> FloatArray:

@@ -6,7 +6,7 @@ away are taken from the FRF as they are, the smooth rest is left to the residual
 and only the group is fitted: a trial costs a small share of a fit of the whole band.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -34,6 +34,7 @@ class WholeFit:
         fit: residues and synthesis with all of them.
         noise: noise variance of the lines, shape (n_frf, n_lines).
         variance: noise and model error, same shape.
+        residual: measured less fitted FRF, same shape.
     """
 
     lines: FrfLines
@@ -42,11 +43,12 @@ class WholeFit:
     fit: LinearFit
     noise: FloatArray
     variance: FloatArray
+    residual: ComplexArray = field(init=False)
 
-    @property
-    def residual(self) -> ComplexArray:
-        """Measured less fitted FRF, shape (n_frf, n_lines)."""
-        return np.asarray(self.lines.response - self.fit.synthesis)
+    def __post_init__(self) -> None:
+        """Subtract the fit once."""
+        residual = self.lines.response - self.fit.synthesis
+        object.__setattr__(self, "residual", residual)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +59,7 @@ class Group:
         lines: around them, without all other poles.
         noise: noise variance of these lines, shape (n_frf, n_lines).
         variance: noise and model error, same shape.
+        residual: of the whole fit on these lines, same shape.
         modes: indices of the modes of the group.
         beyond: indices of its computational poles.
     """
@@ -64,6 +67,7 @@ class Group:
     lines: FrfLines
     noise: FloatArray
     variance: FloatArray
+    residual: ComplexArray
     modes: IntArray
     beyond: IntArray
 
@@ -99,6 +103,7 @@ def group_around(
         ),
         whole.noise[:, keep],
         whole.variance[:, keep],
+        whole.residual[:, keep],
         index[index < whole.n_modes],
         index[index >= whole.n_modes],
     )

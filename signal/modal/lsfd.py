@@ -21,7 +21,6 @@ from dataclasses import dataclass, replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import scipy.stats
 
 from jointbench.acquisition.basics.arrays import (
     BoolArray,
@@ -29,6 +28,7 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
     IntArray,
 )
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import local_residual
 from jointbench.signal.modal.normal_equations import (
@@ -123,14 +123,17 @@ def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     Returns:
         Shape (n_lines, 2 n_modes + 9).
     """
+    return np.hstack((modal_columns(lines, pole), _residual_terms(lines)))
+
+
+def modal_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+    """Return the columns of Re and Im of each residue, shape (n_lines, 2 n_modes)."""
     s = lines.laplace
     own, mirrored = (1.0 / (s[:, None] - p) for p in (pole, pole.conj()))
-    columns = np.empty((s.size, modal_size(pole)), complex)
-    columns[:, 0 : 2 * pole.size : 2] = own + mirrored
-    columns[:, 1 : 2 * pole.size : 2] = 1j * (own - mirrored)
-    columns[:, : 2 * pole.size] *= (s**lines.derivatives)[:, None]
-    columns[:, 2 * pole.size :] = _residual_terms(lines)
-    return columns
+    columns = np.empty((s.size, 2 * pole.size), complex)
+    columns[:, ::2] = own + mirrored
+    columns[:, 1::2] = 1j * (own - mirrored)
+    return np.asarray(columns * (s**lines.derivatives)[:, None])
 
 
 def _residual_terms(lines: FrfLines) -> ComplexArray:
@@ -196,12 +199,22 @@ def fit_residues(
     )
     coefficients[:, used] = (solved @ right[:, :, None])[:, :, 0]
     inverse[np.ix_(np.arange(n_frf), used, used)] = solved
-    significance = _wald(coefficients, inverse, pole.size)
+    modal = inverse[:, : 2 * pole.size, : 2 * pole.size]
+    significance = wald_significance(coefficients, modal)
     return LinearFit(coefficients, coefficients @ basis.T, significance)
 
 
-def _wald(coefficients: FloatArray, inverse: FloatArray, n_modes: int) -> FloatArray:
-    """Return the chi-squared of each residue against zero, summed over FRFs."""
+def wald_significance(coefficients: FloatArray, inverse: FloatArray) -> FloatArray:
+    """Return the chi-squared of each residue against zero, summed over FRFs.
+
+    Args:
+        coefficients: residues first, shape (n_frf, n).
+        inverse: covariance of the residues, shape (n_frf, 2 n_modes, 2 n_modes).
+
+    Returns:
+        Shape (n_modes,).
+    """
+    n_modes = inverse.shape[1] // 2
     pairs = coefficients[:, : 2 * n_modes].reshape(coefficients.shape[0], n_modes, 2)
     index = np.arange(2 * n_modes).reshape(n_modes, 2)
     blocks = inverse[:, index[:, :, None], index[:, None, :]]
@@ -212,7 +225,7 @@ def _wald(coefficients: FloatArray, inverse: FloatArray, n_modes: int) -> FloatA
 def least_significance(lines: FrfLines) -> float:
     """Return the chi-squared above which a mode is needed [-]."""
     chance = _CHANCE / lines.laplace.size
-    return float(scipy.stats.chi2.isf(chance, 2 * lines.response.shape[0]))
+    return chi2_limit(chance, 2 * lines.response.shape[0])
 
 
 def needed(
@@ -222,6 +235,7 @@ def needed(
     noise: FloatArray,
     variance: FloatArray,
     beyond: ComplexArray,
+    residual: ComplexArray | None = None,
 ) -> IntArray:
     """Drop the least needed pole until all that are left are needed.
 
@@ -232,6 +246,7 @@ def needed(
         noise: noise variance of the lines, shape (n_frf, n_lines).
         variance: noise and model error, same shape.
         beyond: computational poles [rad/s].
+        residual: of the fit with all of them, None if it is not known.
 
     Returns:
         Indices of the poles that are left.
@@ -239,8 +254,11 @@ def needed(
     left = np.arange(pole.size)
     limit = least_significance(lines)
     while left.size:
-        fit = fit_residues(lines, np.append(pole[left], beyond), variance)
-        found = significance(lines, fit, pole[left], noise, beyond)
+        if residual is None:
+            fit = fit_residues(lines, np.append(pole[left], beyond), variance)
+            residual = lines.response - fit.synthesis
+        found = significance(lines, residual, pole[left], noise, beyond)
+        residual = None
         weak: BoolArray = (found < limit) & ~held[left]
         if not weak.any():
             break
@@ -253,7 +271,7 @@ def needed(
 
 def significance(
     lines: FrfLines,
-    fit: LinearFit,
+    residual: ComplexArray,
     pole: ComplexArray,
     noise: FloatArray,
     beyond: ComplexArray,
@@ -262,7 +280,7 @@ def significance(
 
     Args:
         lines: lines of the fit.
-        fit: with all poles.
+        residual: of a fit with all poles, shape (n_frf, n_lines).
         pole: modes [rad/s], shape (n_modes,).
         noise: noise variance of the lines, shape (n_frf, n_lines).
         beyond: computational poles [rad/s].
@@ -270,7 +288,7 @@ def significance(
     Returns:
         Increase of chi-squared without each mode, shape (n_modes,).
     """
-    local = local_residual(lines.response - fit.synthesis)
+    local = local_residual(residual)
     everything = np.append(pole, beyond)
     judged = fit_residues(lines, everything, np.maximum(noise, local))
     apparent = np.nan_to_num(judged.significance[: pole.size])

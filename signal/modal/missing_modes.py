@@ -19,7 +19,7 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
-from jointbench.signal.modal.lsfd import fit_residues, least_significance, significance
+from jointbench.signal.modal.lsfd import least_significance, significance
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
@@ -147,9 +147,9 @@ def _tried(whole: WholeFit, start: complex) -> complex | None:
     before, after = (_excess(f.residual, group, near) for f in (without, fitted))
     if before < _LEAST_EXCESS or after > (1.0 - _EXPLAINED) * before:
         return None
-    everything = np.append(fitted.pole, fitted.beyond)
-    fit = fit_residues(group.lines, everything, group.variance)
-    need = significance(group.lines, fit, fitted.pole, group.noise, fitted.beyond)
+    need = significance(
+        group.lines, fitted.residual, fitted.pole, group.noise, fitted.beyond
+    )
     return pole if need[-1] > least_significance(whole.lines) else None
 
 

@@ -183,8 +183,11 @@ def _uncertainty(
     poles = fitted.poles
     pole, size = poles.pole, np.abs(poles.pole)
     covariance = poles.covariance * poles.inflation[:, None, None]
-    # One residual shows both: the larger counts.
-    parts = np.stack((fitted.shared, fitted.doubts.shift))
+    covariance = covariance + fitted.forced
+    # One residual shows both: the larger counts. It also shows the noise of the force.
+    rest = np.trace(fitted.shared - fitted.forced, axis1=1, axis2=2) > 0.0
+    shown = np.where(rest[:, None, None], fitted.shared - fitted.forced, 0.0)
+    parts = np.stack((shown, fitted.doubts.shift))
     larger = np.argmax(np.trace(parts, axis1=2, axis2=3), axis=0)
     covariance = covariance + parts[larger, np.arange(pole.size)]
     # d|p| and d(-Re p / |p|) for a change of (Re p, Im p).

@@ -24,20 +24,25 @@ from jointbench.signal.modal.doubtful_neighbours import (
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
+    line_variance,
     local_level,
     model_error,
     residual_around,
 )
 from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lscf import Progress
-from jointbench.signal.modal.lsfd import LinearFit, fit_residues, needed, significance
+from jointbench.signal.modal.lsfd import LinearFit, needed, significance
 from jointbench.signal.modal.missing_modes import Seen, find_missing
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
     unresolved,
 )
-from jointbench.signal.modal.shared_errors import shared_covariance
+from jointbench.signal.modal.shared_errors import (
+    ForceNoise,
+    force_covariance,
+    shared_covariance,
+)
 
 # Relative model error assumed before a fit has estimated it [-].
 _FIRST_MODEL_ERROR = 0.02
@@ -64,7 +69,8 @@ class FittedModes:
         model_error: of the fit, as a share of the local level [-].
         residual_ratio: around each mode, rms residual over noise [-], shape (n_modes,).
         shared: covariance of (Re p, Im p) from errors common to the FRFs of a
-            reference [rad^2/s^2], shape (n_modes, 2, 2).
+            reference, as the residual shows them [rad^2/s^2], shape (n_modes, 2, 2).
+        forced: the same from the noise of the force before the hits.
         doubts: neighbours that may be missing.
     """
 
@@ -77,6 +83,7 @@ class FittedModes:
     model_error: float
     residual_ratio: FloatArray
     shared: FloatArray
+    forced: FloatArray
     doubts: DoubtfulNeighbours
 
 
@@ -88,6 +95,7 @@ def fit_modes(
     held: BoolArray | None = None,
     seen: Seen | None = None,
     n_inputs: int = 1,
+    force: ForceNoise | None = None,
     refine: bool = True,
     progress: Progress | None = None,
 ) -> FittedModes:
@@ -105,6 +113,7 @@ def fit_modes(
         seen: whether a pole that the residual shows is one of the FRF; None adds no
             modes, as where some were dropped by hand and their residual is wanted.
         n_inputs: references; inputs vary fastest over the rows of the lines.
+        force: noise of the force, None where it is not known.
         refine: False keeps the poles of LSCF.
         progress: called with the current step and its share; None for no reports.
 
@@ -121,16 +130,25 @@ def fit_modes(
     report("refining modes", 0.4)
     # The response itself is rough at resonances; the residual of a fit is not.
     noise = line_noise(lines.response, scatter, poles.residual)
-    if refine:
-        whole = _whole(lines, poles.pole, poles.beyond, noise, variance)
+    error, variance = _weighed(lines, noise, poles)
+    for _ in range(_SEARCHES if refine else 0):
+        whole = _whole(lines, poles, noise, variance)
         beyond = find_beyond(whole)
-        if beyond.size != poles.beyond.size:
-            poles = _again(lines, poles.pole, beyond, variance)
-            noise = line_noise(lines.response, scatter, poles.residual)
-    error = model_error(poles.residual, noise, lines.response)
-    variance = noise + error**2 * level
-    start = _Start(candidates, held, noise, variance, error, steps)
-    kept = needed(lines, poles.pole, held[chosen], noise, variance, poles.beyond)
+        if beyond.size == poles.beyond.size:
+            break
+        poles = _again(lines, poles.pole, beyond, variance)
+        noise = line_noise(lines.response, scatter, poles.residual)
+        error, variance = _weighed(lines, noise, poles)
+    start = _Start(candidates, held, noise, variance, error, steps, chosen)
+    kept = needed(
+        lines,
+        poles.pole,
+        held[chosen],
+        noise,
+        variance,
+        poles.beyond,
+        poles.residual,
+    )
     report("refining modes", 0.7)
     done = _settled(lines, start, chosen, kept, poles)
     for _ in range(_SEARCHES if refine and seen else 0):
@@ -149,6 +167,7 @@ def fit_modes(
         start.error,
         residual_around(lines, done.poles.pole, done.poles.residual, start.noise),
         shared_covariance(lines, done.poles, done.fit, start.variance, n_inputs),
+        _forced(lines, start, done, force),
         _doubts(lines, start, done, tried=refine and seen is not None),
     )
 
@@ -164,6 +183,7 @@ class _Start:
         variance: noise and model error.
         error: the model error, as a share of the local level [-].
         steps: most evaluations of a refinement.
+        before: candidates of the first fit, to be tried again; None once they were.
     """
 
     candidates: ComplexArray
@@ -172,6 +192,7 @@ class _Start:
     variance: FloatArray
     error: float
     steps: int
+    before: IntArray | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -205,14 +226,21 @@ def _settled(
             steps=start.steps,
         )
         beyond = poles.beyond
-        fit = fit_residues(lines, np.append(poles.pole, beyond), start.variance)
-        found = significance(lines, fit, poles.pole, start.noise, beyond)
+        found = significance(lines, poles.residual, poles.pole, start.noise, beyond)
         aside = unresolved(lines, poles.pole) & ~held[chosen]
         bad = (_vague(lines, poles, found) & ~held[chosen]) | aside
         if not bad.any():
-            return _Settled(chosen, poles, fit, found)
+            return _Settled(chosen, poles, poles.fit, found)
         beyond = np.append(beyond, poles.pole[aside])
         kept = np.flatnonzero(~bad)
+
+
+def _weighed(
+    lines: FrfLines, noise: FloatArray, poles: RefinedPoles
+) -> tuple[float, FloatArray]:
+    """Return the model error of a fit, and the variance of the lines with it."""
+    error = model_error(poles.residual, noise, lines.response)
+    return error, line_variance(noise, error, poles.residual, lines.response)
 
 
 def _completed(
@@ -234,10 +262,16 @@ def _completed(
     everything = np.append(start.candidates, added)
     held = np.append(start.held, np.zeros(added.size, bool))
     place = np.arange(start.candidates.size, everything.size)
-    begun = _again(lines, np.append(poles.pole, added), beyond, start.variance)
+    if start.before is not None:
+        # Dropped while more of the residual counted as model error.
+        again = np.setdiff1d(start.before, done.chosen)
+        place = np.append(again[~unresolved(lines, everything[again])], place)
+    begun = _again(
+        lines, np.append(poles.pole, everything[place]), beyond, start.variance
+    )
     noise = line_noise(lines.response, scatter, begun.residual)
     error = min(start.error, model_error(begun.residual, noise, lines.response))
-    variance = noise + error**2 * local_level(lines.response)
+    variance = line_variance(noise, error, begun.residual, lines.response)
     wider = replace(
         start,
         candidates=everything,
@@ -245,16 +279,31 @@ def _completed(
         noise=noise,
         variance=variance,
         error=error,
+        before=None,
     )
     chosen = np.append(done.chosen, place)
-    left = needed(lines, begun.pole, held[chosen], noise, variance, begun.beyond)
+    left = needed(
+        lines,
+        begun.pole,
+        held[chosen],
+        noise,
+        variance,
+        begun.beyond,
+        begun.residual,
+    )
     return wider, _settled(lines, wider, chosen, left, begun)
 
 
 def _final(lines: FrfLines, start: _Start, done: _Settled) -> WholeFit:
-    everything = np.append(done.poles.pole, done.poles.beyond)
-    n_modes = done.poles.pole.size
-    return WholeFit(lines, everything, n_modes, done.fit, start.noise, start.variance)
+    return _whole(lines, done.poles, start.noise, start.variance)
+
+
+def _forced(
+    lines: FrfLines, start: _Start, done: _Settled, force: ForceNoise | None
+) -> FloatArray:
+    if force is None:
+        return np.zeros((done.poles.pole.size, 2, 2))
+    return force_covariance(lines, done.poles, done.fit, start.variance, force)
 
 
 def _doubts(
@@ -263,7 +312,8 @@ def _doubts(
     if not tried:
         nothing = np.zeros((done.poles.pole.size, 2, 2))
         return DoubtfulNeighbours(np.empty(0), nothing)
-    return doubtful_neighbours(_final(lines, start, done))
+    own = done.poles.covariance * done.poles.inflation[:, None, None]
+    return doubtful_neighbours(_final(lines, start, done), own)
 
 
 def _again(
@@ -277,15 +327,10 @@ def _again(
 
 
 def _whole(
-    lines: FrfLines,
-    pole: ComplexArray,
-    beyond: ComplexArray,
-    noise: FloatArray,
-    variance: FloatArray,
+    lines: FrfLines, poles: RefinedPoles, noise: FloatArray, variance: FloatArray
 ) -> WholeFit:
-    everything = np.append(pole, beyond)
-    fit = fit_residues(lines, everything, variance)
-    return WholeFit(lines, everything, pole.size, fit, noise, variance)
+    everything = np.append(poles.pole, poles.beyond)
+    return WholeFit(lines, everything, poles.pole.size, poles.fit, noise, variance)
 
 
 def _silent(what: str, share: float) -> None:

@@ -27,6 +27,7 @@ from jointbench.signal.modal.manual_selection import Choices, overrule
 from jointbench.signal.modal.modal_model import ModalModel, build_model
 from jointbench.signal.modal.mode_selection import FittedModes, fit_modes
 from jointbench.signal.modal.repeated_roots import separate_repeated
+from jointbench.signal.modal.shared_errors import ForceNoise
 from jointbench.signal.modal.stabilisation import (
     Stabilisation,
     StabilityLimits,
@@ -147,6 +148,7 @@ def identify_modes(
         held=np.array([c.by_hand for c in found], bool),
         seen=None if settings.choices.drop else partial(recurs, table),
         n_inputs=len(frf.inputs),
+        force=_force_noise(frf, keep),
         refine=settings.refine,
         progress=progress,
     )
@@ -291,6 +293,15 @@ def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:
     return kept.reshape(-1, kept.shape[2])
 
 
+def _force_noise(frf: Frf, keep: BoolArray) -> ForceNoise | None:
+    """Return what the noise of the force changes in the FRFs of each input."""
+    if frf.force_noise is None or frf.force_width <= 0.0:
+        return None
+    power = np.abs(frf.response[:, :, keep]) ** 2
+    share = frf.force_noise[:, :, keep] / np.where(power > 0.0, power, np.inf)
+    return ForceNoise(np.max(share, axis=0), frf.force_width)
+
+
 def _synthesis(frf: Frf, keep: BoolArray, fitted: FittedModes) -> Frf:
     """Return the FRF of the model on the kept lines."""
     shape = (len(frf.outputs), len(frf.inputs), -1)
@@ -300,6 +311,7 @@ def _synthesis(frf: Frf, keep: BoolArray, fitted: FittedModes) -> Frf:
         response=fitted.fit.synthesis.reshape(shape),
         coherence=None,
         innovation_noise=None,
+        force_noise=None,
         variance=fitted.variance.reshape(shape),
         provenance=(*frf.provenance, step("synthesis")),
     )

@@ -15,7 +15,12 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import residual_around
-from jointbench.signal.modal.lsfd import modal_basis, modal_size
+from jointbench.signal.modal.lsfd import (
+    LinearFit,
+    modal_basis,
+    modal_size,
+    wald_significance,
+)
 from jointbench.signal.modal.normal_equations import (
     correlations,
     gram_matrices,
@@ -24,11 +29,18 @@ from jointbench.signal.modal.normal_equations import (
 
 # Stop when no pole moves by more than this share of its own half-power width.
 _SMALL_STEP = 1e-4
+# ... and chi-squared falls by less than this, in units of what is left.
+_SMALL_GAIN = 0.05
+# Where others still move, a pole that moved less than this has converged.
+_SETTLED = 1e-2
 # A pole that leaves its start by this many half-power half-widths has diverged.
 _LEASH = 1.0
 _LEASH_DAMPING = 10.0
 # A band that begins below this share of its end begins at zero.
 _NEXT_TO_ZERO = 0.1
+# Poles beyond the band: shares of the band for their decay rates, and of its first line
+# for their frequencies.
+_LEAST_DECAY, _MOST_DECAY, _LEAST_PLACE = 5e-4, 0.3, 0.2
 # Damping of the step above which the pole is dropped instead.
 _PATIENCE = 1.0
 _STUCK = 1e6
@@ -66,6 +78,7 @@ class RefinedPoles:
         linearised: how residues depend on poles, computational poles last.
         beyond: computational poles after the refinement [rad/s], shape (n,).
         residual: measured less fitted FRF, shape (n_frf, n_lines).
+        fit: residues of modes and computational poles, with these variances.
     """
 
     pole: ComplexArray
@@ -75,6 +88,7 @@ class RefinedPoles:
     linearised: Linearised
     beyond: ComplexArray
     residual: ComplexArray
+    fit: LinearFit
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,6 +103,7 @@ class _Point:
     gram: FloatArray
     gradient: FloatArray
     residual: ComplexArray
+    coefficients: FloatArray
     residue_noise: FloatArray
     residue_slope: FloatArray
 
@@ -161,6 +176,11 @@ def refine_poles(
         Linearised(joint, here.residue_noise, here.residue_slope),
         pole[n_modes:],
         here.residual,
+        LinearFit(
+            here.coefficients,
+            lines.response - here.residual,
+            wald_significance(here.coefficients, here.residue_noise),
+        ),
     )
 
 
@@ -174,8 +194,10 @@ def _search(
     """Return the poles at the optimum, their cost terms, and which converged."""
     free, damping = np.ones(pole.size, bool), 1e-3
     here, settled = _evaluate(lines, pole, variance), False
+    moved = np.full(pole.size, np.inf)
     for _ in range(steps):
         trial = pole + np.where(free, _step(here, prior, pole, free, damping), 0.0)
+        trial[prior.n_modes :] = _kept_beyond(lines, prior, pole, trial)
         lost = _lost(lines, trial, prior)
         if lost.any() and damping > _PATIENCE:
             pole, free = np.where(lost, prior.start, pole), free & ~lost
@@ -189,11 +211,14 @@ def _search(
             settled = damping > _STUCK
         else:
             moved = np.abs(trial - pole) / measured_width(lines, pole)
+            gained = here.cost - there.cost
+            unit = max(1.0, there.cost / (2.0 * lines.response.size))
             pole, here, damping = trial, there, max(damping / 10.0, 1e-9)
             settled = bool(np.all(moved[: prior.n_modes] < _SMALL_STEP))
+            settled &= gained < _SMALL_GAIN * unit
         if settled:
             break
-    return pole, here, free & settled
+    return pole, here, free & (settled | (moved < _SETTLED))
 
 
 def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Point:
@@ -222,6 +247,7 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
         gram=np.sum(gram, axis=0),
         gradient=np.einsum("fij,fi->j", turn, slope),
         residual=residual,
+        coefficients=solved,
         residue_noise=inverse[:, :n_poles, :n_poles],
         residue_slope=-(inverse[:, :n_poles] @ overlap),
     )
@@ -267,6 +293,25 @@ def _step(
     force = np.where(movable, here.gradient + weight * away, 0.0)
     change = inverses(gram) @ force
     return np.asarray(change.view(np.complex128))
+
+
+def _kept_beyond(
+    lines: FrfLines, prior: _Prior, pole: ComplexArray, trial: ComplexArray
+) -> ComplexArray:
+    """Return trial poles beyond the band, kept there and damped.
+
+    Only a flank of them is seen: a step from a poor start often leaves the stable
+    half-plane, or enters the band.
+    """
+    n = prior.n_modes
+    low, high = lines.laplace.imag[[0, -1]]
+    start, span = prior.start[n:].imag, high - low
+    above = start > 0.5 * (low + high)
+    least = np.where(above, np.minimum(start, high), _LEAST_PLACE * low)
+    most = np.where(above, high + span, np.maximum(start, low))
+    decay = np.maximum(-trial[n:].real, -pole[n:].real / 3.0)
+    decay = np.clip(decay, _LEAST_DECAY * span, _MOST_DECAY * span)
+    return np.asarray(1j * np.clip(trial[n:].imag, least, most) - decay)
 
 
 def _lost(lines: FrfLines, pole: ComplexArray, prior: _Prior) -> BoolArray:

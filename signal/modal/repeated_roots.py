@@ -40,6 +40,9 @@ _LEASH = 1.0
 # One mode in its place must leave this many times the chi-squared that two leave; else
 # a second singular value above this share of the first makes it possible.
 _GAIN, _LEAST_SHARE = 2.0, 0.003
+# Second singular value over the first up to which the aim of the hammer explains it:
+# hits a few per cent off their point give residues of rank two.
+_AIMED = 0.02
 _MOST_OTHERS = 2
 # Chi-squared over the number of values up to which two modes explain the lines, and up
 # to which the modes around them are taken from the same fit.
@@ -90,6 +93,7 @@ class _Split:
         accepted: whether the lines need both.
         possible: whether they hint at both.
         stayed: which of the modes around kept their places, shape (n_members - 1,).
+        replaced: indices of modes that stood in for the second.
     """
 
     peak: PeakLines
@@ -98,6 +102,7 @@ class _Split:
     accepted: bool
     possible: bool
     stayed: BoolArray
+    replaced: IntArray
 
 
 def separate_repeated(
@@ -128,10 +133,12 @@ def separate_repeated(
         members = members[np.isin(row_of[members], list(left))]
         found = _split(sides, members)
         if found.accepted:
+            gone = row_of[found.replaced].tolist()
+            members = members[~np.isin(members, found.replaced)]
             used = np.append([True, True], found.stayed)
             pieces.append(_rows_of(model, row_of[members], sides, found, used))
             along = row_of[members[1:][found.stayed]].tolist()
-            left -= {number, *along}
+            left -= {number, *along, *gone}
             # One split a cluster: what else may be hidden in it is only remarked on.
             frequency = np.abs(found.modes.pole[used][2:]) / (2.0 * np.pi)
             hints.extend(
@@ -202,6 +209,13 @@ def _split(sides: _Sides, members: IntArray) -> _Split:
     residue = np.moveaxis(residue, 2, 0)
     leading = np.linalg.svd(residue)[2][:, 0]
     single = fit_rank_one(peak, pole, leading)
+    away = np.abs(single.pole - pole)[1:] > measured_width(sides.lines, pole[1:])
+    if away.any():
+        # A mode around has become the second one: two in place of both are tried.
+        again = _split(sides, np.append(members[:1], members[1:][~away]))
+        inside = np.abs(pole.imag - pole[0].imag)[1:] < _REACH_WIDTHS * peak.width
+        gone = np.append(again.replaced, members[1:][away & inside])
+        return replace(again, replaced=gone.astype(np.int64))
     start, reference = _start(peak, complex(pole[0]), residue[0])
     double = fit_rank_one(
         peak,
@@ -217,7 +231,7 @@ def _split(sides: _Sides, members: IntArray) -> _Split:
     size = np.linalg.svd(residue[0], compute_uv=False)
     left = double.cost / (2.0 * peak.response.size)
     better = single.cost > _GAIN * double.cost and left < _EXPLAINED
-    gained = single.cost - double.cost > limit
+    gained = single.cost - double.cost > limit and size[1] > _AIMED * size[0]
     return _Split(
         peak,
         double,
@@ -225,6 +239,7 @@ def _split(sides: _Sides, members: IntArray) -> _Split:
         accepted=bool(gained and stays[:2].all() and better),
         possible=bool(size[1] > _LEAST_SHARE * size[0]),
         stayed=np.asarray(stays[2:] & (left < _WELL)),
+        replaced=np.empty(0, np.int64),
     )
 
 
@@ -281,11 +296,14 @@ def _rows_of(
     rows = _rows(model, np.append(numbers[:1], numbers))
     significance = rows["significance"].copy()
     significance[1] = found.gain
+    frequency_sd = np.sqrt(_quadratic(along, spread)) / (2.0 * np.pi)
+    damping_sd = np.sqrt(_quadratic(across, spread))
     rows = rows | {
         "natural_frequency": size / (2.0 * np.pi),
-        "frequency_sd": np.sqrt(_quadratic(along, spread)) / (2.0 * np.pi),
+        # What is fixed here had errors of its own in the fit of all lines.
+        "frequency_sd": np.maximum(frequency_sd, rows["frequency_sd"]),
         "damping_ratio": -pole.real / size,
-        "damping_ratio_sd": np.sqrt(_quadratic(across, spread)),
+        "damping_ratio_sd": np.maximum(damping_sd, rows["damping_ratio_sd"]),
         "residues": residues,
         "residues_sd": sd[..., 0] + 1j * sd[..., 1],
         "shapes": shapes,

@@ -10,6 +10,8 @@ common is its autocovariance, free of the noise of single lines; and that is pro
 to the poles.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 import scipy.fft
 
@@ -27,8 +29,21 @@ from jointbench.signal.modal.refined_pole_covariance import (
 _SIGNIFICANT = 2.0
 # Lags are summed up to this share of the lines.
 _LONGEST = 0.25
-# Largest correction for what the fit absorbed of the factor.
-_ABSORBED = 0.75
+# Length of the force window with its taper over its width; samples of it, at least.
+_TAPERED, _LEAST_SAMPLES = 1.5, 8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ForceNoise:
+    """Noise of the force that one window kept.
+
+    Attributes:
+        relative: E|error|^2 of an FRF over its own |FRF|^2, shape (n_inputs, n_lines).
+        width: time after the trigger in which the force was kept [s].
+    """
+
+    relative: FloatArray
+    width: float
 
 
 def shared_covariance(
@@ -67,9 +82,53 @@ def shared_covariance(
     for response in responses:
         spectrum = scipy.fft.fft(response, size, axis=0)
         total += 0.5 * (spectrum.T * density @ spectrum.conj()).real / size
+    return _of_modes(poles, total)
+
+
+def force_covariance(
+    lines: FrfLines,
+    poles: RefinedPoles,
+    fit: LinearFit,
+    variance: FloatArray,
+    noise: ForceNoise,
+) -> FloatArray:
+    """Return the covariance of poles from the noise of the windowed force.
+
+    The noise of a force kept for a short time changes as many lines together as the
+    block is longer than the window: its covariance over lines has the rank of that
+    time. It is propagated sample by sample.
+
+    Args:
+        lines: lines of the fit, inputs varying fastest.
+        poles: at the optimum.
+        fit: residues of modes and poles beyond the band.
+        variance: E|error|^2 of each line, shape (n_frf, n_lines).
+        noise: of the force.
+
+    Returns:
+        Of (Re p, Im p) of each mode [rad^2/s^2], shape (n_modes, 2, 2).
+    """
+    everything = np.append(poles.pole, poles.beyond)
+    n_inputs = noise.relative.shape[0]
+    responses = _responses(lines, everything, fit, variance, n_inputs)
+    omega = lines.laplace.imag
+    count = max(_LEAST_SAMPLES, int(np.ceil(_TAPERED * noise.width * np.ptp(omega))))
+    time = (np.arange(count) + 0.5) * _TAPERED * noise.width / count
+    beyond = np.clip((time / noise.width - 1.0) / (_TAPERED - 1.0), 0.0, 1.0)
+    weight = (0.5 * (1.0 + np.cos(np.pi * beyond))) ** 2
+    wave = np.exp(-1j * np.outer(time, omega)) * np.sqrt(weight / weight.sum())[:, None]
+    total = np.zeros((2 * everything.size, 2 * everything.size))
+    for relative, response in zip(noise.relative, responses, strict=True):
+        samples = wave @ (np.sqrt(relative)[:, None] * response)
+        total += 0.5 * (samples.T @ samples.conj()).real
+    return _of_modes(poles, total)
+
+
+def _of_modes(poles: RefinedPoles, score: FloatArray) -> FloatArray:
+    """Return what a covariance of the score does to each mode."""
     joint = poles.linearised.poles
-    whole = joint @ total @ joint
-    index = np.arange(2 * n_modes).reshape(-1, 2)
+    whole = joint @ score @ joint
+    index = np.arange(2 * poles.pole.size).reshape(-1, 2)
     return np.asarray(whole[index[:, :, None], index[:, None, :]])
 
 

@@ -22,7 +22,12 @@ _WIDTH = 80
 _FRF = 4
 _COMPLEX_DOUBLE, _REAL_DOUBLE = 6, 4
 _GENERAL, _COHERENCE = 0, 6
-_NOISE = {"coherence": _COHERENCE, "variance": _GENERAL, "innovation_noise": _GENERAL}
+_NOISE = {
+    "coherence": _COHERENCE,
+    "variance": _GENERAL,
+    "innovation_noise": _GENERAL,
+    "force_noise": _GENERAL,
+}
 """Attributes of an FRF that state its noise, and their function types."""
 _ROW = 80
 _UNEVEN, _EVEN = 0, 1
@@ -131,8 +136,9 @@ def _data_set(
     """Yield a data set 58 on the lines of an FRF; `axes` describe its ordinate."""
     row, column = pair
     output, point = frf.outputs[row], frf.inputs[column]
+    force = f"force={float(frf.force_width)!r}" if frf.force_width else ""
     yield from (_EDGE, "    58")
-    for text in (f"{title} {output} / {point}", "jointbench", "", *_exact(frf)):
+    for text in (f"{title} {output} / {point}", "jointbench", force, *_exact(frf)):
         yield printable(text)
     yield (
         f"{function:5d}{0:10d}{0:5d}{0:10d} {'NONE':10s}{row + 1:10d}{0:4d}"

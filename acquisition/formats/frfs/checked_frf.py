@@ -92,6 +92,7 @@ def checked_frf(
     *,
     averages: int = 0,
     decay_rate: float = 0.0,
+    force_width: float = 0.0,
     usable_band: tuple[float, float] | None = None,
     provenance: Provenance = (),
 ) -> FrfFunction:
@@ -106,6 +107,7 @@ def checked_frf(
         unit: quantity and factor to SI.
         averages: number of averages, 0 if not stated.
         decay_rate: of an exponential window [1/s].
+        force_width: of the force window [s].
         usable_band: that was excited [Hz], or None.
         provenance: of the file.
 
@@ -134,6 +136,7 @@ def checked_frf(
         input=raw.input,
         averages=averages,
         added_decay_rate=decay_rate,
+        force_width=force_width,
         usable_band=usable_band,
         provenance=provenance,
         **scaled,

@@ -44,7 +44,7 @@ TIME_RESPONSE, FRF, COHERENCE, GENERAL = 1, 4, 6, 0
 _EVEN = 1
 _FREQUENCY = 18
 _OWN = "jointbench"
-_NOISE = re.compile(r"(?P<name>variance|innovation_noise) of ")
+_NOISE = re.compile(r"(?P<name>variance|innovation_noise|force_noise) of ")
 _DETAIL = re.compile(r"(\w+)=(\S+)")
 _DIGITS = 1e-5
 """Share of itself by which a printed number of six digits may differ, and more."""
@@ -125,6 +125,7 @@ def _function(
         unit_of(path, where, _unit(one), given),
         averages=int(detail.get("averages", averages)),
         decay_rate=detail.get("decay", 0.0),
+        force_width=detail.get("force", 0.0),
         usable_band=None if band[0] is None or band[1] is None else (band[0], band[1]),
         provenance=done,
     )
