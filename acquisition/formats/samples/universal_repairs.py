@@ -51,7 +51,7 @@ def with_latin_units(one: dict[str, Any], header: bytes) -> dict[str, Any]:
     """
     if not any(_REPLACED in str(one.get(name)) for name in _UNIT_LINES):
         return one
-    return one | _units(header.splitlines())
+    return {**one, **_units(header.splitlines())}
 
 
 def _units(lines: list[bytes]) -> Mapping[str, str]:

@@ -155,7 +155,7 @@ def _at(
         [1.0 / DIAGNOSIS.curve_margin, DIAGNOSIS.curve_margin]
     )
     reach = _motion(model, pole, shape, wide)[1]
-    motions = np.geomspace(*reach, DIAGNOSIS.curve_steps)
+    motions = np.geomspace(reach[0], reach[1], DIAGNOSIS.curve_steps)
     rows = []
     for motion in motions:
         pole, shape = _pole_at(model, laws, motion, (pole, shape))
@@ -205,7 +205,7 @@ def _bent(
         if action.entry.law is None:
             continue
         law = action.entry.law(action.values)
-        motions = np.geomspace(*reach, DIAGNOSIS.curve_steps)
+        motions = np.geomspace(reach[0], reach[1], DIAGNOSIS.curve_steps)
         loops = harmonic_loops(law, motions, abs(pole))
         found.append(
             _Bent(action.index, np.log(motions), loops.stiffness, loops.damping)
