@@ -183,7 +183,9 @@ def main() -> None:
                 file.flush()
     text = summary(rows)
     if given.page is not None:
-        given.page.write_text(text)
+        old = given.page.read_text() if given.page.exists() else ""
+        _, mark, peers = old.partition("## Beside pyOMA2")  # of output_only_peers.py
+        given.page.write_text(f"{text}\n{mark}{peers}" if mark else text)
     print(text)
 
 

@@ -14,6 +14,7 @@ from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_
 from jointbench.analysis.gap.response.threads import side_by_side
 from jointbench.station.files.input_files import parse_preload
 from jointbench.station.files.output_paths import check_outputs
+from jointbench.station.gap.curve_section import curve_section
 from jointbench.station.gap.gap_inputs import Examined, GapRequest, examine
 from jointbench.station.gap.gap_output import show_diagnosis
 from jointbench.station.gap.gap_scores import score_section, score_table, scores_json
@@ -29,30 +30,32 @@ MOST_REMARKS = 5
 
 
 def run_gap(
-    source: Path | str,
+    source: Path | str | Sequence[Path | str],
     *,
-    more: Sequence[Path | str] = (),
     model: Path | None = None,
     preload: str | None = None,
     without: str | None,
     effects: Sequence[Path | str] = (),
+    curves: bool = False,
     report: Path | None,
     json_target: str | None,
 ) -> Diagnosis:
     """Diagnose a source, show verdict and evidence, and write the report if asked.
 
     Args:
-        source: campaign file, session, MAT file, model file that names data, or URL.
-        more: further sessions of the same bench.
+        source: campaign file, session, MAT file, model file that names data, or URL;
+            several sessions of the same bench.
         model: bench model, where the source has none.
         preload: on the joint with unit, where the session gives none.
         without: names of effects to leave out of the catalogue, joined by commas.
         effects: further ones: files of the user's own effects, run as Python, and
             names of laws of real joints.
+        curves: whether modes over amplitude are compared with the explanations.
         report: HTML report to write, or None.
         json_target: where the JSON goes.
     """
-    sources = [str(source), *map(str, more)]
+    given = [source] if isinstance(source, Path | str) else source
+    sources = [str(one) for one in given]
     files = [Path(name) for name in sources if not is_url(name)]
     owned = [one for one in effects if isinstance(one, Path)]
     check_outputs([*files, *owned, *([model] if model else [])], [report, json_target])
@@ -62,7 +65,7 @@ def run_gap(
     own = [entry for path in owned for entry in read_effects(path)]
     laws = [one for one in effects if isinstance(one, str)]
     entries = with_real_joints(installed_catalogue(), laws)
-    wanted = replace(wanted, entries=with_own(entries, own))
+    wanted = replace(wanted, entries=with_own(entries, own), curves=curves)
     packages = effect_packages(wanted.entries)
     screen = Screen(stderr=True)
     with side_by_side(), screen.status(seen(f"reading {sources[0]}")) as status:
@@ -72,6 +75,9 @@ def run_gap(
         content = gap_report(done.found, title=done.title)
         if done.scores:
             section = score_section(done.scores, done.unit)
+            content = replace(content, sections=(*content.sections, section))
+        if done.found.curves is not None:
+            section = curve_section(done.found.curves)
             content = replace(content, sections=(*content.sections, section))
         if packages:
             section = packages_section(packages)

@@ -86,6 +86,14 @@ def gap_command(
             metavar="PATH", help="Python file with effects of your own; it is executed."
         ),
     ] = None,
+    curves: Annotated[
+        bool,
+        typer.Option(
+            "--curves",
+            help="Compare natural frequency and damping over amplitude, as measured, "
+            "with those that the explanations predict; 1 to 2 s more.",
+        ),
+    ] = False,
     report: HtmlReport = None,
     json: Json = None,
     debug: Debug = False,
@@ -103,12 +111,12 @@ def gap_command(
     from jointbench.station.commands.gap_command import names_in, run_gap
 
     run_gap(
-        sources[0],
-        more=sources[1:],
+        sources,
         model=model,
         preload=preload,
         without=without,
         effects=[*(effects or []), *sorted(names_in(with_))],
+        curves=curves,
         report=report,
         json_target=json,
     )

@@ -2,6 +2,7 @@
 """``jointbench modal --output-only``: operational modal analysis."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from jointbench.acquisition.basics.errors import BadData
@@ -24,13 +25,23 @@ def run_output_only(
     band: tuple[float, float] | None,
     order: int | None,
     json_target: str | None,
+    keep_sines: bool = False,
 ) -> OutputOnlyModes:
-    """Identify modes from the responses in `files` and show them."""
+    """Identify modes from the responses in `files` and show them.
+
+    Args:
+        files: one recording.
+        columns: of files without units.
+        band: lowest and highest frequency [Hz], or None.
+        order: states of the largest model, or None for the default.
+        json_target: where the JSON goes.
+        keep_sines: leave steady sines in the record.
+    """
     check_outputs(files, [json_target])
     recording = only_recording(read_recordings(files, columns=columns, point=""))
-    settings = OutputOnlySettings(band=band)
+    settings = OutputOnlySettings(band=band, take_out_sines=not keep_sines)
     if order is not None:
-        settings = OutputOnlySettings(band=band, highest_order=order)
+        settings = replace(settings, highest_order=order)
     with working("estimating correlations, fitting modes"):
         modes = identify_output_only(recording, settings)
     show_output_only(recording, modes, json_target)

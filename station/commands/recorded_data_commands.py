@@ -31,6 +31,7 @@ from jointbench.station.commands.shared_options.mode_fit_options import (
     EstimatorName,
     GeometryFile,
     Keep,
+    KeepSines,
     Order,
     OutputOnly,
 )
@@ -92,6 +93,7 @@ def modal_command(
     uff: Universal = None,
     averages: Averages = None,
     output_only: OutputOnly = False,
+    keep_sines: KeepSines = False,
     json: Json = None,
     debug: Debug = False,
 ) -> None:
@@ -105,6 +107,7 @@ def modal_command(
         jointbench modal session.h5 --json modes.json
         jointbench modal session.h5 --band 50:5000 --keep 5031 --drop 3007
         jointbench modal frf.txt --columns 'frequency:Hz,real:m/N,imaginary:m/N'
+        jointbench modal spindle.h5 --output-only --band 30:500 --keep-sines
     """
     if output_only:
         from jointbench.station.commands.output_only_command import run_output_only
@@ -115,9 +118,17 @@ def modal_command(
             columns=columns,
             band=parse_band(band),
             order=order,
+            keep_sines=keep_sines,
             json_target=json,
         )
         return
+    if keep_sines:
+        from jointbench.acquisition.basics.errors import UsageError
+
+        raise UsageError(
+            "--keep-sines is for responses without a force; add --output-only, or "
+            "leave it out"
+        )
     from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
     from jointbench.station.commands.modal_command import run_frfs, run_modal
     from jointbench.station.pipeline.modal_options import modal_settings

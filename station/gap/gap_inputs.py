@@ -32,6 +32,10 @@ from jointbench.station.files.input_files import is_session_name, refuse_twice
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.gap.level_files import names_levels, read_levels
 from jointbench.station.gap.level_remarks import level_remarks
+from jointbench.station.gap.measured_curves import (
+    curves_of_campaign,
+    curves_of_recordings,
+)
 from jointbench.station.gap.record_campaign import read_record
 from jointbench.station.pipeline.chain import hits_stage
 from jointbench.station.pipeline.joint_stages import gap_of
@@ -58,12 +62,14 @@ class GapRequest:
         without: names of effects to leave out of the catalogue.
         preload: on the joint where the session does not say [N], or None.
         entries: the catalogue of this run.
+        curves: whether modes over amplitude are compared with the explanations.
     """
 
     model: Path | None = None
     without: frozenset[str] = frozenset()
     preload: float | None = None
     entries: tuple[LumpedEffect, ...] = field(default_factory=installed_catalogue)
+    curves: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,6 +175,7 @@ def _examine_levels(
         raise UsageError(
             f"'{paths[0]}' names its records, ports and base: give it alone"
         )
+    _refuse_curves(wanted)
     progress("reading the levels")
     given, base = read_levels(paths[0])
     done = diagnose_levels(
@@ -196,8 +203,15 @@ def _examine_campaign(
             "its own model and preloads"
         )
     campaign = read_campaign(paths[0])
+    curves = (
+        curves_of_campaign(campaign, ANY_LEVEL, progress) if wanted.curves else None
+    )
     found = diagnose(
-        campaign, without=wanted.without, entries=wanted.entries, progress=progress
+        campaign,
+        without=wanted.without,
+        entries=wanted.entries,
+        curves=curves,
+        progress=progress,
     )
     return Examined(paths[0].stem, found)
 
@@ -208,6 +222,7 @@ def _examine_record(
     if len(paths) > 1:
         raise UsageError("a record is examined alone; give one MAT file")
     bench = _model(paths[0], wanted)
+    _refuse_curves(wanted)
     if wanted.preload is not None:
         raise UsageError("--preload belongs to sessions; a record has none")
     record = read_record(paths[0], bench)
@@ -244,15 +259,29 @@ def _examine_sessions(
         names = ", ".join(path.name for path in paths)
         raise BadData(f"no recording with a hit in {names}; see `jointbench inspect`")
     title = ", ".join(path.stem for path in paths)
+    curves = None
+    if wanted.curves:
+        curves = curves_of_recordings(
+            recordings, nominal.preload_reference, ANY_LEVEL, progress
+        )
     found, left_out = gap_of(
         title,
         recordings,
         nominal,
         without=wanted.without,
         entries=wanted.entries,
+        curves=curves,
         progress=progress,
     )
     return Examined(title, found, remarks=(*remarks, *left_out))
+
+
+def _refuse_curves(wanted: GapRequest) -> None:
+    if wanted.curves:
+        raise UsageError(
+            "--curves needs the decays after hits, and driven records have none; leave "
+            "it out"
+        )
 
 
 def _model(path: Path, wanted: GapRequest) -> BenchModel:

@@ -64,6 +64,8 @@ def show_on(screen: Console, found: Diagnosis) -> None:
         _say(screen, label, words)
     _say(screen, "limits", _limit_words(found))
     _say(screen, "checked", *filter(None, (second_method_words(found),)))
+    if found.curves is not None:
+        _say(screen, "curves", *found.curves.words)
     _say(screen, "closest", *filter(None, (closest_words(found),)))
     where = _where(found)
     if where:

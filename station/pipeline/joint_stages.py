@@ -22,6 +22,7 @@ from jointbench.analysis.gap.catalogue.installed_effects import (
     effect_packages,
     installed_catalogue,
 )
+from jointbench.analysis.gap.diagnosis.amplitude_evidence import MeasuredCurves
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.intake.session_campaign import session_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis, diagnosis_json
@@ -173,6 +174,7 @@ def gap_of(
     *,
     without: frozenset[str],
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
+    curves: MeasuredCurves | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[Diagnosis, tuple[str, ...]]:
     """Diagnose the campaign that recordings make.
@@ -183,11 +185,14 @@ def gap_of(
         nominal: the model that should explain them.
         without: names of effects to leave out.
         entries: the catalogue.
+        curves: modes over amplitude, to be shown next to the explanations.
         progress: receives one line per step; None for no report.
 
     Returns:
         Verdict and evidence, and why accepted hits were left out, a line each.
     """
     campaign, left_out = session_campaign(name, judged, nominal)
-    found = diagnose(campaign, without=without, entries=entries, progress=progress)
+    found = diagnose(
+        campaign, without=without, entries=entries, curves=curves, progress=progress
+    )
     return found, left_out

@@ -224,10 +224,8 @@ def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, A
         with unpadded(path, data, binary=binary) as source:
             file = pyuff.UFF(str(source))
             found = [
-                (edge, dict(file.read_sets(number)))
-                for number, (kind, edge) in enumerate(
-                    zip(map(int, file.get_set_types()), edges, strict=False)
-                )
+                (number, dict(file.read_sets(number)))
+                for number, kind in enumerate(map(int, file.get_set_types()))
                 if kind in kinds
             ]
     except Exception as error:  # it raises whatever the content makes it raise
@@ -235,9 +233,10 @@ def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, A
             f"{named(path)} cannot be read as a universal file ({shown(error)}); use "
             "another copy"
         ) from error
+    heads = [data[edge : edge + _LONGEST_HEADER] for edge in edges]
     return [
-        with_latin_units(one, data[edge : edge + _LONGEST_HEADER])
-        for edge, one in found
+        with_latin_units(one, heads[number]) if number < len(heads) else one
+        for number, one in found
     ]
 
 

@@ -10,6 +10,10 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.compiled import announced
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.catalogue.catalogue import CATALOGUE
+from jointbench.analysis.gap.diagnosis.amplitude_evidence import (
+    MeasuredCurves,
+    amplitude_evidence,
+)
 from jointbench.analysis.gap.diagnosis.diagnosis_settings import DIAGNOSIS
 from jointbench.analysis.gap.diagnosis.effect_limits import effect_limits
 from jointbench.analysis.gap.diagnosis.evidence import make_evidence
@@ -65,6 +69,7 @@ def diagnose(
     without: frozenset[str] = frozenset(),
     entries: tuple[LumpedEffect, ...] = CATALOGUE,
     policy: Policy = STANDARD,
+    curves: MeasuredCurves | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Find and name the effects that a model lacks, and add them.
@@ -74,6 +79,8 @@ def diagnose(
         without: names of effects to leave out of the catalogue.
         entries: the catalogue.
         policy: thresholds of the verdict.
+        curves: modes over amplitude as measured, to be shown next to the explanations;
+            they do not change the verdict.
         progress: receives one line for each step of the search.
 
     Returns:
@@ -95,7 +102,7 @@ def diagnose(
     if not isinstance(final, LumpedBench):
         raise TypeError("the search must return a bench of the type it was given")
     limits = campaign_limits(campaign, policy)
-    return conclude(outcome, final, limits=limits, progress=progress)
+    return conclude(outcome, final, limits=limits, measured=curves, progress=progress)
 
 
 def conclude(
@@ -103,6 +110,7 @@ def conclude(
     bench: LumpedBench,
     *,
     limits: str = "",
+    measured: MeasuredCurves | None = None,
     progress: Progress | None = None,
 ) -> Diagnosis:
     """Derive the diagnosis from the outcome of a search."""
@@ -167,6 +175,9 @@ def conclude(
         second_method=check_winner(
             bench, outcome.best if outcome.best.candidates else base
         ),
+        curves=None
+        if measured is None
+        else amplitude_evidence(bench, base, shown, measured),
     )
     if finding is Finding.NAMED and not found.predicted:
         return replace(found, reason=verdict.reason + UNPREDICTED_WORDS)

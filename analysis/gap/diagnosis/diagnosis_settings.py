@@ -271,6 +271,63 @@ class DiagnosisSettings:
         "every such amplitude is drawn as a loop, from the largest",
         "loops stay apart to the eye",
     )
+    curve_spacing: float = numerical(
+        0.7,
+        "in ln a",
+        "distance of the amplitudes at which measured and predicted curves of modes "
+        "are compared",
+        "widest knots of a measured curve: closer points are correlated",
+    )
+    curve_near: float = numerical(
+        0.05,
+        "-",
+        "largest relative distance in frequency of a measured mode from that of the "
+        "base",
+        "five half-power widths of a joint with 1 % of damping",
+    )
+    curve_harmonic_error: float = numerical(
+        0.1,
+        "-",
+        "relative error of a predicted change, added to its uncertainty",
+        "first harmonic of a law instead of its force; shapes of decays",
+    )
+    curve_consistent: float = numerical(
+        2.0,
+        "sd",
+        "deviation of a measured change up to which a predicted one is consistent",
+        "normal errors: 95 % of right laws",
+    )
+    curve_inconsistent: float = numerical(
+        3.0,
+        "sd",
+        "deviation above which a predicted change is inconsistent with the measured "
+        "one",
+        "normal errors: 0.3 % of right laws",
+    )
+    curve_known: float = numerical(
+        0.5,
+        "-",
+        "relative sd of a measured change above which it decides nothing",
+        "no change and the predicted one are then within two sd",
+    )
+    curve_margin: float = numerical(
+        2.0,
+        "-",
+        "factor by which the amplitudes of a law exceed those of a measured curve",
+        "mode shapes turn by less over the amplitudes of a joint",
+    )
+    curve_steps: int = numerical(
+        32,
+        "amplitudes",
+        "amplitudes at which a predicted curve is computed",
+        "harmonic balance of two bodies: interpolated to 20 ppm",
+    )
+    curve_rounds: int = numerical(
+        2,
+        "rounds",
+        "repetitions for the motion across the links of further laws",
+        "mode shapes turn little from one amplitude to the next",
+    )
 
 
 DIAGNOSIS = DiagnosisSettings()

@@ -31,11 +31,11 @@ def law_curves(bench: LumpedBench, fit: Fit) -> tuple[LawCurves, ...]:
     bent = [k for k, a in enumerate(actions) if a.entry.law is not None]
     if not bent:
         return ()
-    draws = _draws(bench, fit)
+    draws = fit_draws(bench, fit)
     return tuple(_curves(bench, fit, k, draws) for k in bent)
 
 
-def _draws(bench: LumpedBench, fit: Fit) -> list[FloatArray]:
+def fit_draws(bench: LumpedBench, fit: Fit) -> list[FloatArray]:
     """Return coordinates drawn from the covariance of the fit, within their bounds."""
     problem = make_problem(bench, fit.candidates)
     widened = max(fit.chi2 / bench.blocks.dof, 1.0)

@@ -15,6 +15,10 @@ from jointbench.analysis.gap.model.check_records import (
     second_method_json,
 )
 from jointbench.analysis.gap.model.confidence import Evidence
+from jointbench.analysis.gap.model.curve_records import (
+    CurveEvidence,
+    curve_evidence_json,
+)
 from jointbench.analysis.gap.model.evidence_records import GapEvidence, evidence_json
 from jointbench.analysis.gap.model.partial_records import (
     PartialExplanation,
@@ -145,6 +149,7 @@ class Diagnosis:
         limits: largest size of each effect that the records do not exclude; empty
             unless the verdict is none.
         second_method: the best explanation predicted by a second method.
+        curves: modes over amplitude, measured and as predicted; None if not asked for.
     """
 
     verdict: Finding
@@ -166,6 +171,7 @@ class Diagnosis:
     closest: Closest | None = None
     limits: tuple[EffectLimit, ...] = ()
     second_method: SecondMethod | None = None
+    curves: CurveEvidence | None = None
 
     @property
     def predicted(self) -> bool:
@@ -229,6 +235,7 @@ def diagnosis_json(diagnosis: Diagnosis) -> dict[str, Any]:
         "closest": None if d.closest is None else asdict(d.closest),
         "upper_limits": limits_json(d.limits),
         "second_method": second_method_json(d.second_method),
+        "curves": curve_evidence_json(d.curves),
         "mostly": None if d.partial is None else partial_json(d.partial),
     }
 

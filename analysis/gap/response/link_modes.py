@@ -56,16 +56,40 @@ def link_modes(
     Returns:
         Poles, one of each conjugate pair, and rows of the ports.
     """
+    return modes_across(
+        model, theta, conditions, incidence(model)[list(links)], actions
+    )
+
+
+def modes_across(
+    model: LumpedModel,
+    theta: FloatArray,
+    conditions: HitConditions,
+    across: FloatArray,
+    actions: Sequence[Action] = (),
+) -> PortModes:
+    """Return the modes of a model with any ports.
+
+    Args:
+        model: bodies and links.
+        theta: masses, stiffnesses, dampings [SI], shape (n_base,).
+        conditions: of each record.
+        across: share of each body's motion in that of a port, shape (n_ports,
+            n_bodies): +1 and -1 at the ends of a link, 1 at a body.
+        actions: effects; only those with a stiffness hook are used.
+
+    Returns:
+        Poles, one of each conjugate pair, and rows of the ports.
+    """
     linear = [a for a in actions if a.entry.stiffness is not None]
     rows = incidence(model)
     parts = _base_parts(model, rows, theta, conditions)
     parts += [_part(model, rows, theta, conditions, action) for action in linear]
     variants = max(p.polynomial.shape[0] for p in parts)
-    across = rows[list(links)]
     n = across.shape[1]
     inverse, matrix = _state_matrix(theta[:n], parts, variants)
     poles, right = np.linalg.eig(matrix)
-    push = np.zeros((variants, poles.shape[1], len(links)), dtype=np.complex128)
+    push = np.zeros((variants, poles.shape[1], len(across)), dtype=np.complex128)
     push[:, n : 2 * n] = inverse @ across.T
     left = np.linalg.solve(right, push)
     shapes = np.einsum("pi,rij->rjp", across, right[:, :n])

@@ -24,6 +24,14 @@ OutputOnly = Annotated[
         "--output-only", help="Operational modal analysis: no force channel is used."
     ),
 ]
+KeepSines = Annotated[
+    bool,
+    typer.Option(
+        "--keep-sines",
+        help="With --output-only: leave steady sines, such as those of a spindle, in "
+        "the record.",
+    ),
+]
 Keep = Annotated[
     list[float] | None,
     typer.Option(

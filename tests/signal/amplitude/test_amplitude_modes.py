@@ -23,6 +23,9 @@ from jointbench.acquisition.records.recordings import (
     Recording,
     Verdict,
 )
+from jointbench.analysis.lumped.identify_links import identify_links
+from jointbench.analysis.lumped.lumped_model import Body, Link, LumpedModel
+from jointbench.analysis.lumped.measured_modes import MeasuredModes
 from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode, Dependence
 from jointbench.signal.amplitude.amplitude_modes import amplitude_modes
 from jointbench.signal.amplitude.resolved_model import resolved_model
@@ -102,6 +105,30 @@ def test_poles_on_one_curve_become_one_mode_at_small_amplitude() -> None:
     assert np.sum(np.abs(left - 80.0) < 6.0) == 1
     at = int(np.argmin(np.abs(left - 80.0)))
     assert abs(left[at] - 80.0) < 3.0 * merged.frequency_sd[at]
+
+
+def test_identification_gets_the_joint_at_small_amplitude() -> None:
+    """The stiffness of the stuck joint is in its interval; linear poles are outside."""
+    structure, (model, found) = slipping()[0], slipping_modes()
+    stuck = float(structure.stiffness[0, 0] + structure.joint.slider_stiffness.sum())
+    body = LumpedModel(
+        (Body("mass", float(structure.mass[0])),),
+        (Link("joint", ("ground", "mass"), 0.9 * stuck, 1.0),),
+    )
+
+    def deviation(modes: ModalModel) -> float:
+        at = int(np.argmin(np.abs(modes.natural_frequency - 79.9)))
+        measured = MeasuredModes(
+            modes.natural_frequency[[at]],
+            modes.frequency_sd[[at]],
+            modes.damping_ratio[[at]],
+            modes.damping_ratio_sd[[at]],
+        )
+        (stiffness, _) = identify_links(body, measured).parameters
+        return float((stiffness.value - stuck) / stiffness.sd)
+
+    assert abs(deviation(resolved_model(model, found))) < 2.0
+    assert abs(deviation(model)) > 5.0
 
 
 def test_the_curve_is_that_of_harmonic_balance() -> None:

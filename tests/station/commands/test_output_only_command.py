@@ -23,12 +23,16 @@ def jointbench(*words: object) -> subprocess.CompletedProcess[str]:
     )
 
 
-def shaken(path: Path, seconds: float) -> Path:
-    """Write the response of one mode at 90 Hz, 1 %, to unmeasured noise."""
+def shaken(path: Path, seconds: float, sine: float = 0.0) -> Path:
+    """Write the response of one mode at 90 Hz, 1 %, to unmeasured noise.
+
+    A sine of a spindle at 137 Hz has the given share of its standard deviation.
+    """
     noise = np.random.default_rng(0).normal(size=round(seconds * RATE))
     pole = np.exp(2 * np.pi * 90.0 * (-0.01 + 1j * np.sqrt(1 - 1e-4)) / RATE)
     response = lfilter([1.0, -1.0], [1.0, -2 * pole.real, abs(pole) ** 2], noise)
     time = np.arange(noise.size) / RATE
+    response += sine * response.std() * np.sin(2 * np.pi * 137.0 * time)
     np.save(path, np.stack([time, response]))
     return path
 
@@ -47,6 +51,27 @@ def test_modes_come_without_a_force_channel(tmp_path: Path) -> None:
     assert abs(mode["frequency_hz"] / 90.0 - 1.0) < 2e-3
     assert abs(mode["damping_ratio"] - 0.01) < 3.0 * mode["damping_ratio_sd"]
     assert "Operational modes" in done.stderr
+
+
+def test_sines_are_taken_out_unless_they_are_to_be_kept(tmp_path: Path) -> None:
+    """Kept, a sine is found as a mode that is marked; it is left out of the list else.
+
+    Without --output-only there is nothing to keep.
+    """
+    path = shaken(tmp_path / "run.npy", 60.0, sine=0.5)
+    for more, sines in (((), [137.0]), (("--keep-sines",), [])):
+        done = jointbench(
+            "modal", path, "--output-only", "--columns", "time:s,acceleration:m/s^2",
+            "--json", "-", *more,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        found = json.loads(done.stdout)
+        assert np.allclose(found["sines_hz"], sines, atol=0.01)
+        marked = [one["frequency_hz"] for one in found["modes"] if one["sine_like"]]
+        assert np.allclose(marked, [137.0] if more else [], atol=0.05)
+    done = jointbench("modal", path, "--keep-sines", "--columns", "frf:m/N")
+    assert done.returncode == 2
+    assert "add --output-only" in done.stderr
 
 
 def test_a_short_run_is_refused_in_one_line(tmp_path: Path) -> None:

@@ -94,10 +94,23 @@ def test_the_crossed_grid_has_every_condition_twice() -> None:
 def test_a_session_with_nothing_hidden_misses_nothing(
     recorded: Path, tmp_path: Path
 ) -> None:
-    """The same path a bench session takes, with the model as --model."""
-    found = gap(recorded, tmp_path / "g.json", model=recorded.with_suffix(".toml"))
+    """The same path a bench session takes, with the model as --model.
+
+    No mode depends on amplitude: the curves that are asked for state that.
+    """
+    found = gap(
+        recorded,
+        tmp_path / "g.json",
+        model=recorded.with_suffix(".toml"),
+        curves=True,
+        report=tmp_path / "g.html",
+    )
     assert found["verdict"] == "none"
     assert found["scored"] == []
+    assert found["curves"]["hits"] >= 4
+    assert all("mode" in words for words in found["curves"]["words"])
+    assert not any(mode["predicted"] for mode in found["curves"]["modes"])
+    assert "Modes over amplitude" in (tmp_path / "g.html").read_text()
 
 
 def test_a_glancing_hit_among_levels_is_left_out_and_reported(
