@@ -112,3 +112,36 @@ def gap_command(
         report=report,
         json_target=json,
     )
+
+
+def machine_command(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL",
+            help="Machine (TOML): bodies, [joints] or [springs], supports, [points].",
+        ),
+    ],
+    motion: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PATH",
+            help="Table of the tool's motion under the loads to write (.csv).",
+        ),
+    ] = None,
+    report: HtmlReport = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Predict a machine of many bodies with rigid joints and with its joints.
+
+    Modes [Hz], damping, strain energy by body and joint, receptance at the tool [m/N],
+    what each joint costs there, the chatter limit, and the motion under loads.
+
+    Examples:
+        jointbench machine grinder.toml --report grinder.html
+        jointbench machine grinder.toml --json grinder.json --motion tool.csv
+    """
+    from jointbench.station.commands.machine_command import run_machine
+
+    run_machine(model, report=report, motion=motion, json_target=json)

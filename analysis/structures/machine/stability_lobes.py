@@ -7,7 +7,6 @@ chip thickness h = h0 - y(t) + y(t - T), force K_s b h and oriented receptance G
 """
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
@@ -66,33 +65,60 @@ def stability_lobes(
         Altintas and Budak 1995, CIRP Annals 44, 357-362; Altintas, Manufacturing
         Automation (2012), sec. 4.2.
     """
-    require_positive("coefficient", coefficient)
     require_positive("teeth", teeth)
-    require_shape("receptance", receptance, (frequency.size,))
-    real = receptance.real
-    unstable = (real < 0.0) & (frequency > 0.0)
+    limit, chatter = stability_limit(frequency, receptance, coefficient)
     width = np.full(speed.size, np.inf)
-    if not unstable.any():
-        return StabilityLobes(np.inf, np.nan, speed, width)
-    each = np.where(
-        unstable, -0.5 / (coefficient * np.where(unstable, real, -1.0)), np.inf
-    )
-    worst = int(np.argmin(each))
+    if not np.isfinite(limit):
+        return StabilityLobes(limit, chatter, speed, width)
+    each = _widths(frequency, receptance, coefficient)
     # The wave lags by epsilon, where G (1 - exp(-j epsilon)) is real and negative.
     lag = np.mod(2.0 * np.angle(receptance) + 3.0 * np.pi, _TURN)
     top = int(np.ceil(frequency[-1] / (teeth * speed[0])))
     for lobe in range(top + 1):
         turns = teeth * (lag / _TURN + lobe)
         own = frequency / np.where(turns > 0.0, turns, np.inf)
-        for run in _monotone_runs(np.where(unstable, own, np.nan)):
+        for run in _monotone_runs(np.where(np.isfinite(each), own, np.nan)):
             place, value = own[run], each[run]
             if place[0] > place[-1]:
                 place, value = place[::-1], value[::-1]
-            inside = (speed >= place[0]) & (speed <= place[-1])
-            width[inside] = np.minimum(
-                width[inside], np.interp(speed[inside], place, value)
-            )
-    return StabilityLobes(float(each[worst]), float(frequency[worst]), speed, width)
+            low, high = np.searchsorted(speed, [place[0], place[-1]])
+            inside = np.s_[low : high + 1]
+            found = np.interp(speed[inside], place, value, np.inf, np.inf)
+            width[inside] = np.minimum(width[inside], found)
+    return StabilityLobes(limit, chatter, speed, width)
+
+
+def stability_limit(
+    frequency: FloatArray, receptance: ComplexArray, coefficient: float
+) -> tuple[float, float]:
+    """Return the largest width that is stable at every speed.
+
+    Args:
+        frequency: lines, ascending [Hz], shape (n_lines,).
+        receptance: along the chip thickness, from a unit cutting force [m/N], shape
+            (n_lines,).
+        coefficient: cutting force over chip area [N/m^2].
+
+    Returns:
+        Width [m] and frequency of the chatter [Hz]; infinity and nan if the real part
+        is nowhere negative.
+    """
+    require_positive("coefficient", coefficient)
+    require_shape("receptance", receptance, (frequency.size,))
+    each = _widths(frequency, receptance, coefficient)
+    at = int(np.argmin(each))
+    if not np.isfinite(each[at]):
+        return np.inf, np.nan
+    return float(each[at]), float(frequency[at])
+
+
+def _widths(
+    frequency: FloatArray, receptance: ComplexArray, coefficient: float
+) -> FloatArray:
+    """Return the width at the limit for chatter at each line [m]."""
+    unstable = (receptance.real < 0.0) & (frequency > 0.0)
+    real = np.where(unstable, receptance.real, -1.0)
+    return np.where(unstable, -0.5 / (coefficient * real), np.inf)
 
 
 def _monotone_runs(values: FloatArray) -> list[slice]:
@@ -100,8 +126,10 @@ def _monotone_runs(values: FloatArray) -> list[slice]:
     direction = np.sign(np.diff(values))
     bounds = np.flatnonzero(direction[1:] != direction[:-1]) + 1
     edges = np.concatenate([[0], bounds, [direction.size]])
+    kept = np.isfinite(direction[edges[:-1]]) & (direction[edges[:-1]] != 0.0)
     return [
         slice(low, high + 1)
-        for low, high in pairwise(edges.tolist())
-        if np.isfinite(direction[low]) and direction[low] != 0.0
+        for low, high in zip(
+            edges[:-1][kept].tolist(), edges[1:][kept].tolist(), strict=True
+        )
     ]
