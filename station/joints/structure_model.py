@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pydantic import Field, model_validator
 
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.matrices.element_assembly import Material
 from jointbench.analysis.structures.matrices.mesh_files import (
     matrix_body,
@@ -115,7 +116,11 @@ def meshed_body(
         if table.material is not None:
             loss = materials[table.material].loss_factor
         return matrix_body(name, mesh, stiffness, mass, loss_factor=loss)
-    return solid_body(name, mesh, material_of(materials[table.material or ""]))
+    material = material_of(materials[table.material or ""])
+    try:
+        return solid_body(name, mesh, material)
+    except BadData as error:
+        raise BadData(f"body {name!r}: {error}") from error
 
 
 def material_of(table: MaterialTable) -> Material:

@@ -15,6 +15,8 @@ from jointbench.analysis.structures.machine.machine_result import (
 
 _NANO, _MICRO = 1e9, 1e6
 OVERDAMPED = "overdamped"
+# Shapes with a smaller MAC have no partner.
+_SIMILAR = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,9 +48,7 @@ def mode_table(result: MachineResult) -> TextTable:
                 f"{frequency:.4g}{_interval(result.frequency_interval, at)}",
                 damping_text(soft, at),
                 _weakest(soft, at),
-                f"{rigid.natural_frequency[partner]:.4g}",
-                f"{mac:.2f}",
-                _weakest(rigid, partner),
+                *_partner(rigid, partner, float(mac)),
             )
         )
     columns = (
@@ -64,6 +64,13 @@ def mode_table(result: MachineResult) -> TextTable:
     return TextTable(title, columns, tuple(rows), frozenset({2, 3, 6}))
 
 
+def _partner(modes: VariantModes, at: int, mac: float) -> tuple[str, str, str]:
+    """Return frequency, MAC and weakest region of a glued mode that is similar."""
+    if mac < _SIMILAR:
+        return "-", "-", "-"
+    return f"{modes.natural_frequency[at]:.4g}", f"{mac:.2f}", _weakest(modes, at)
+
+
 def glued_table(result: MachineResult) -> TextTable:
     """Return the modes of the glued machine in order."""
     modes = result.glued.modes
@@ -77,7 +84,7 @@ def glued_table(result: MachineResult) -> TextTable:
         )
         for at, frequency in enumerate(modes.natural_frequency)
     )
-    columns = ("mode", "glued [Hz]", "damping [%]", "weakest region", "shape")
+    columns = ("mode", "glued [Hz]", "damping [%]", "weakest region", "detail")
     return TextTable("Modes with rigid joints", columns, rows, frozenset({3, 4}))
 
 
@@ -93,7 +100,7 @@ def shape_table(result: MachineResult) -> TextTable:
         )
         for at, frequency in enumerate(modes.natural_frequency)
     )
-    columns = ("jointed [Hz]", "moves [%]", "turns [%]", "largest parts")
+    columns = ("jointed [Hz]", "moves [%]", "turns [%]", "detail")
     title = "Shapes with joints, by kinetic energy"
     return TextTable(title, columns, rows, frozenset({3}))
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.structures.machine.complex_modes import PoleSet
 from jointbench.analysis.structures.machine.lean_machine import (
@@ -43,8 +43,9 @@ from jointbench.analysis.structures.machine.transient import transient
 from jointbench.analysis.structures.reduction.full_modes import frequency_of
 from jointbench.analysis.structures.reduction.reduced_model import frequency_bound
 
-# A complex mode is that of an undamped one if their shapes agree this much.
-_SAME_SHAPE = 0.5
+# A complex mode is that of an undamped one if their shapes agree this much,
+# and their frequencies differ by no more than this factor.
+_SAME_SHAPE, _SAME_FREQUENCY = 0.5, 1.4
 # Undamped modes that damping couples in variants and random samples; the results
 # couple all.
 _COUPLED_SAMPLE = 60
@@ -205,19 +206,7 @@ def _modes(
     shapes = state.shapes[:, :count]
     omega = np.sqrt(state.eigenvalue[:count])
     swings = np.flatnonzero(poles.oscillates)
-    likeness = modal_assurance(
-        np.eye(poles.shapes.shape[0], count).astype(complex), poles.shapes[:, swings]
-    )
-    ratio = poles.damping_ratio[swings]
-    best = likeness.argmax(axis=1) if swings.size else np.zeros(count, int)
-    found = np.array(
-        [
-            ratio[at] if likeness[row, at] >= _SAME_SHAPE else np.nan
-            for row, at in enumerate(best)
-        ]
-        if swings.size
-        else [np.nan] * count
-    )
+    found = _matching_ratios(state.eigenvalue[:count], poles, swings)
     lowest = swings[:count]
     return VariantModes(
         natural_frequency=frequency_of(state.eigenvalue[:count]),
@@ -231,6 +220,28 @@ def _modes(
         motion=motion_shares(lean, shapes),
         shapes=shapes,
     )
+
+
+def _matching_ratios(
+    eigenvalue: FloatArray, poles: PoleSet, swings: IntArray
+) -> FloatArray:
+    """Return the damping ratios of the complex modes of undamped ones [-].
+
+    The coordinates of the poles are the undamped modes. Strong dampers lock their
+    joints: a pole of a similar shape at another frequency is not the same mode.
+    """
+    count = eigenvalue.size
+    if not swings.size:
+        return np.full(count, np.nan)
+    likeness = modal_assurance(
+        np.eye(poles.shapes.shape[0], count).astype(complex), poles.shapes[:, swings]
+    )
+    change = poles.natural_frequency[swings] / frequency_of(eigenvalue)[:, None]
+    near = (change < _SAME_FREQUENCY) & (change > 1.0 / _SAME_FREQUENCY)
+    likeness = np.where(near, likeness, 0.0)
+    best = likeness.argmax(axis=1)
+    same = likeness[np.arange(count), best] >= _SAME_SHAPE
+    return np.where(same, poles.damping_ratio[swings][best], np.nan)
 
 
 def _lines(request: MachineRequest, poles: PoleSet) -> FloatArray:

@@ -28,6 +28,8 @@ from jointbench.analysis.structures.reduction.reduced_model import (
 _REACH = 2.0
 # Part of a direction outside of the basis below which it is dropped.
 _DEPENDENT = 1e-7
+# A body takes part in a motion from this share of the largest part on.
+_MOVES = 1e-6
 # Modes of each variant beyond the band.
 _SPARE = 12
 
@@ -111,10 +113,7 @@ class LeanMachine:
         count = self.model.size if modes is None else min(modes, self.model.size)
         found = solve_reduced(self.model, values, count)
         if found.rigid:
-            raise BadData(
-                f"{found.rigid} motions of the machine strain nothing (a body floats): "
-                "hold it by a support, a joint or a spring"
-            )
+            raise BadData(self._floating(found.shapes[:, : found.rigid]))
         shapes = found.shapes
         flex = self.model.spread.between(shapes)[: variant.damping.size]
         damping = np.tensordot(variant.damping, flex, 1)
@@ -124,6 +123,21 @@ class LeanMachine:
         rows = np.concatenate(list(self.points.values()))
         static = rows @ np.linalg.solve(self.model.with_joints(values), rows.T)
         return VariantState(found.eigenvalue, shapes, damping, rows @ shapes, static)
+
+    def _floating(self, motions: FloatArray) -> str:
+        """Return the message on bodies that motions without strain move."""
+        moved = self.turn @ motions
+        parts = [float((moved[one.place] ** 2).sum()) for one in self.machine.bodies]
+        names = [
+            repr(body.name)
+            for body, part in zip(self.machine.bodies, parts, strict=True)
+            if part > _MOVES * max(parts)
+        ]
+        return (
+            f"{', '.join(names)} can move in {motions.shape[1]} ways without strain (a "
+            "body floats): hold it by a support, a joint or a spring with stiffness in "
+            "these directions"
+        )
 
 
 def lean_machine(machine: ReducedMachine, band_hz: float) -> LeanMachine:
