@@ -268,8 +268,11 @@ def _receptance(
     static = poles.receptance(np.zeros(1))[rows, rows, 0].real
     direct = np.abs(np.einsum("aal->al", response))
     at = direct.argmax(axis=1)
+    # Overdamped machines move most at rest.
+    rest = np.diag(static) > direct.max(axis=1)
+    largest = np.where(rest, np.diag(static), direct.max(axis=1))
     return ToolReceptance(
-        frequency, response, static, direct.max(axis=1), frequency[at]
+        frequency, response, static, largest, np.where(rest, 0.0, frequency[at])
     )
 
 
