@@ -91,8 +91,15 @@ def weakest(result: MachineResult) -> tuple[str, str]:
         f"{a} {100 * p:.0f} % to {b} {100 * q:.0f} %"
         for (a, p), (b, q) in zip(rigid, soft, strict=True)
     ]
-    moved = rigid[0][0] == "column" and soft[0][0] in SPINDLE_JOINTS
-    return yes(moved), "; ".join(parts)
+    moved = [
+        mode + 1
+        for mode in range(3)
+        if rigid[mode][0] == "column" and soft[mode][0] in SPINDLE_JOINTS
+    ]
+    verdict = yes(1 in moved)
+    if moved and 1 not in moved:
+        verdict += f" in mode 1, holds in {' and '.join(map(str, moved))}"
+    return verdict, "; ".join(parts)
 
 
 def dominant(result: MachineResult) -> tuple[str, str]:

@@ -129,6 +129,7 @@ def machine_command(
             help="Table of the tool's motion under the loads to write (.csv).",
         ),
     ] = None,
+    cache: Cache = None,
     report: HtmlReport = None,
     json: Json = None,
     debug: Debug = False,
@@ -144,4 +145,4 @@ def machine_command(
     """
     from jointbench.station.commands.machine_command import run_machine
 
-    run_machine(model, report=report, motion=motion, json_target=json)
+    run_machine(model, report=report, motion=motion, json_target=json, cache=cache)

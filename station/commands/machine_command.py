@@ -43,6 +43,7 @@ def run_machine(
     report: Path | None,
     motion: Path | None,
     json_target: str | None,
+    cache: Path | None = None,
 ) -> MachineResult:
     """Compute a machine, show and write the result.
 
@@ -51,6 +52,7 @@ def run_machine(
         report: HTML report to write.
         motion: table of the transient to write.
         json_target: JSON to write.
+        cache: folder that keeps reduced bodies.
 
     Returns:
         The result.
@@ -59,7 +61,7 @@ def run_machine(
     settings = read_toml(model, MachineModel)
     with working("meshing, reducing bodies"):
         machine = machine_of(settings, model.parent)
-        reduced = reduce_machine(machine, settings.analysis.band)
+        reduced = reduce_machine(machine, settings.analysis.band, cache=cache)
     with working("solving glued and jointed"):
         result = analyse_machine(reduced, request_of(settings, model.parent))
     show_machine(result, json_target)

@@ -3,6 +3,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -41,6 +42,10 @@ from jointbench.analysis.structures.reduction.component import (
     point_port,
 )
 from jointbench.analysis.structures.reduction.reduce_body import reduce_body
+from jointbench.analysis.structures.reduction.reduction_cache import (
+    body_key,
+    cached_component,
+)
 from jointbench.analysis.structures.reduction.structure_bodies import (
     body_matrices,
     body_ranges,
@@ -144,12 +149,15 @@ class _Raw:
     ports: list[Port]
 
 
-def reduce_machine(machine: Machine, band_hz: float) -> ReducedMachine:
+def reduce_machine(
+    machine: Machine, band_hz: float, *, cache: Path | None = None
+) -> ReducedMachine:
     """Reduce every body of a machine once and close them over their joints.
 
     Args:
         machine: its parts.
         band_hz: highest frequency of interest [Hz].
+        cache: folder that keeps reduced bodies by content.
 
     Returns:
         The machine in reduced coordinates.
@@ -168,7 +176,7 @@ def reduce_machine(machine: Machine, band_hz: float) -> ReducedMachine:
         point_of[name] = (body, f"point {name}")
     every = (*joints, *extra)
     rigid = [_rigid_joint(raw, one) for one in every]
-    components = [reduce_body(one.matrices, one.ports, band_hz) for one in raw.values()]
+    components = [_reduced(one, band_hz, cache) for one in raw.values()]
     assembled = assemble_components(
         components, [*every, *rigid], box=_BOX, modes=_MODES
     )
@@ -188,6 +196,13 @@ def reduce_machine(machine: Machine, band_hz: float) -> ReducedMachine:
         rigid=np.array([_rigid_value(raw, one) for one in every]),
         points={name: assembled.rows(side) for name, side in point_of.items()},
         freedoms=sum(one.matrices.mass.shape[0] for one in raw.values()),
+    )
+
+
+def _reduced(raw: _Raw, band_hz: float, cache: Path | None) -> Component:
+    key = body_key(raw.matrices, raw.ports, band_hz)
+    return cached_component(
+        cache, key, lambda: reduce_body(raw.matrices, raw.ports, band_hz)
     )
 
 
