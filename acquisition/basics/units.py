@@ -61,6 +61,8 @@ _UNITS = MappingProxyType(
         "damping": {"Ns/m": 1.0, "kNs/m": 1e3, "Ns/mm": 1e3, "kg/s": 1.0},
         "rotational_stiffness": {"Nm/rad": 1.0, "kNm/rad": 1e3, "MNm/rad": 1e6}
         | {"Nm/mrad": 1e3, "Nm/urad": 1e6},
+        "coupling_stiffness": {"N/rad": 1.0, "kN/rad": 1e3, "MN/rad": 1e6},
+        "coupling_damping": {"Ns/rad": 1.0, "kNs/rad": 1e3},
         "rotational_damping": {"Nms/rad": 1.0, "kNms/rad": 1e3},
         "inertia": {"kgm2": 1.0, "gm2": 1e-3, "kgcm2": 1e-4, "kgmm2": 1e-6},
         "angular_rate": {"rad/s": 1.0, "Hz": 2 * math.pi, "rpm": 2 * math.pi / 60},

@@ -43,7 +43,7 @@ two elements alike. Every case runs in a separate process on one thread; time is
 seconds of the assembly alone, memory the peak of the process (0.2 GB of it are Python
 and its libraries). The bar is {bar:g} GB for 1,000,000 degrees of freedom. The traces
 differ in the sixth digit because the edges of scikit-fem's mesh are straight, while
-midside nodes of ours follow the distortion.
+midside nodes of the other follow the distortion.
 
 | program | element | dof | nonzeros of K | CPU s | memory [GB] | trace of K [N/m] |
 |---|---|---|---|---|---|---|

@@ -22,12 +22,12 @@ from jointbench.analysis.structures.machine.machine_parts import JointSetting, M
 from jointbench.analysis.structures.machine.machine_result import (
     AXES,
     MachineResult,
-    Motion,
+    ToolMotion,
 )
 from jointbench.analysis.structures.machine.reduce_machine import reduce_machine
-from jointbench.station.commands.machine_command import request_of
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.machine.machine_file import MachineModel, machine_of
+from jointbench.station.machine.run_machine import request_of
 
 MODEL = Path(__file__).parents[2] / "examples" / "grinder.toml"
 BED = JointSetting((8.762e9, 9.887e6, 1.615e5), (6.873e5, 6.000e5, 2.957e5))
@@ -57,7 +57,7 @@ def cases(names: list[str], plausible: Mapping[str, JointSetting]) -> dict[str, 
     }
 
 
-def around(motion: Motion, low: float, high: float) -> float:
+def around(motion: ToolMotion, low: float, high: float) -> float:
     """Return the largest displacement of any axis within a time [m]."""
     inside = (motion.time >= low) & (motion.time <= high)
     return float(np.abs(motion.displacement[:, inside]).max())

@@ -134,7 +134,7 @@ def machine_command(
     json: Json = None,
     debug: Debug = False,
 ) -> None:
-    """Predict a machine of many bodies with rigid joints and with its joints.
+    """Predict a machine: its joints rigid, and as they are.
 
     Modes [Hz], damping, strain energy by body and joint, receptance at the tool [m/N],
     what each joint costs there, the chatter limit, and the motion under loads.
@@ -143,6 +143,6 @@ def machine_command(
         jointbench machine grinder.toml --report grinder.html
         jointbench machine grinder.toml --json grinder.json --motion tool.csv
     """
-    from jointbench.station.commands.machine_command import run_machine
+    from jointbench.station.machine.run_machine import run_machine
 
     run_machine(model, report=report, motion=motion, json_target=json, cache=cache)

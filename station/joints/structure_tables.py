@@ -11,6 +11,7 @@ from jointbench.analysis.structures.matrices.parts import (
 )
 from jointbench.analysis.structures.meshes.elements import ElementKind
 from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.joints.shape_table import ShapeTable
 
 _Length = Annotated[float, with_unit("length")]
 _Point = tuple[_Length, _Length, _Length]
@@ -28,23 +29,6 @@ class MaterialTable(StrictTable):
     density: Annotated[float, with_unit("density"), Field(gt=0)]
     poisson_ratio: Annotated[float, Field(gt=-1, lt=0.5)] = 0.3
     loss_factor: Annotated[float, Field(ge=0, lt=1)] = 0.0
-
-
-class ShapeTable(StrictTable):
-    """A box or a cylinder, added to a body or cut from it."""
-
-    origin: _Point = (0.0, 0.0, 0.0)
-    box: _Point | None = None
-    radius: Annotated[float, with_unit("length"), Field(gt=0)] | None = None
-    axis: _Point | None = None
-    cut: bool = False
-
-    @model_validator(mode="after")
-    def _one_shape(self) -> "ShapeTable":
-        cylinder = self.radius is not None and self.axis is not None
-        if cylinder == (self.box is not None):
-            raise ValueError("give either box, or radius and axis of a cylinder")
-        return self
 
 
 class SolidTable(StrictTable):

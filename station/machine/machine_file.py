@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field, model_validator
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.machine.loads import (
     HarmonicLoad,
@@ -46,16 +47,18 @@ from jointbench.station.joints.structure_tables import (
     SolidTable,
     SupportTable,
 )
-from jointbench.station.machine.machine_tables import (
-    AnalysisTable,
+from jointbench.station.machine.machine_part_tables import (
     BeamTable,
-    ChatterTable,
-    LoadTable,
     MachineJointTable,
     MassTable,
-    PointTable,
     RigidTable,
     SpringTable,
+)
+from jointbench.station.machine.machine_tables import (
+    AnalysisTable,
+    ChatterTable,
+    LoadTable,
+    PointTable,
     TransientTable,
 )
 
@@ -82,11 +85,12 @@ class MachineModel(StrictTable):
 
     @model_validator(mode="after")
     def _names_exist(self) -> "MachineModel":
-        materials = {**self.bodies, **self.beams}
-        for name, body in materials.items():
-            if body.material is not None and body.material not in self.materials:
+        wanted = {name: one.material for name, one in self.bodies.items()}
+        wanted |= {name: one.material for name, one in self.beams.items()}
+        for name, material in wanted.items():
+            if material is not None and material not in self.materials:
                 raise ValueError(
-                    f"body {name!r} is of {body.material!r}; materials are "
+                    f"body {name!r} is of {material!r}; materials are "
                     f"{list(self.materials)}"
                 )
         if TOOL not in self.points:
@@ -208,7 +212,7 @@ def _beam(name: str, one: BeamTable, model: MachineModel) -> BeamBody:
 def _spring(name: str, one: SpringTable) -> MachineSpring:
     patch = None if one.patch is None else patch_of(one.patch)
     sides = tuple(
-        Attachment(one.position, one.radius, face, patch if face else None)
+        Attachment(one.position, one.radius, face or None, patch if face else None)
         for face in one.face
     )
     return MachineSpring(
@@ -219,4 +223,13 @@ def _spring(name: str, one: SpringTable) -> MachineSpring:
         stiffness=(*one.stiffness, *one.rotational_stiffness),
         damping=(*one.damping, *one.rotational_damping),
         deviations=(one.stiffness_sd, one.damping_sd),
+        matrices=_matrices(one),
     )
+
+
+def _matrices(one: SpringTable) -> tuple[FloatArray, FloatArray] | None:
+    if one.stiffness_matrix is None:
+        return None
+    none = np.zeros((6, 6))
+    damping = none if one.damping_matrix is None else np.array(one.damping_matrix)
+    return np.array(one.stiffness_matrix), damping

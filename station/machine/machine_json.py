@@ -9,7 +9,7 @@ from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.structures.machine.machine_result import (
     AXES,
     MachineResult,
-    Motion,
+    ToolMotion,
     VariantModes,
     VariantResult,
 )
@@ -117,7 +117,7 @@ def _modes(modes: VariantModes) -> list[dict[str, Any]]:
     ]
 
 
-def _motion(motion: Motion) -> dict[str, Any]:
+def _motion(motion: ToolMotion) -> dict[str, Any]:
     return {
         "largest_m": _by_axis(motion.largest),
         "largest_at_s": _by_axis(motion.largest_at),

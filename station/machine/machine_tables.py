@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tables of a machine model file: what each holds, in which units."""
+"""The tables of a machine on loads, the cut, and what is computed."""
 
 from pathlib import Path
 from typing import Annotated
@@ -8,114 +8,12 @@ from pydantic import Field, model_validator
 
 from jointbench.analysis.structures.machine.loads import Begin
 from jointbench.station.files.toml_file import StrictTable, with_unit
-from jointbench.station.joints.structure_tables import JointTable, PatchTable
 
 _Length = Annotated[float, with_unit("length")]
-_Size = Annotated[float, with_unit("length"), Field(gt=0)]
 _Point = tuple[_Length, _Length, _Length]
 _Direction = tuple[float, float, float]
-_Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
-_Damping = Annotated[float, with_unit("damping"), Field(ge=0)]
-_Turning = Annotated[float, with_unit("rotational_stiffness"), Field(ge=0)]
-_TurnDamping = Annotated[float, with_unit("rotational_damping"), Field(ge=0)]
-_Deviation = Annotated[float, with_unit("ratio"), Field(ge=0, le=3)]
 _Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
 _Time = Annotated[float, with_unit("time"), Field(gt=0)]
-_Any3 = tuple[float, float, float]
-
-
-class MachineJointTable(JointTable):
-    """A joint over an area: totals, normal and two tangents.
-
-    The deviations are relative standard deviations of all directions.
-    """
-
-    stiffness: tuple[_Stiffness, _Stiffness, _Stiffness] | None = None
-    damping: tuple[_Damping, _Damping, _Damping] = (0.0, 0.0, 0.0)
-    stiffness_sd: _Deviation = 0.0
-    damping_sd: _Deviation = 0.0
-
-    @model_validator(mode="after")
-    def _has_values(self) -> "MachineJointTable":
-        if (self.stiffness is None) != self.glued:
-            raise ValueError("give its stiffness, or glued = true, and not both")
-        return self
-
-
-class SectionTable(StrictTable):
-    """A stretch of a beam with a solid or hollow round section."""
-
-    length: _Size
-    diameter: _Size
-    bore: Annotated[float, with_unit("length"), Field(ge=0)] = 0.0
-    elements: Annotated[int, Field(gt=0, le=500)] = 8
-
-
-class BeamTable(StrictTable):
-    """A spindle or screw: sections one after the other along an axis."""
-
-    begin: _Point
-    direction: _Direction
-    material: str
-    sections: tuple[SectionTable, ...] = Field(min_length=1)
-
-
-class RigidTable(StrictTable):
-    """A rigid body: mass, and inertia about its centre along x, y, z."""
-
-    position: _Point
-    mass: Annotated[float, with_unit("mass"), Field(gt=0)]
-    inertia: tuple[
-        Annotated[float, with_unit("inertia"), Field(gt=0)],
-        Annotated[float, with_unit("inertia"), Field(gt=0)],
-        Annotated[float, with_unit("inertia"), Field(gt=0)],
-    ]
-
-
-class SpringTable(StrictTable):
-    """A guide, bearing or screw: springs and dampers between pieces of two bodies.
-
-    Directions are x, y, z, or the axis and two directions across it. Directions without
-    a value are free.
-    """
-
-    between: tuple[str, str]
-    position: _Point
-    radius: _Size | None = None
-    face: tuple[str | None, str | None] = (None, None)
-    patch: PatchTable | None = None
-    axis: _Direction | None = None
-    stiffness: tuple[_Stiffness, _Stiffness, _Stiffness] = (0.0, 0.0, 0.0)
-    damping: tuple[_Damping, _Damping, _Damping] = (0.0, 0.0, 0.0)
-    rotational_stiffness: tuple[_Turning, _Turning, _Turning] = (0.0, 0.0, 0.0)
-    rotational_damping: tuple[_TurnDamping, _TurnDamping, _TurnDamping] = (
-        0.0,
-        0.0,
-        0.0,
-    )
-    stiffness_sd: _Deviation = 0.0
-    damping_sd: _Deviation = 0.0
-
-    @model_validator(mode="after")
-    def _holds(self) -> "SpringTable":
-        if not any(self.stiffness) and not any(self.rotational_stiffness):
-            raise ValueError("a spring without any stiffness holds nothing")
-        return self
-
-
-class MassTable(StrictTable):
-    """A small mass on a body: at a point, or on a whole face."""
-
-    body: str
-    mass: Annotated[float, with_unit("mass"), Field(gt=0)]
-    position: _Point | None = None
-    face: str | None = None
-
-    @model_validator(mode="after")
-    def _one_place(self) -> "MassTable":
-        if (self.position is None) == (self.face is None):
-            raise ValueError("give either its position, or a face")
-        return self
 
 
 class PointTable(StrictTable):

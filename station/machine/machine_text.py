@@ -14,7 +14,7 @@ from jointbench.analysis.structures.machine.machine_result import (
 )
 
 _NANO, _MICRO = 1e9, 1e6
-OVERDAMPED = "overdamped"
+_OVERDAMPED = "overdamped"
 # Shapes with a smaller MAC have no partner.
 _SIMILAR = 0.5
 
@@ -46,7 +46,7 @@ def mode_table(result: MachineResult) -> TextTable:
             (
                 str(at + 1),
                 f"{frequency:.4g}{_interval(result.frequency_interval, at)}",
-                damping_text(soft, at),
+                _damping_text(soft, at),
                 _weakest(soft, at),
                 *_partner(rigid, partner, float(mac)),
             )
@@ -78,7 +78,7 @@ def glued_table(result: MachineResult) -> TextTable:
         (
             str(at + 1),
             f"{frequency:.4g}",
-            damping_text(modes, at),
+            _damping_text(modes, at),
             _weakest(modes, at),
             modes.motion.text(at),
         )
@@ -184,7 +184,7 @@ def motion_table(result: MachineResult) -> TextTable | None:
 
 def sentences(result: MachineResult) -> list[str]:
     """Return what the tables do not show: overdamped modes, chatter, size."""
-    found = [damping_sentence(result.jointed.modes)]
+    found = [_damping_sentence(result.jointed.modes)]
     for word, one in (("glued", result.glued), ("jointed", result.jointed)):
         if one.chatter is None:
             continue
@@ -204,7 +204,7 @@ def sentences(result: MachineResult) -> list[str]:
     return found
 
 
-def damping_sentence(modes: VariantModes) -> str:
+def _damping_sentence(modes: VariantModes) -> str:
     """Return how many poles do not oscillate, and the lowest that do."""
     if not modes.overdamped:
         return "All modes oscillate."
@@ -225,10 +225,10 @@ def damping_sentence(modes: VariantModes) -> str:
     return text
 
 
-def damping_text(modes: VariantModes, at: int) -> str:
+def _damping_text(modes: VariantModes, at: int) -> str:
     """Return the damping of a mode in per cent, or that it is overdamped."""
     if np.isnan(modes.damping_ratio[at]):
-        return f"{OVERDAMPED} ({modes.first_order[at]:.2g} x critical)"
+        return f"{_OVERDAMPED} ({modes.first_order[at]:.2g} x critical)"
     return f"{100 * modes.damping_ratio[at]:.3g}"
 
 

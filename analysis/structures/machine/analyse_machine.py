@@ -23,7 +23,7 @@ from jointbench.analysis.structures.machine.loads import Begin, Load
 from jointbench.analysis.structures.machine.machine_result import (
     JointCost,
     MachineResult,
-    Motion,
+    ToolMotion,
     ToolReceptance,
     VariantModes,
     VariantResult,
@@ -184,7 +184,7 @@ def _variant_result(
             step=span.step,
             begin=span.begin,
         )
-        motion = Motion(time, moved[_rows(lean, request.tool)])
+        motion = ToolMotion(time, moved[_rows(lean, request.tool)])
     return VariantResult(
         _modes(lean, variant, state, poles, request.modes),
         poles,
@@ -234,7 +234,7 @@ def _matching_ratios(
     if not swings.size:
         return np.full(count, np.nan)
     likeness = modal_assurance(
-        np.eye(poles.shapes.shape[0], count).astype(complex), poles.shapes[:, swings]
+        np.eye(poles.shapes.shape[0], count), poles.shapes[:, swings]
     )
     change = poles.natural_frequency[swings] / frequency_of(eigenvalue)[:, None]
     near = (change < _SAME_FREQUENCY) & (change > 1.0 / _SAME_FREQUENCY)

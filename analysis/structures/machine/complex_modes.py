@@ -170,5 +170,9 @@ def solve_poles(
     kept = kept[np.argsort(np.abs(pole[kept]), kind="stable")]
     none = np.zeros((outputs.shape[0], inputs.shape[0]))
     return PoleSet(
-        pole[kept], outputs @ shape[:, kept], left[kept], shape[:, kept], none
+        pole[kept],
+        np.asarray(outputs @ shape[:, kept], complex),
+        np.asarray(left[kept], complex),
+        np.asarray(shape[:, kept], complex),
+        none,
     )

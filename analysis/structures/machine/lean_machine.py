@@ -6,7 +6,7 @@ uncertainty: the modes of all variants and their static response at the points s
 basis of a few hundred motions, in which every evaluation takes milliseconds.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -214,12 +214,3 @@ def _basis(columns: FloatArray, still: int) -> FloatArray:
     vector, value, _ = np.linalg.svd(rest, full_matrices=False)
     kept = vector[:, value > _DEPENDENT * value[0]]
     return np.asarray(np.concatenate([np.eye(columns.shape[0], still), kept], axis=1))
-
-
-def unit_rows(
-    lean: LeanMachine, point: str, directions: Sequence[Sequence[float]]
-) -> FloatArray:
-    """Return the motion of a point along directions of any length, shape (n, r)."""
-    axes = np.asarray(directions, float)
-    axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
-    return np.asarray(axes @ lean.points[point])

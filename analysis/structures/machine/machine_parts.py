@@ -4,7 +4,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from jointbench.acquisition.basics.errors import UsageError
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.beam_body import BeamBody
 from jointbench.analysis.structures.matrices.parts import GROUND
 from jointbench.analysis.structures.matrices.structure import Structure
@@ -12,6 +15,8 @@ from jointbench.analysis.structures.matrices.surface_motion import Attachment
 
 SPRING_DIRECTIONS = ("x", "y", "z", "turn_x", "turn_y", "turn_z")
 """Of a spring: displacement along, and rotation about, its axis and two others."""
+# Largest asymmetry of a symmetric matrix, as a share of its largest value.
+_ASYMMETRY = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +53,7 @@ class JointSetting:
     damping_sd: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MachineSpring:
     """Springs and dampers between pieces of two bodies, or of a body and the ground.
 
@@ -60,6 +65,8 @@ class MachineSpring:
         stiffness: of `SPRING_DIRECTIONS` [N/m, N m/rad].
         damping: [N s/m, N m s/rad].
         deviations: relative standard deviations of stiffness and damping [-].
+        matrices: coupled stiffness and damping in place of single values, each of shape
+            (6, 6); None uses the single values.
     """
 
     name: str
@@ -69,6 +76,22 @@ class MachineSpring:
     stiffness: tuple[float, ...]
     damping: tuple[float, ...]
     deviations: tuple[float, float] = (0.0, 0.0)
+    matrices: tuple[FloatArray, FloatArray] | None = None
+
+    def __post_init__(self) -> None:
+        """Check that coupled matrices are symmetric and give no energy."""
+        for word, matrix in zip(
+            ("stiffness", "damping"), self.matrices or (), strict=False
+        ):
+            scale = float(np.abs(matrix).max())
+            if np.abs(matrix - matrix.T).max() > _ASYMMETRY * scale:
+                raise BadData(f"the {word} matrix of {self.name!r} is not symmetric")
+            least = float(np.linalg.eigvalsh(matrix)[0])
+            if least < -_ASYMMETRY * scale:
+                raise BadData(
+                    f"the {word} matrix of {self.name!r} has the eigenvalue {least:.3g}"
+                    "; springs and dampers must not give energy"
+                )
 
 
 @dataclass(frozen=True, slots=True)

@@ -84,7 +84,7 @@ class JointCost:
 
     Attributes:
         name: of the joint.
-        static: part of the static compliance that its own springs give way [-], shape
+        static: part of the static compliance that is in its own springs [-], shape
             (3,).
         static_gain: static compliance if this joint were rigid, over the present one
             [-], shape (3,).
@@ -102,7 +102,7 @@ class JointCost:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Motion:
+class ToolMotion:
     """The motion of the tool under the loads.
 
     Attributes:
@@ -150,7 +150,7 @@ class VariantResult:
     poles: PoleSet
     tool: ToolReceptance
     chatter: StabilityLobes | None = None
-    motion: Motion | None = None
+    motion: ToolMotion | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -58,6 +58,8 @@ _ORDER = 3
 # Stiffness of a rigid joint over that of the bodies at it.
 _RIGID = 1e2
 _RIGID_MARK = "rigid"
+# Ports of coupled springs: roots of the stiffness matrix, then of the damping matrix.
+_COUPLED, _MATRICES = " coupled", ("stiffness", "damping")
 _MODES = 30
 _BOX = (1e5, 1e11)
 
@@ -282,10 +284,22 @@ def _spring_joint(
             continue
         body, rows = _piece_rows(machine, spring, number)
         port = f"{spring.name}/{number + 1}"
-        raw[body].ports.append(point_port(port, rotated(rows, spring.axis)))
+        plain = rotated(rows, spring.axis)
+        raw[body].ports.append(point_port(port, plain))
+        if spring.matrices is not None:
+            port += _COUPLED
+            roots = np.concatenate([_root(one) for one in spring.matrices])
+            raw[body].ports.append(point_port(port, Sparse(Sparse(roots) @ plain)))
         sides.append((body, port))
     second = sides[1] if len(sides) > 1 else None
-    return PortJoint(spring.name, sides[0], second, SPRING_DIRECTIONS)
+    directions = SPRING_DIRECTIONS if spring.matrices is None else _MATRICES
+    return PortJoint(spring.name, sides[0], second, directions)
+
+
+def _root(matrix: FloatArray) -> FloatArray:
+    """Return R with R'R = matrix, shape (6, 6)."""
+    value, vector = np.linalg.eigh(matrix)
+    return np.asarray(np.sqrt(np.maximum(value, 0.0))[:, None] * vector.T)
 
 
 def _piece_rows(
@@ -340,7 +354,10 @@ def _within(structure: Structure, at: int, rows: Sparse) -> tuple[str, Sparse]:
 
 
 def _values(machine: Machine, name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return stiffness, damping and both deviations of a joint or spring."""
+    """Return stiffness, damping and both deviations of a joint or spring.
+
+    Coupled matrices are multiplied by one.
+    """
     if name in machine.settings:
         one = machine.settings[name]
         stiffness, damping = np.array(one.stiffness), np.array(one.damping)
@@ -348,6 +365,8 @@ def _values(machine: Machine, name: str) -> tuple[FloatArray, FloatArray, FloatA
     else:
         spring = next(s for s in machine.springs if s.name == name)
         stiffness, damping = np.array(spring.stiffness), np.array(spring.damping)
+        if spring.matrices is not None:
+            stiffness, damping = np.array([1.0, 0.0]), np.array([0.0, 1.0])
         deviations = spring.deviations
     return stiffness, damping, np.outer(deviations, np.ones(stiffness.size))
 
@@ -359,9 +378,7 @@ def _rigid_joint(raw: dict[str, _Raw], joint: PortJoint) -> PortJoint:
     the basis cannot move apart would stiffen the bodies.
     """
     sides: list[Side] = []
-    for side in (joint.first, joint.second):
-        if side is None:
-            continue
+    for side in _plain_sides(joint):
         port = _port(raw, side)
         rows = Sparse(_commensurate(port).T @ port.rows)
         name = f"{side[1]} {_RIGID_MARK}"
@@ -369,6 +386,12 @@ def _rigid_joint(raw: dict[str, _Raw], joint: PortJoint) -> PortJoint:
         sides.append((side[0], name))
     second = sides[1] if len(sides) > 1 else None
     return PortJoint(f"{joint.name} {_RIGID_MARK}", sides[0], second, (_RIGID_MARK,))
+
+
+def _plain_sides(joint: PortJoint) -> list[Side]:
+    """Return the ports of a joint whose rows are motions."""
+    sides = [joint.first] if joint.second is None else [joint.first, joint.second]
+    return [(body, port.removesuffix(_COUPLED)) for body, port in sides]
 
 
 def _port(raw: dict[str, _Raw], side: Side) -> Port:
@@ -391,9 +414,7 @@ def _rigid_value(raw: dict[str, _Raw], joint: PortJoint) -> float:
     nodes, for a piece that moves as a whole that of its nodes together.
     """
     found = [1.0]
-    for side in (joint.first, joint.second):
-        if side is None:
-            continue
+    for side in _plain_sides(joint):
         rows = _port(raw, side).rows[: _port(raw, side).rows.shape[0] // 2]
         own = raw[side[0]].matrices.stiffness.diagonal()
         weight = np.asarray(rows.multiply(rows).sum(axis=0)).ravel()

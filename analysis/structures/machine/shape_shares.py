@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.structures.machine.lean_machine import LeanMachine, Variant
 
 _AXES = "xyz"
@@ -126,7 +126,9 @@ def motion_shares(lean: LeanMachine, motions: FloatArray) -> MotionShares:
     return MotionShares(names, share / np.where(whole > 0.0, whole, 1.0))
 
 
-def modal_assurance(first: FloatArray, second: FloatArray) -> FloatArray:
+def modal_assurance(
+    first: FloatArray | ComplexArray, second: FloatArray | ComplexArray
+) -> FloatArray:
     """Return the MAC with the mass as weight; both in coordinates of unit mass.
 
     Args:

@@ -70,7 +70,7 @@ def transient(
     _require_inputs(poles, loads)
     harmonic = [one for one in loads if isinstance(one, HarmonicLoad)]
     tables = [one for one in loads if isinstance(one, TableLoad)]
-    time = step * np.arange(count)
+    time = np.asarray(step * np.arange(count), np.float64)
     motion = _steady_motion(poles, harmonic, time)
     forces = np.zeros((poles.inputs.shape[1], count))
     for one in tables:

@@ -18,7 +18,7 @@ from jointbench.acquisition.basics.compiled import compiled
 Sparse = sparse.csr_array
 """Sparse matrices, row by row."""
 
-_Index = NDArray[np.int32] | NDArray[np.int64]
+_Index = NDArray[np.int32 | np.int64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

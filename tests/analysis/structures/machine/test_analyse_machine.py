@@ -185,7 +185,7 @@ def test_intervals_cover_the_nominal_machine(result: MachineResult) -> None:
 
 
 def test_strong_dampers_make_modes_overdamped(reduced: ReducedMachine) -> None:
-    """Real poles are counted, and modes without a partner are said."""
+    """Real poles are counted, and modes without a partner have no ratio."""
     strong = replace(reduced, damping=3e3 * reduced.damping)
     found = analyse_machine(
         replace(strong, deviations=np.zeros_like(strong.deviations)),
@@ -221,3 +221,27 @@ def test_names_that_there_are_not(machine: Machine, reduced: ReducedMachine) -> 
     wrong = replace(machine.springs[0], between=("spindel", "housing"))
     with pytest.raises(UsageError, match="it must join"):
         replace(machine, springs=(wrong,))
+
+
+def test_coupled_matrices_are_springs_when_they_are_diagonal(
+    machine: Machine, result: MachineResult
+) -> None:
+    """The same machine with its front bearing as two matrices of six rows."""
+    front = machine.springs[0]
+    coupled = replace(
+        front, matrices=(np.diag(front.stiffness), np.diag(front.damping))
+    )
+    other = replace(machine, springs=(coupled, *machine.springs[1:]))
+    plain = replace(REQUEST, samples=20, span=None, cut=None)
+    found = analyse_machine(reduce_machine(other, BAND), plain)
+    for one, same in ((found.glued, result.glued), (found.jointed, result.jointed)):
+        assert one.modes.natural_frequency == pytest.approx(
+            same.modes.natural_frequency, rel=1e-6
+        )
+        assert one.modes.energy.share == pytest.approx(
+            same.modes.energy.share, abs=1e-6
+        )
+    ratio = found.jointed.modes.damping_ratio
+    assert ratio == pytest.approx(result.jointed.modes.damping_ratio, rel=1e-5)
+    with pytest.raises(BadData, match="is not symmetric"):
+        replace(coupled, matrices=(np.eye(6) + np.eye(6, k=1), np.eye(6)))

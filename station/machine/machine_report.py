@@ -11,10 +11,11 @@ from jointbench.acquisition.records.session import software_version
 from jointbench.analysis.structures.machine.machine_result import (
     AXES,
     MachineResult,
-    Motion,
+    ToolMotion,
     VariantResult,
 )
 from jointbench.analysis.structures.machine.reduce_machine import ReducedMachine
+from jointbench.station.machine.machine_shapes import shape_plots
 from jointbench.station.machine.machine_text import (
     TextTable,
     cost_table,
@@ -25,7 +26,6 @@ from jointbench.station.machine.machine_text import (
     shape_table,
     tool_table,
 )
-from jointbench.station.report.machine_shapes import shape_plots
 from jointbench.station.screen.figures import Figure, axis, figure
 from jointbench.station.screen.page import write_report
 from jointbench.station.screen.page_parts import (
@@ -233,12 +233,12 @@ def _motions(result: MachineResult) -> list[Item]:
     return found
 
 
-def _motion_line(motion: Motion, at: int, name: str, color: str) -> Trace:
+def _motion_line(motion: ToolMotion, at: int, name: str, color: str) -> Trace:
     time, value = thin(motion.time, motion.displacement[at], _MOST_POINTS)
     return line(time, 1e6 * value, name, color=color, width=1)
 
 
-def _begin_plot(soft: Motion, rigid: Motion) -> Item:
+def _begin_plot(soft: ToolMotion, rigid: ToolMotion) -> Item:
     """Return the first part of the axis that moves most."""
     at = int(np.argmax(soft.largest))
     count = min(soft.time.size, 400)

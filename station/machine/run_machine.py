@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.structures.machine.analyse_machine import (
     Cut,
     MachineRequest,
@@ -56,9 +57,14 @@ def run_machine(
 
     Returns:
         The result.
+
+    Raises:
+        UsageError: a motion is requested of a model without a transient.
     """
     check_outputs([model], [json_target, report, motion])
     settings = read_toml(model, MachineModel)
+    if motion is not None and settings.transient is None:
+        raise UsageError("--motion needs a table [transient] in the model")
     with working("meshing, reducing bodies"):
         machine = machine_of(settings, model.parent)
         reduced = reduce_machine(machine, settings.analysis.band, cache=cache)
@@ -111,16 +117,10 @@ def show_machine(result: MachineResult, json_target: str | None = None) -> None:
 
 
 def write_motion(path: Path, result: MachineResult) -> None:
-    """Write time and displacement of the tool, glued and jointed, as a table.
-
-    Raises:
-        UsageError: the model has no transient.
-    """
-    from jointbench.acquisition.basics.errors import UsageError
-
+    """Write time and displacement of the tool, glued and jointed, as a table."""
     soft, rigid = result.jointed.motion, result.glued.motion
     if soft is None or rigid is None:
-        raise UsageError("--motion needs a table [transient] in the model")
+        return
     heads = [f"{word}_{axis} [m]" for word in ("glued", "jointed") for axis in AXES]
     values = np.concatenate([soft.time[None], rigid.displacement, soft.displacement])
     lines = [",".join(f"{one:.9g}" for one in row) for row in values.T.tolist()]
@@ -130,6 +130,6 @@ def write_motion(path: Path, result: MachineResult) -> None:
 def _write_report(
     path: Path, name: str, reduced: ReducedMachine, result: MachineResult
 ) -> None:
-    from jointbench.station.report.machine_report import write_machine_report
+    from jointbench.station.machine.machine_report import write_machine_report
 
     write_machine_report(path, name, reduced, result)
