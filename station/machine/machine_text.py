@@ -190,7 +190,9 @@ def sentences(result: MachineResult) -> list[str]:
             continue
         text = f"Chatter, {word}: "
         if not np.isfinite(one.chatter.limit):
-            found.append(text + "the real part of the receptance is never negative")
+            found.append(
+                text + "the real part of the receptance is not negative in the band"
+            )
             continue
         text += f"stable at every speed up to a width of {_width(one.chatter.limit)}"
         if word == "jointed" and result.limit_interval is not None:
