@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One FRF of a foreign file, checked: whole, finite, ascending, in SI units."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -97,6 +97,9 @@ def checked_frf(
 ) -> FrfFunction:
     """Return an FRF in SI units once it is known to be one.
 
+    A line at 0 Hz without a number is left out: programs that derive accelerance from
+    receptance, or divide by the frequency, have none there, and no mode needs it.
+
     Args:
         path: of the file.
         raw: as read.
@@ -112,6 +115,7 @@ def checked_frf(
         BadData: a value is not finite, or an FRF has no imaginary part.
     """
     _require_lines(path, raw)
+    raw, provenance = _without_zero(raw, provenance)
     quantity, factor = unit
     response: ComplexArray = np.asarray(raw.response, np.complex128) * factor
     noise = {} if raw.noise is None else raw.noise
@@ -183,6 +187,21 @@ def _require_lines(path: Path, raw: RawFrf) -> None:
             f"{at + 1}; frequencies must be numbers from 0 on that ascend: export one "
             "record each"
         )
+
+
+def _without_zero(raw: RawFrf, provenance: Provenance) -> tuple[RawFrf, Provenance]:
+    """Return an FRF without its line at 0 Hz where that is no number."""
+    at_zero = raw.frequency[0] == 0.0 and raw.frequency.size > 1
+    if not at_zero or np.isfinite(raw.response[0]):
+        return raw, provenance
+    noise = {
+        name: None if values is None else values[1:]
+        for name, values in (raw.noise or {}).items()
+    }
+    whole = replace(
+        raw, frequency=raw.frequency[1:], response=raw.response[1:], noise=noise
+    )
+    return whole, (*provenance, step("leave_out_line", frequency=0.0))
 
 
 def _require_values(path: Path, raw: RawFrf, name: str, values: NDArray[Any]) -> None:

@@ -65,6 +65,14 @@ def names_frfs(columns: str | None) -> bool:
     return FREQUENCY in roles or COMPLEX in roles
 
 
+def names_frequency(columns: str | None) -> bool:
+    """Return whether --columns names arrays, rather than the unit alone."""
+    return columns is not None and any(
+        column.role == FREQUENCY or column.label or column.spacing
+        for column in parse_frf_columns(columns)
+    )
+
+
 def parse_frf_columns(columns: str) -> tuple[FrfColumn, ...]:
     """Read what the user typed after ``--columns`` for a file of FRFs.
 

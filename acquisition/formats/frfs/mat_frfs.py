@@ -3,7 +3,8 @@
 
 A struct of Testlab has ``x_values`` (start, increment, number), ``y_values`` (values,
 quantity with the label of its unit) and ``function_record`` (names of the channels).
-Plain variables are named by ``--columns 'frequency.f:Hz,frf.H:m/s^2/N'``.
+A file that SDynPy saved names its functions itself; see `nodal_arrays`. Plain variables
+are named by ``--columns 'frequency.f:Hz,frf.H:m/s^2/N'``.
 """
 
 from collections.abc import Iterator, Mapping
@@ -28,15 +29,15 @@ from jointbench.acquisition.formats.frfs.frf_arrays import (
     no_units_words,
 )
 from jointbench.acquisition.formats.frfs.frf_columns import (
-    FREQUENCY,
     FrfColumn,
+    names_frequency,
     names_frfs,
-    parse_frf_columns,
     stated_unit,
 )
 from jointbench.acquisition.formats.frfs.frf_format import FrfFormat, FrfOptions
 from jointbench.acquisition.formats.frfs.mat5_structs import read_mat5
 from jointbench.acquisition.formats.frfs.mat73_structs import read_mat73
+from jointbench.acquisition.formats.frfs.nodal_arrays import nodal_arrays, nodal_frfs
 from jointbench.acquisition.formats.tables import read_head
 from jointbench.acquisition.records.frf_functions import FrfFunction
 from jointbench.acquisition.records.provenance import Provenance
@@ -56,9 +57,7 @@ def recognise_mat_frfs(path: Path, options: FrfOptions) -> bool:
             return False
         if names_frfs(options.columns):
             return True
-        return options.columns is None and any(
-            np.iscomplexobj(_values(one)) for _, one in _testlab(_read(path))
-        )
+        return options.columns is None and _names_its_frfs(_read(path))
     except BadData:
         return False
 
@@ -79,10 +78,10 @@ def read_mat_frfs(path: Path, options: FrfOptions) -> tuple[FrfFunction, ...]:
     """
     content = _read(path)
     structs = list(_testlab(content))
-    plain = options.columns is not None and any(
-        column.role == FREQUENCY or column.label or column.spacing
-        for column in parse_frf_columns(options.columns)
-    )
+    plain = names_frequency(options.columns)
+    nodal = None if plain or structs else nodal_arrays(content)
+    if nodal is not None:
+        return nodal_frfs(path, nodal, options, "MAT of SDynPy")
     if plain or not structs:
         arrays = {n: v for n, v in content.items() if isinstance(v, np.ndarray)}
         if not plain:
@@ -103,6 +102,14 @@ def read_mat_frfs(path: Path, options: FrfOptions) -> tuple[FrfFunction, ...]:
         )
     require_count(path, len(found), sum(one.frequency.size for one in found))
     return tuple(found)
+
+
+def _names_its_frfs(content: Struct) -> bool:
+    """Return whether variables are complex functions with their axis and labels."""
+    if any(np.iscomplexobj(_values(one)) for _, one in _testlab(content)):
+        return True
+    nodal = nodal_arrays(content)
+    return nodal is not None and np.iscomplexobj(nodal.response)
 
 
 def _read(path: Path) -> dict[str, Any]:

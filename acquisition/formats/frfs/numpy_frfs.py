@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """FRFs from NumPy files: .npz archives of named arrays, and complex .npy arrays.
 
+An archive that SDynPy saved names its functions itself; see `nodal_arrays`.
+
 An archive is a zip: a few bytes may claim gigabytes, and an array may hold pickled
 objects, which run code. So sizes are compared with what is there before an array is
 made, and objects are refused.
@@ -30,8 +32,9 @@ from jointbench.acquisition.formats.frfs.frf_arrays import (
     frfs_of_arrays,
     no_units_words,
 )
-from jointbench.acquisition.formats.frfs.frf_columns import names_frfs
+from jointbench.acquisition.formats.frfs.frf_columns import names_frequency, names_frfs
 from jointbench.acquisition.formats.frfs.frf_format import FrfFormat, FrfOptions
+from jointbench.acquisition.formats.frfs.nodal_arrays import nodal_arrays, nodal_frfs
 from jointbench.acquisition.formats.tables import read_head
 from jointbench.acquisition.records.frf_functions import FrfFunction
 
@@ -57,11 +60,12 @@ def recognise_numpy_frfs(path: Path, options: FrfOptions) -> bool:
     if head.startswith(_ZIP):
         return path.suffix.lower() == ".npz"
     # A type of complex numbers in the header: hits and heights are real.
-    return head.startswith(_NPY) and (b"<c" in head or b">c" in head)
+    kinds = (b"<c", b">c", b"|O") if names_frfs(options.columns) else (b"<c", b">c")
+    return head.startswith(_NPY) and any(kind in head for kind in kinds)
 
 
 def read_numpy_frfs(path: Path, options: FrfOptions) -> tuple[FrfFunction, ...]:
-    """Read the FRFs of a NumPy file; see `frfs_of_arrays`.
+    """Read the FRFs of a NumPy file; see `frfs_of_arrays` and `nodal_frfs`.
 
     Raises:
         UnitError: `columns` is missing; the message lists the arrays.
@@ -72,6 +76,9 @@ def read_numpy_frfs(path: Path, options: FrfOptions) -> tuple[FrfFunction, ...]:
     file_size(path)
     archive = read_head(path, 4) == _ZIP
     arrays = _archive(path) if archive else {"frf": _single(path)}
+    nodal = None if names_frequency(options.columns) else nodal_arrays(arrays)
+    if nodal is not None:
+        return nodal_frfs(path, nodal, options, "npz of SDynPy")
     if not names_frfs(options.columns):
         raise UnitError(no_units_words(path, list(arrays)))
     return frfs_of_arrays(path, arrays, options, "npz" if archive else "npy")

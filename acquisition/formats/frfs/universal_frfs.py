@@ -29,6 +29,7 @@ from jointbench.acquisition.formats.frfs.checked_frf import (
     require_count,
     unit_of,
 )
+from jointbench.acquisition.formats.frfs.degrees_of_freedom import degree_of_freedom
 from jointbench.acquisition.formats.frfs.frf_columns import FrfColumn, stated_unit
 from jointbench.acquisition.formats.frfs.frf_format import FrfFormat, FrfOptions
 from jointbench.acquisition.formats.frfs.frf_units import is_frf_unit
@@ -42,8 +43,6 @@ from jointbench.acquisition.records.provenance import Provenance
 TIME_RESPONSE, FRF, COHERENCE, GENERAL = 1, 4, 6, 0
 _EVEN = 1
 _FREQUENCY = 18
-_DIRECTIONS = {1: "+x", -1: "-x", 2: "+y", -2: "-y", 3: "+z", -3: "-z"}
-_ROTATIONS = {4: "+rx", -4: "-rx", 5: "+ry", -5: "-ry", 6: "+rz", -6: "-rz"}
 _OWN = "jointbench"
 _NOISE = re.compile(r"(?P<name>variance|innovation_noise) of ")
 _DETAIL = re.compile(r"(\w+)=(\S+)")
@@ -78,7 +77,10 @@ def read_universal_frfs(path: Path, options: FrfOptions) -> tuple[FrfFunction, .
     done = origin(path, "universal file, data set 58", options.columns)
     try:
         noise = _noise_sets(sets)
-        return tuple(_function(path, n, one, noise, given, done) for n, one in found)
+        return tuple(
+            _function(path, where, one, noise, (given, options.averages, done))
+            for where, one in found
+        )
     except (ArithmeticError, KeyError, TypeError, ValueError) as error:
         if isinstance(error, BadData):
             raise
@@ -96,9 +98,10 @@ def _function(
     number: int,
     one: Set,
     noise: Mapping[tuple[object, ...], Mapping[str, FloatArray]],
-    given: FrfColumn | None,
-    done: Provenance,
+    stated: tuple[FrfColumn | None, int, Provenance],
 ) -> FrfFunction:
+    """Return one FRF; `stated` is its unit and averages by the user, and its origin."""
+    given, averages, done = stated
     output, point = _labels(one)
     where = f"FRF {number}" + (f" ({shown(f'{output} / {point}')})" if output else "")
     detail, values = _details(one), np.asarray(one["data"])
@@ -120,7 +123,7 @@ def _function(
         path,
         raw,
         unit_of(path, where, _unit(one), given),
-        averages=int(detail.get("averages", 0)),
+        averages=int(detail.get("averages", averages)),
         decay_rate=detail.get("decay", 0.0),
         usable_band=None if band[0] is None or band[1] is None else (band[0], band[1]),
         provenance=done,
@@ -167,11 +170,9 @@ def _labels(one: Set) -> tuple[str, str]:
 
 
 def _degree(one: Set, side: str) -> str:
-    """Return node and direction, ``"12+z"``; empty without a node."""
-    node, way = int(one.get(f"{side}_node") or 0), int(one.get(f"{side}_dir") or 0)
-    if node == 0:
-        return ""
-    return f"{node}{(_DIRECTIONS | _ROTATIONS).get(way, '')}"
+    """Return node and direction as one label; empty without a node."""
+    node, way = (int(one.get(f"{side}_{part}") or 0) for part in ("node", "dir"))
+    return degree_of_freedom(node, way)
 
 
 def _unit(one: Set) -> str:

@@ -33,6 +33,10 @@ from jointbench.acquisition.formats.samples.sample_format import (
     SampleFormat,
     SampleOptions,
 )
+from jointbench.acquisition.formats.samples.universal_repairs import (
+    unpadded,
+    with_latin_units,
+)
 from jointbench.acquisition.formats.stated_channels import StatedChannel, recording_of
 from jointbench.acquisition.records.recordings import Quantity, Recording
 
@@ -137,7 +141,8 @@ def _names(sets: Sequence[dict[str, Any]]) -> list[str]:
     ]
 
 
-def _require_sane_headers(path: Path) -> None:
+def _sane_bytes(path: Path) -> tuple[bytes, list[int]]:
+    """Return a file, and where its data sets begin, once its headers are checked."""
     data = read_bytes(path, limit=_MOST_BYTES)
     binary = _BINARY_SET.search(data) is not None
     require_room(path, (_BINARY_NEEDED if binary else _TEXT_NEEDED) * len(data))
@@ -153,6 +158,7 @@ def _require_sane_headers(path: Path) -> None:
         raise HostileFile(f"{named(path)} has {len(edges) // 2} data sets")
     for begin, end in zip(edges[::2], edges[1::2], strict=True):
         _require_sane_set(path, data[begin:end].split(b"\n", _HEADER))
+    return data, edges[::2]
 
 
 def _require_sane_set(path: Path, lines: Sequence[bytes]) -> None:
@@ -212,19 +218,27 @@ def read_universal_sets(path: Path, *, kinds: Sequence[int]) -> list[dict[str, A
     """
     import pyuff
 
-    _require_sane_headers(path)
+    data, edges = _sane_bytes(path)
+    binary = _BINARY_SET.search(data) is not None
     try:
-        file = pyuff.UFF(str(path))
-        return [
-            dict(file.read_sets(number))
-            for number, kind in enumerate(map(int, file.get_set_types()))
-            if kind in kinds
-        ]
+        with unpadded(path, data, binary=binary) as source:
+            file = pyuff.UFF(str(source))
+            found = [
+                (edge, dict(file.read_sets(number)))
+                for number, (kind, edge) in enumerate(
+                    zip(map(int, file.get_set_types()), edges, strict=False)
+                )
+                if kind in kinds
+            ]
     except Exception as error:  # it raises whatever the content makes it raise
         raise FormatError(
             f"{named(path)} cannot be read as a universal file ({shown(error)}); use "
             "another copy"
         ) from error
+    return [
+        with_latin_units(one, data[edge : edge + _LONGEST_HEADER])
+        for edge, one in found
+    ]
 
 
 def _read_format(path: Path, options: SampleOptions) -> tuple[Recording, ...]:

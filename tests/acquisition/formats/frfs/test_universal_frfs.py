@@ -171,3 +171,31 @@ def test_a_file_of_another_kind_is_not_recognised(tmp_path):
     assert read(tmp_path / "a.uff", b"words\n" + data_set()) == ()
     with pytest.raises(FormatError):
         read(tmp_path / "b.npz", b"PK\x03\x04" + bytes(100), "frf:m/N@1Hz")
+
+
+def test_lines_padded_with_spaces_are_numbers_and_no_more(tmp_path):
+    """SDynPy fills the last line of an odd number of values up to 80 characters."""
+    values = np.append(VALUES, 9.0 - 1.0j)
+    text = data_set(values).split(b"\n")
+    text[-3] = text[-3].ljust(80)
+    found = read(tmp_path / "a.uff", b"\n".join(text) * 2)
+    assert len(found) == 2
+    for one in found:
+        np.testing.assert_allclose(one.response, values, rtol=1e-10)
+
+
+def test_a_unit_in_latin_1_is_read(tmp_path):
+    """A superscript two is one byte there, which is no UTF-8."""
+    data = data_set(units=("(1/N)*(m/s2)", "NONE")).replace(b"m/s2)", b"m/s\xb2)")
+    (one,) = read(tmp_path / "a.uff", data)
+    assert one.quantity is Quantity.ACCELERATION
+
+
+def test_averages_given_with_coherence_reach_an_frf_of_a_universal_file(tmp_path):
+    """The file states coherence, the user the number of averages."""
+    share = np.linspace(0.5, 1.0, 8) + 0j
+    path = tmp_path / "a.uff"
+    path.write_bytes(data_set() + data_set(share, function=6, kind=REAL_SINGLE))
+    (one,) = read_frfs(path, FrfOptions(averages=5))
+    assert one.averages == 5
+    assert one.coherence is not None
