@@ -241,9 +241,11 @@ def assemble_components(
         own = np.ix_(place, place)
         stiffness[own], loss[own] = body.stiffness, body.loss
         damping[own] = body.damping
+    held = np.zeros((still, still))
     for spring in springs:
         rows, columns = _relative(bodies, places, spring)
         own = np.ix_(columns, columns)
+        held += _strain(_square_root(spring.stiffness) @ rows[0], columns, still)
         stiffness[own] += rows[0].T @ spring.stiffness @ rows[0]
         damping[own] += rows[0].T @ spring.damping @ rows[0]
     names = tuple(name for joint in joints for name in joint.parameter_names)
@@ -258,6 +260,7 @@ def assemble_components(
         box=box,
         modes=modes,
         names=names,
+        fixed_strain=held if springs else None,
     )
     model = replace(model, guess=_guess(model))
     return Assembled(bodies, tuple(joints), tuple(springs), places, model)
@@ -396,6 +399,12 @@ def _root(rows: FloatArray) -> FloatArray:
     if rows.shape[0] < size:
         return np.concatenate([rows, np.zeros((size - rows.shape[0], size))])
     return np.asarray(np.linalg.qr(rows, mode="r"))
+
+
+def _square_root(matrix: FloatArray) -> FloatArray:
+    """Return R with R'R = matrix, positive semi-definite."""
+    value, vector = np.linalg.eigh(matrix)
+    return np.asarray(np.sqrt(np.maximum(value, 0.0))[:, None] * vector.T)
 
 
 def _strain(rows: FloatArray, columns: IntArray, still: int) -> FloatArray:

@@ -2,6 +2,7 @@
 """Reduce a structure by its interfaces, for a whole box of joint stiffnesses."""
 
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from jointbench.analysis.structures.reduction.box_reduction import (
     trial_points,
     weak_points,
 )
+from jointbench.analysis.structures.reduction.component import Component, Port
 from jointbench.analysis.structures.reduction.enrichment import enrichment, widened
 from jointbench.analysis.structures.reduction.full_modes import shift_of
 from jointbench.analysis.structures.reduction.reduce_body import (
@@ -30,9 +32,14 @@ from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     solve_reduced,
 )
+from jointbench.analysis.structures.reduction.reduction_cache import (
+    body_key,
+    cached_component,
+)
 from jointbench.analysis.structures.reduction.sparse_factor import Solver
 from jointbench.analysis.structures.reduction.structure_bodies import (
     LOADS,
+    BodyRange,
     body_matrices,
     body_ranges,
     structure_ports,
@@ -67,6 +74,7 @@ def reduce_machine(
     order: int = _MACHINE_ORDER,
     loads: FloatArray | None = None,
     solver: Solver = Solver.AUTO,
+    cache: Path | None = None,
 ) -> Assembled:
     """Reduce every body once, and close the machine over its joints.
 
@@ -81,18 +89,33 @@ def reduce_machine(
         loads: rows of `sensor_rows` where forces act or motion is read, shape
             (n_points, n_free).
         solver: of the factors.
+        cache: folder of reduced bodies, by content; None keeps none.
 
     Returns:
         The assembly; `Assembled.bound` bounds its errors.
     """
     ports, joints = structure_ports(structure, order, loads)
     bodies = [
-        reduce_body(
-            body_matrices(structure, one), ports[one.name], band_hz, solver=solver
-        )
-        for one in body_ranges(structure)
+        _one_body(structure, where, ports[where.name], band_hz, solver, cache)
+        for where in body_ranges(structure)
     ]
     return assemble_components(bodies, joints, box=box, modes=modes)
+
+
+def _one_body(
+    structure: Structure,
+    where: BodyRange,
+    ports: list[Port],
+    band_hz: float,
+    solver: Solver,
+    cache: Path | None,
+) -> Component:
+    """Reduce one body of a machine, or read it from the cache."""
+    body = body_matrices(structure, where)
+    key = body_key(body, ports, band_hz) if cache is not None else ""
+    return cached_component(
+        cache, key, lambda: reduce_body(body, ports, band_hz, solver=solver)
+    )
 
 
 def reduce_structure(

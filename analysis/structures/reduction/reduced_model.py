@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.reduction.dense_modes import lowest_dense_modes
 from jointbench.analysis.structures.reduction.full_modes import frequency_of
@@ -34,6 +34,8 @@ class ReducedModel:
         box: smallest and largest valid stiffness [N/m].
         modes: number of accurate modes, rigid ones included.
         names: of the parameters.
+        fixed_strain: of springs without parameters by the same motions, relative to the
+            trace, shape (n_motions, n_motions) [-]; None is none.
         guess: motions near the lowest modes, shape (r, k): a start of their solution.
     """
 
@@ -48,10 +50,12 @@ class ReducedModel:
     modes: int
     names: tuple[str, ...]
     guess: FloatArray | None = None
+    fixed_strain: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "stiffness", "loss", "damping", "strains", "guess")
+        freeze(self, "fixed_strain")
 
     @property
     def size(self) -> int:
@@ -163,7 +167,7 @@ def solve_reduced(
     """
     values = np.asarray(stiffness, float)
     matrix = model.with_joints(values)
-    turn, rigid = unstrained(model.strains, values > 0)
+    turn, rigid = _unstrained(model, values > 0)
     wanted = min(count or model.modes, model.size)
     moved = turn.shape[0]
     matrix[:moved] = turn.T @ matrix[:moved]
@@ -178,6 +182,14 @@ def solve_reduced(
         )
     vector[:moved] = turn @ vector[:moved]
     return ReducedModes(value, frequency_of(value), vector, min(rigid, wanted))
+
+
+def _unstrained(model: ReducedModel, stiff: BoolArray) -> tuple[FloatArray, int]:
+    """Rotate the rigid motions of the bodies: those that nothing strains first."""
+    if model.fixed_strain is None:
+        return unstrained(model.strains, stiff)
+    strains = np.concatenate([model.strains, model.fixed_strain[None]])
+    return unstrained(strains, np.append(stiff, True))
 
 
 def _turned(

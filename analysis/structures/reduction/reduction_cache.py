@@ -111,7 +111,7 @@ def _write(folder: Path | None, key: str, arrays: Mapping[str, NDArray[Any]]) ->
         return
     folder.mkdir(parents=True, exist_ok=True)
     part = folder / f"{key}.part.npz"
-    np.savez(part, **arrays)
+    np.savez(part, allow_pickle=False, **arrays)
     os.replace(part, folder / f"{key}.npz")  # noqa: PTH105 - replaces on Windows too
 
 
@@ -205,8 +205,9 @@ def _model_arrays(model: ReducedModel) -> Arrays:
         zip(model.spread.columns, model.spread.blocks, strict=True)
     ):
         found |= {f"spread_columns{at}": columns, f"spread{at}": block}
-    if model.guess is not None:
-        found["guess"] = model.guess
+    for name in ("guess", "fixed_strain"):
+        if getattr(model, name) is not None:
+            found[name] = getattr(model, name)
     return found
 
 
@@ -244,4 +245,5 @@ def _model(arrays: Arrays) -> ReducedModel:
         modes=facts["modes"],
         names=tuple(facts["names"]),
         guess=arrays.get("guess"),
+        fixed_strain=arrays.get("fixed_strain"),
     )

@@ -107,9 +107,9 @@ class ResidualNorm:
             own = np.s_[at : at + count]
             moved = motion[joint.columns]
             moments = joint.moments @ moved
-            for body, columns, sign in joint.loads:
+            for number, columns, sign in joint.loads:
                 one = ties[own, None, :] * moments
-                tractions[body][columns] += sign * one.reshape(-1, motion.shape[1])
+                tractions[number][columns] += sign * one.reshape(-1, motion.shape[1])
             left = np.sum(np.abs(joint.rest @ moved) ** 2, axis=1)
             rest += _rest_bound(left, ties[own], stiffness[own], joint.compliance)
             at += count
@@ -172,4 +172,4 @@ def _rest_bound(
     soft = compliance / (1.0 + float(stiffness.min(initial=np.inf)) * compliance)
     with np.errstate(divide="ignore", invalid="ignore"):
         own = np.where(square > 0, square / stiffness[:, None], 0.0).sum(axis=0)
-    return np.sqrt(np.minimum(soft * square.sum(axis=0), own))
+    return np.asarray(np.sqrt(np.minimum(soft * square.sum(axis=0), own)))
