@@ -119,7 +119,8 @@ def machine_command(
         Path,
         typer.Argument(
             metavar="MODEL",
-            help="Machine (TOML): bodies, [joints] or [springs], supports, [points].",
+            help="Machine (TOML): bodies with [joints] or [springs], or measured "
+            "bodies with [links].",
         ),
     ],
     motion: Annotated[
@@ -143,6 +144,6 @@ def machine_command(
         jointbench machine grinder.toml --report grinder.html
         jointbench machine grinder.toml --json grinder.json --motion tool.csv
     """
-    from jointbench.station.machine.run_machine import run_machine
+    from jointbench.station.machine.run_machine import run_any_machine
 
-    run_machine(model, report=report, motion=motion, json_target=json, cache=cache)
+    run_any_machine(model, report=report, motion=motion, json_target=json, cache=cache)

@@ -19,6 +19,7 @@ from jointbench.analysis.structures.machine.reduce_machine import (
 )
 from jointbench.station.files.output_paths import check_outputs, write_text
 from jointbench.station.files.toml_file import read_toml
+from jointbench.station.files.toml_text import load_toml
 from jointbench.station.machine.machine_file import (
     TOOL,
     MachineModel,
@@ -77,6 +78,45 @@ def run_machine(
     if report is not None:
         _write_report(report, model.name, reduced, result)
     return result
+
+
+def run_any_machine(
+    model: Path,
+    *,
+    report: Path | None,
+    motion: Path | None,
+    json_target: str | None,
+    cache: Path | None = None,
+) -> None:
+    """Compute a machine of modelled bodies, or of bodies measured alone.
+
+    Args:
+        model: the file; a table [measured] means measured bodies.
+        report: HTML report to write.
+        motion: table of the transient to write.
+        json_target: JSON to write.
+        cache: folder that keeps reduced bodies.
+
+    Raises:
+        UsageError: a motion is requested of measured bodies.
+    """
+    if not _describes_measured(model):
+        run_machine(
+            model, report=report, motion=motion, json_target=json_target, cache=cache
+        )
+        return
+    if motion is not None:
+        raise UsageError("--motion needs modelled bodies; these are measured")
+    from jointbench.station.machine.run_measured import run_measured
+
+    run_measured(model, report=report, json_target=json_target)
+
+
+def _describes_measured(path: Path) -> bool:
+    try:
+        return "measured" in load_toml(path)
+    except (OSError, ValueError):
+        return False  # the reader of the model names what is wrong
 
 
 def request_of(settings: MachineModel, folder: Path) -> MachineRequest:
