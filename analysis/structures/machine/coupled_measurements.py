@@ -162,6 +162,10 @@ def _modes_of(
     )
     found = whole.complex_modes(values)
     frequency = found.natural_frequency
-    inside = (frequency >= band[0]) & (frequency <= band[1]) & ~found.overdamped
+    inside = (
+        (frequency >= band[0])
+        & (frequency <= band[1])
+        & np.logical_not(found.overdamped)
+    )
     order = np.flatnonzero(inside)[np.argsort(frequency[inside])]
     return np.stack([frequency[order], found.damping_ratio[order]])

@@ -9,13 +9,13 @@ import pytest
 from jointbench.station.main import app
 from jointbench.station.screen.exit_codes import EXIT_BAD_DATA, EXIT_USAGE, exit_code
 
-LINES = np.arange(20.0, 400.0, 0.25)
+LINES = np.arange(20.0, 400.0, 0.5)
 MASSES, SPRING, RATIO, LINK = (2.0, 3.0), 4e5, 0.01, 8e5
 COLUMNS = "frequency.f:Hz,frf.H:m/N,variance.V:(m/N)^2"
 MODEL = f"""
 band = ["30 Hz", "390 Hz"]
 points = ["pair:1", "mass:1"]
-draws = 20
+draws = 10
 
 [measured.pair]
 frfs = ["pair.npz"]
