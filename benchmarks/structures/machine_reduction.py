@@ -28,7 +28,7 @@ from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduce import reduce_machine
 from jointbench.analysis.structures.reduction.structure_bodies import LOADS
 
-BAND = 1200.0
+BAND = 1800.0
 MODES = 20
 BOX = (1e5, 1e11)
 ROUNDING = 1e-7

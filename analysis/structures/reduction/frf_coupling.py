@@ -114,11 +114,11 @@ def couple_frfs(
     kept = [_place(blocks, start, one) for one in points]
     gap = ties @ whole @ ties.T + soft[:, :, None] * np.eye(len(links))
     # What a change of any FRF of a body does: left' dH right, with one factor each.
-    pull = np.linalg.solve(gap, ties @ whole)
+    moved = np.linalg.solve(gap, ties @ whole)
     left = np.eye(size)[kept] - (whole @ ties.T)[:, kept] @ np.linalg.solve(
         gap, np.broadcast_to(ties, (frequency.size, *ties.shape))
     )
-    right = np.eye(size)[:, kept] - (ties.T @ pull)[:, :, kept]
+    right = np.eye(size)[:, kept] - (ties.T @ moved)[:, :, kept]
     coupled = left @ whole[:, :, kept]
     spread = np.abs(left) ** 2 @ variance @ np.abs(right) ** 2
     labels = tuple(f"{name}:{number}" for name, number in points)

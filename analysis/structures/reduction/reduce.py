@@ -21,6 +21,7 @@ from jointbench.analysis.structures.reduction.box_reduction import (
     weak_points,
 )
 from jointbench.analysis.structures.reduction.component import Component, Port
+from jointbench.analysis.structures.reduction.compressed import compressed
 from jointbench.analysis.structures.reduction.enrichment import enrichment, widened
 from jointbench.analysis.structures.reduction.full_modes import shift_of
 from jointbench.analysis.structures.reduction.reduce_body import (
@@ -52,7 +53,7 @@ MACHINE_BOX = (1e5, 1e11)
 """Range of total stiffness of the joints of a machine, printed values included."""
 
 # Order of the polynomials of the traction patterns: of a machine, and to begin with.
-_MACHINE_ORDER = 3
+_MACHINE_ORDER = 5
 _FIRST_ORDER = 4
 # Enrichments before the reduction gives up.
 _MOST_ROUNDS = 10
@@ -78,7 +79,8 @@ def reduce_machine(
 ) -> Assembled:
     """Reduce every body once, and close the machine over its joints.
 
-    A body is factored, reduced and let go before the next one.
+    A body is factored, reduced and freed before the next one. The band should hold the
+    modes that are wanted.
 
     Args:
         structure: bodies and joints.
@@ -99,7 +101,8 @@ def reduce_machine(
         _one_body(structure, where, ports[where.name], band_hz, solver, cache)
         for where in body_ranges(structure)
     ]
-    return assemble_components(bodies, joints, box=box, modes=modes)
+    whole = assemble_components(bodies, joints, box=box, modes=modes)
+    return compressed(whole, (LOADS,))
 
 
 def _one_body(

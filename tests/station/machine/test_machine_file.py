@@ -43,7 +43,7 @@ def test_the_model_on_the_page_runs(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "machine.md").read_text(encoding="utf-8")
     path = tmp_path / "page.toml"
     # A wider hole needs fewer elements.
-    text = text.replace('radius = "40 mm"', 'radius = "90 mm"')
+    text = text.replace('radius = "40 mm"', 'radius = "80 mm"')
     path.write_text(text.split("```toml\n")[1].split("```")[0], encoding="utf-8")
     model = read_toml(path, MachineModel)
     machine = machine_of(model, tmp_path)
