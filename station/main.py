@@ -24,7 +24,11 @@ from jointbench.station.commands.file_commands import (
     recover_command,
     verify_command,
 )
-from jointbench.station.commands.joint_commands import gap_command, identify_command
+from jointbench.station.commands.joint_commands import (
+    gap_command,
+    identify_command,
+    machine_command,
+)
 from jointbench.station.commands.profile_command import profile_command
 from jointbench.station.commands.recorded_data_commands import (
     import_command,
@@ -72,6 +76,7 @@ COMMANDS: Mapping[str, Mapping[str, Callable[..., object]]] = {
     "Joints and machines": {
         "identify": identify_command,
         "contact": contact_command,
+        "machine": machine_command,
         "gap": gap_command,
     },
     "Files": {

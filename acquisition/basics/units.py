@@ -4,6 +4,7 @@
 Inside, everything is SI and plain floats; a unit is never guessed.
 """
 
+import math
 import re
 import unicodedata
 from types import MappingProxyType
@@ -58,6 +59,14 @@ _UNITS = MappingProxyType(
         | {"kN/mm": 1e6, "N/um": 1e6, "kN/um": 1e9, "N/nm": 1e9}
         | {"lbf/in": _POUND_FORCE / _INCH},
         "damping": {"Ns/m": 1.0, "kNs/m": 1e3, "Ns/mm": 1e3, "kg/s": 1.0},
+        "rotational_stiffness": {"Nm/rad": 1.0, "kNm/rad": 1e3, "MNm/rad": 1e6}
+        | {"Nm/mrad": 1e3, "Nm/urad": 1e6},
+        "coupling_stiffness": {"N/rad": 1.0, "kN/rad": 1e3, "MN/rad": 1e6},
+        "coupling_damping": {"Ns/rad": 1.0, "kNs/rad": 1e3},
+        "rotational_damping": {"Nms/rad": 1.0, "kNms/rad": 1e3},
+        "inertia": {"kgm2": 1.0, "gm2": 1e-3, "kgcm2": 1e-4, "kgmm2": 1e-6},
+        "angular_rate": {"rad/s": 1.0, "Hz": 2 * math.pi, "rpm": 2 * math.pi / 60},
+        "angle": {"rad": 1.0, "deg": math.pi / 180},
         "voltage": {"V": 1.0, "mV": 1e-3, "uV": 1e-6, "kV": 1e3},
         "ratio": {"": 1.0, "1": 1.0, "%": 1e-2, "ppm": 1e-6},
     }

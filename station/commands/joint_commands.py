@@ -120,3 +120,38 @@ def gap_command(
         report=report,
         json_target=json,
     )
+
+
+def machine_command(
+    model: Annotated[
+        Path,
+        typer.Argument(
+            metavar="MODEL",
+            help="Machine (TOML): bodies with [joints] or [springs], or measured "
+            "bodies with [links].",
+        ),
+    ],
+    motion: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PATH",
+            help="Table of the tool's motion under the loads to write (.csv).",
+        ),
+    ] = None,
+    cache: Cache = None,
+    report: HtmlReport = None,
+    json: Json = None,
+    debug: Debug = False,
+) -> None:
+    """Predict a machine: its joints rigid, and as they are.
+
+    Modes [Hz], damping, strain energy by body and joint, receptance at the tool [m/N],
+    what each joint costs there, the chatter limit, and the motion under loads.
+
+    Examples:
+        jointbench machine grinder.toml --report grinder.html
+        jointbench machine grinder.toml --json grinder.json --motion tool.csv
+    """
+    from jointbench.station.machine.run_machine import run_any_machine
+
+    run_any_machine(model, report=report, motion=motion, json_target=json, cache=cache)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from pydantic import Field, model_validator
 
+from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.matrices.element_assembly import Material
 from jointbench.analysis.structures.matrices.mesh_files import (
     matrix_body,
@@ -28,8 +29,10 @@ from jointbench.analysis.structures.matrices.structure import (
 )
 from jointbench.analysis.structures.meshes.mesh import Mesh, box_mesh
 from jointbench.analysis.structures.meshes.polygons import Patch, disc, rectangle
+from jointbench.analysis.structures.meshes.solid_shapes import SolidShape, mesh_shapes
 from jointbench.analysis.structures.reduction.mounted_sensors import MountedSensor
 from jointbench.station.files.toml_file import StrictTable
+from jointbench.station.joints.shape_table import ShapeTable
 from jointbench.station.joints.structure_contact import TheoryTable, joint_of
 from jointbench.station.joints.structure_tables import (
     IdentifyTable,
@@ -76,9 +79,12 @@ class StructureModel(StrictTable):
 
 def structure_of(model: StructureModel, folder: Path) -> Structure:
     """Mesh and assemble a model file; files in it are relative to `folder`."""
-    bodies = [_body(model, name, folder) for name in model.bodies]
+    bodies = [
+        meshed_body(name, table, model.materials, folder)
+        for name, table in model.bodies.items()
+    ]
     joints = [
-        Joint(name, one.between, tuple(map(_patch, one.patches)), one.face, one.glued)
+        Joint(name, one.between, tuple(map(patch_of, one.patches)), one.face, one.glued)
         for name, one in model.joints.items()
     ]
     supports = [Support(s.body, s.face, s.kind, s.stiffness) for s in model.supports]
@@ -98,33 +104,50 @@ def sensors_of(tables: dict[str, SensorTable]) -> dict[str, MountedSensor]:
     }
 
 
-def _body(model: StructureModel, name: str, folder: Path) -> MeshedBody:
-    table = model.bodies[name]
+def meshed_body(
+    name: str, table: SolidTable, materials: dict[str, MaterialTable], folder: Path
+) -> MeshedBody:
+    """Mesh a body, and assemble it unless files hold its matrices."""
     mesh = _mesh(table, folder)
     if table.stiffness is not None and table.mass is not None:
         stiffness = read_matrix(folder / table.stiffness)
         mass = read_matrix(folder / table.mass)
         loss = 0.0
         if table.material is not None:
-            loss = model.materials[table.material].loss_factor
+            loss = materials[table.material].loss_factor
         return matrix_body(name, mesh, stiffness, mass, loss_factor=loss)
-    material = model.materials[table.material or ""]
-    solid = Material(
-        material.youngs_modulus,
-        material.poisson_ratio,
-        material.density,
-        material.loss_factor,
+    material = material_of(materials[table.material or ""])
+    try:
+        return solid_body(name, mesh, material)
+    except BadData as error:
+        raise BadData(f"body {name!r}: {error}") from error
+
+
+def material_of(table: MaterialTable) -> Material:
+    """Return the material of a table."""
+    return Material(
+        table.youngs_modulus, table.poisson_ratio, table.density, table.loss_factor
     )
-    return solid_body(name, mesh, solid)
 
 
 def _mesh(table: SolidTable, folder: Path) -> Mesh:
     if table.box is not None and table.cells is not None:
         return box_mesh(table.box, table.cells, origin=table.origin, kind=table.element)
+    if table.shapes and table.element_size is not None:
+        return mesh_shapes([_shape(one) for one in table.shapes], table.element_size)
     return read_mesh(folder / (table.mesh or Path()), unit=table.mesh_unit)
 
 
-def _patch(table: PatchTable) -> Patch:
+def _shape(table: ShapeTable) -> SolidShape:
+    if table.box is not None:
+        return SolidShape(table.origin, table.box, None, table.cut)
+    return SolidShape(
+        table.origin, table.axis or (0.0, 0.0, 0.0), table.radius, table.cut
+    )
+
+
+def patch_of(table: PatchTable) -> Patch:
+    """Return the part of a plane of a table."""
     if table.rectangle is not None:
         return rectangle(*table.rectangle)
     return disc(table.centre or (0.0, 0.0), table.radius or 0.0)

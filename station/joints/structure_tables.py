@@ -11,6 +11,7 @@ from jointbench.analysis.structures.matrices.parts import (
 )
 from jointbench.analysis.structures.meshes.elements import ElementKind
 from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.joints.shape_table import ShapeTable
 
 _Length = Annotated[float, with_unit("length")]
 _Point = tuple[_Length, _Length, _Length]
@@ -31,13 +32,18 @@ class MaterialTable(StrictTable):
 
 
 class SolidTable(StrictTable):
-    """A box with cells, or a mesh file; K and M files replace the assembly."""
+    """A box with cells, shapes to mesh, or a mesh file.
+
+    K and M files replace the assembly.
+    """
 
     material: str | None = None
     box: _Point | None = None
     cells: tuple[int, int, int] | None = None
     origin: _Point = (0.0, 0.0, 0.0)
     element: ElementKind = ElementKind.HEX20
+    shapes: tuple[ShapeTable, ...] = ()
+    element_size: Annotated[float, with_unit("length"), Field(gt=0)] | None = None
     mesh: Path | None = None
     mesh_unit: _Length = 1.0
     stiffness: Path | None = None
@@ -45,10 +51,15 @@ class SolidTable(StrictTable):
 
     @model_validator(mode="after")
     def _one_geometry(self) -> "SolidTable":
-        if (self.box is None) == (self.mesh is None) or (
-            self.box is not None and self.cells is None
-        ):
-            raise ValueError("give either box and cells, or mesh")
+        forms = [
+            self.box is not None and self.cells is not None,
+            bool(self.shapes) and self.element_size is not None,
+            self.mesh is not None,
+        ]
+        if forms.count(True) != 1:
+            raise ValueError(
+                "give either box and cells, or shapes and element_size, or mesh"
+            )
         if (self.stiffness is None) != (self.mass is None):
             raise ValueError("give both stiffness and mass files, or neither")
         if self.stiffness is None and self.material is None:

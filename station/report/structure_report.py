@@ -17,6 +17,7 @@ from jointbench.analysis.structures.meshes.elements import ELEMENTS
 from jointbench.analysis.structures.meshes.mesh import outer_faces
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
+    motion_of,
     solve_reduced,
 )
 from jointbench.station.screen.figures import Figure, axis, figure
@@ -169,7 +170,7 @@ def _shapes(
     items: list[Item] = []
     for at in elastic:
         motion = np.zeros(3 * structure.nodes.shape[0])
-        motion[structure.free] = model.basis @ found.shapes[:, at]
+        motion[structure.free] = motion_of(model, found.shapes[:, at : at + 1])[:, 0]
         frequency = float(found.natural_frequency[at])
         plot = shape_figure(structure, motion.reshape(-1, 3))
         items.append(

@@ -184,7 +184,7 @@ def _frequencies_alone(
     count = measured.natural_frequency.size
     _require_enough(count, elastic.size)
     shapes = found.shapes[:, elastic[:count]]
-    flex = np.array([np.einsum("rp,rp->p", shapes, g @ shapes) for g in model.spread])
+    flex = model.spread.diagonal(shapes)
     level = found.eigenvalue[elastic[:count]]
     return _log_rows(level, flex.T, measured, values)
 

@@ -72,6 +72,37 @@ class ContactPoints:
         return float(self.weight.sum())
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class JointFace:
+    """The relative motion of the two sides of a joint.
+
+    Attributes:
+        motion: at the quadrature points, from one value per node, shape (n_points,
+            n_nodes) [-].
+        points: with their areas.
+        frame: rows normal, first and second tangent, shape (3, 3).
+    """
+
+    motion: Sparse
+    points: ContactPoints
+    frame: FloatArray
+
+    def springs(self) -> tuple[Sparse, ...]:
+        """Return G of the three directions over all degrees of freedom."""
+        return spread_springs(self.motion, self.points, self.frame)
+
+    def rows(self) -> Sparse:
+        """Return the weighted relative motion, direction by direction.
+
+        Returns:
+            R with G_d = R_d' R_d, shape (3 n_points, 3 n_nodes) [-].
+        """
+        share = np.sqrt(self.points.weight / self.points.area)
+        motion = Sparse(sparse.diags_array(share) @ self.motion)
+        rows = [sparse.kron(motion, unit[None], format="csr") for unit in self.frame]
+        return Sparse(sparse.vstack(rows, format="csr"))
+
+
 def face_plane(mesh: Mesh, face: str) -> Plane:
     """Return the plane of a face named by axis and side, for example ``"z+"``.
 

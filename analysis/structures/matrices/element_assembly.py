@@ -4,22 +4,28 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import sparse
 
 from jointbench.acquisition.basics.array_checks import require_positive
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.matrices.block_pattern import (
+    Sparse,
+    add_elements,
+    node_pattern,
+    scalar_matrix,
+    vector_matrix,
+)
 from jointbench.analysis.structures.meshes.elements import shape_functions, volume_rule
 from jointbench.analysis.structures.meshes.mesh import Mesh
 
-Sparse = sparse.csr_array
-"""Sparse matrices, row by row."""
+__all__ = ["Material", "Sparse", "assemble"]
 
 # Elements that agree to this share of their size share one matrix.
 _SAME_ELEMENT = 1e-9
 # Least Jacobian of a valid element, as a share of its mean.
 _NO_VOLUME = 1e-6
-_CHUNK = 2000
+# Different elements that are integrated at a time: about 100 MB for hex20.
+_CHUNK = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,28 +74,21 @@ def assemble(mesh: Mesh, material: Material) -> tuple[Sparse, Sparse]:
     Source:
         Zienkiewicz and Taylor, The Finite Element Method, vol. 1 (2000), ch. 6 and 9.
     """
+    pattern = node_pattern(mesh.cells, mesh.nodes.shape[0])
+    stiffness = np.zeros(9 * pattern.pairs)
+    mass = np.zeros(pattern.pairs)
     form, kind_of = _distinct_elements(mesh)
-    stiffness, mass = _element_matrices(mesh, form, material)
-    n_nodes = mesh.cells.shape[1]
-    rows = np.repeat(mesh.cells, n_nodes, axis=1).ravel()
-    columns = np.tile(mesh.cells, (1, n_nodes)).ravel()
-    total = mesh.nodes.shape[0]
-    key, place = np.unique(rows * total + columns, return_inverse=True)
-    columns_of = (key % total).astype(np.int32)
-    starts = np.searchsorted(key, np.arange(total + 1) * total).astype(np.int32)
-    blocks = np.empty((key.size, 3, 3))
-    pairs = stiffness.reshape(-1, n_nodes, 3, n_nodes, 3)
-    for a in range(3):
-        for b in range(3):
-            weight = pairs[:, :, a, :, b][kind_of].ravel()
-            blocks[:, a, b] = np.bincount(place, weight, key.size)
-    scalar = np.bincount(place, mass[kind_of].ravel(), key.size)
-    diagonal = scalar[:, None, None] * np.eye(3)
-    shape = (3 * total, 3 * total)
-    k = sparse.bsr_array((blocks, columns_of, starts), shape=shape).tocsr()
-    m = sparse.bsr_array((diagonal, columns_of, starts), shape=shape).tocsr()
-    m.eliminate_zeros()
-    return k, m
+    # Elements of one shape are neighbours in this order, a chunk holds whole shapes.
+    order = np.argsort(kind_of, kind="stable")
+    edges = np.searchsorted(kind_of[order], np.arange(form.size + 1))
+    for at in range(0, form.size, _CHUNK):
+        end = min(at + _CHUNK, form.size)
+        k, m = _chunk_matrices(mesh, form[at:end], material)
+        chosen = order[edges[at] : edges[end]]
+        cells, kinds = mesh.cells[chosen], kind_of[chosen] - at
+        add_elements(stiffness, pattern, cells, k, kinds)
+        add_elements(mass, pattern, cells, m, kinds)
+    return vector_matrix(stiffness, pattern), scalar_matrix(mass, pattern)
 
 
 def _distinct_elements(mesh: Mesh) -> tuple[IntArray, IntArray]:
@@ -102,18 +101,6 @@ def _distinct_elements(mesh: Mesh) -> tuple[IntArray, IntArray]:
         rounded, axis=0, return_index=True, return_inverse=True
     )
     return first.astype(np.int64), inverse.ravel()
-
-
-def _element_matrices(
-    mesh: Mesh, chosen: IntArray, material: Material
-) -> tuple[FloatArray, FloatArray]:
-    """Return K and the scalar mass of chosen elements, chunk by chunk."""
-    parts = [
-        _chunk_matrices(mesh, chosen[at : at + _CHUNK], material)
-        for at in range(0, chosen.size, _CHUNK)
-    ]
-    stiffness, mass = zip(*parts, strict=True)
-    return np.concatenate(stiffness), np.concatenate(mass)
 
 
 def _chunk_matrices(

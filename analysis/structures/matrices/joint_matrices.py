@@ -11,14 +11,13 @@ from scipy import sparse
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.contact_interface import (
-    ContactPoints,
+    JointFace,
     Plane,
     contact_points,
     face_plane,
     interpolation,
     relative_motion,
     shared_planes,
-    spread_springs,
 )
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.parts import (
@@ -61,22 +60,21 @@ _GLUE = 3e5
 
 def joint_matrices(
     build: Assembly, joints: Sequence[Joint], free: IntArray, shape: tuple[int, ...]
-) -> tuple[list[Sparse], Sparse, list[float], list[FloatArray]]:
-    """Return G of all directions, the glue, and area and frame of each joint."""
+) -> tuple[list[Sparse], Sparse, list[JointFace]]:
+    """Return G of all directions, the glue, and the face of each joint not glued."""
     spread: list[Sparse] = []
     glue = Sparse((free.size, free.size))
-    area, frames = [], []
+    faces = []
     for joint in joints:
-        springs, points, frame = _joint_springs(build, joint)
-        kept = [kept_rows(one, free) for one in springs]
+        face = _joint_face(build, joint)
+        kept = [kept_rows(one, free) for one in face.springs()]
         if joint.glued:
-            stiffness = _GLUE * _body_stiffness(build, joint, points.area)
+            stiffness = _GLUE * _body_stiffness(build, joint, face.points.area)
             glue = Sparse(glue + stiffness * (kept[0] + kept[1] + kept[2]))
             continue
         spread += kept
-        area.append(points.area)
-        frames.append(frame)
-    return spread, glue, area, frames
+        faces.append(face)
+    return spread, glue, faces
 
 
 def _body_stiffness(build: Assembly, joint: Joint, area: float) -> float:
@@ -95,10 +93,8 @@ def _body_stiffness(build: Assembly, joint: Joint, area: float) -> float:
     return min(values)
 
 
-def _joint_springs(
-    build: Assembly, joint: Joint
-) -> tuple[tuple[Sparse, ...], ContactPoints, FloatArray]:
-    """Return G for the three directions of a joint over all degrees of freedom."""
+def _joint_face(build: Assembly, joint: Joint) -> JointFace:
+    """Return the relative motion of a joint over all nodes."""
     first = build.bodies[build.place(joint.between[0])]
     on_ground = joint.between[1] == GROUND
     second = None if on_ground else build.bodies[build.place(joint.between[1])]
@@ -116,7 +112,7 @@ def _joint_springs(
     motion = _placed(motions[0], build, joint.between[0], total)
     if motions[1] is not None:
         motion = Sparse(motion - _placed(motions[1], build, joint.between[1], total))
-    return spread_springs(motion, points, plane.frame), points, plane.frame
+    return JointFace(motion, points, plane.frame)
 
 
 def _planes(joint: Joint, first: Mesh, second: Mesh | None) -> list[Plane]:
@@ -154,7 +150,7 @@ def support_springs(build: Assembly, support: Support) -> Sparse:
     joint = Joint(
         f"support of {support.body}", (support.body, GROUND), face=support.face
     )
-    springs, _, _ = _joint_springs(build, joint)
+    springs = _joint_face(build, joint).springs()
     total = Sparse(springs[0].shape)
     for value, spring in zip(support.stiffness, springs, strict=True):
         total = Sparse(total + value * spring)

@@ -17,6 +17,7 @@ from jointbench.acquisition.basics.errors import FormatError, HostileFile
 from jointbench.acquisition.file_access.memory_room import VARIABLE, room
 from jointbench.acquisition.file_access.quoting import named, shown
 from jointbench.acquisition.file_access.text_files import file_size
+from jointbench.analysis.structures.matrices.abaqus_text import copy_solids
 
 CPU = 10
 """[s]"""
@@ -56,9 +57,12 @@ def read_with_meshio(path: Path) -> tuple[FloatArray, list[tuple[str, IntArray]]
         HostileFile: reading takes more time or memory than allowed for the file.
     """
     with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "mesh.npz"
+        out, source = Path(folder) / "mesh.npz", path
+        if path.suffix.lower() == ".inp":
+            source = Path(folder) / "solids.inp"
+            copy_solids(path, source)
         limits = str(CPU), str(room(file_size(path)) - _OURS)
-        words = [sys.executable, "-c", _CODE, str(path), str(out), *limits]
+        words = [sys.executable, "-c", _CODE, str(source), str(out), *limits]
         try:
             done = subprocess.run(
                 words, capture_output=True, text=True, timeout=_WALL, check=False

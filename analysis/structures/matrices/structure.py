@@ -13,7 +13,10 @@ from scipy import sparse
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray, freeze
 from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.analysis.structures.matrices.contact_interface import interpolation
+from jointbench.analysis.structures.matrices.contact_interface import (
+    JointFace,
+    interpolation,
+)
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.joint_matrices import (
     Assembly,
@@ -52,8 +55,7 @@ class Structure:
         spread: G of every joint and direction, joint by joint, total 1 N/m.
         glue: stiffness of glued joints [N/m]; zero if there are none.
         joints: names of the joints that have parameters.
-        area: of these joints [m^2], shape (n_joints,).
-        frames: rows normal and tangents, shape (n_joints, 3, 3).
+        faces: of these joints.
         blocks: first degree of freedom of each body, and the end, shape (n_bodies +
             1,).
         free: index of each free degree of freedom among all, shape (n_free,).
@@ -68,20 +70,29 @@ class Structure:
     spread: tuple[Sparse, ...]
     glue: Sparse
     joints: tuple[str, ...]
-    area: FloatArray
-    frames: FloatArray
+    faces: tuple[JointFace, ...]
     blocks: IntArray
     free: IntArray
     first_node: IntArray = field(default_factory=lambda: np.zeros(1, np.int64))
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "area", "frames", "blocks", "free", "first_node")
+        freeze(self, "blocks", "free", "first_node")
 
     @property
     def size(self) -> int:
         """Number of free degrees of freedom."""
         return int(self.free.size)
+
+    @property
+    def area(self) -> FloatArray:
+        """Areas of the joints that have parameters [m^2], shape (n_joints,)."""
+        return np.array([face.points.area for face in self.faces])
+
+    @property
+    def frames(self) -> FloatArray:
+        """Rows normal and tangents of these joints, shape (n_joints, 3, 3)."""
+        return np.array([face.frame for face in self.faces]).reshape(-1, 3, 3)
 
     @property
     def parameter_names(self) -> tuple[str, ...]:
@@ -141,7 +152,7 @@ def build_structure(
         else:
             springs = Sparse(springs + support_springs(build, support))
     free = np.flatnonzero(~held).astype(np.int64)
-    spread, glue, area, frames = joint_matrices(build, joints, free, k.shape)
+    spread, glue, faces = joint_matrices(build, joints, free, k.shape)
     return Structure(
         bodies=tuple(bodies),
         stiffness=kept_rows(k + springs, free),
@@ -151,12 +162,26 @@ def build_structure(
         spread=tuple(spread),
         glue=glue,
         joints=tuple(joint.name for joint in joints if not joint.glued),
-        area=np.array(area),
-        frames=np.array(frames).reshape(-1, 3, 3),
+        faces=tuple(faces),
         blocks=np.searchsorted(free, 3 * first_node).astype(np.int64),
         free=free,
         first_node=first_node.astype(np.int64),
     )
+
+
+def glued_blocks(structure: Structure) -> IntArray:
+    """Return the first degree of freedom of each block of glued bodies, and the end.
+
+    Bodies between two glued ones belong to their block: it must be one range.
+    """
+    edges = structure.blocks
+    ties = structure.glue.tocoo()
+    first = np.searchsorted(edges, ties.row, side="right") - 1
+    second = np.searchsorted(edges, ties.col, side="right") - 1
+    inner = np.ones(edges.size, bool)
+    for low, high in np.unique(np.stack([first, second], axis=1), axis=0):
+        inner[low + 1 : high + 1] = False
+    return np.asarray(edges[inner])
 
 
 def pick(structure: Structure, body: str, position: Sequence[float]) -> Sparse:

@@ -47,19 +47,28 @@ def orthonormalise(basis: FloatArray, mass: Sparse, new: FloatArray) -> FloatArr
 
 
 def largest_of_inverse(
-    solve: Solve, mass: Sparse, count: int, known: FloatArray | None = None
+    solve: Solve,
+    mass: Sparse,
+    count: int,
+    known: FloatArray | None = None,
+    *,
+    down_to: float = np.inf,
+    converged: float = _CONVERGED,
 ) -> tuple[FloatArray, FloatArray]:
     """Find the largest eigenvalues of A^-1 M.
 
     Args:
         solve: with A, symmetric positive definite.
         mass: M, shape (n, n).
-        count: number of eigenvalues.
+        count: number of eigenvalues, at least.
         known: eigenvectors orthonormal in M to exclude, shape (n, k).
+        down_to: all eigenvalues from this one on are found, and the next one.
+        converged: relative residual of each vector; its square is the error of the
+            eigenvalue.
 
     Returns:
-        Eigenvalues, the largest first, shape (count,), and vectors orthonormal in M as
-        columns, shape (n, count).
+        Eigenvalues, the largest first, shape (at least count,), and vectors orthonormal
+        in M as columns, shape (n, at least count).
 
     Raises:
         BadData: they do not converge.
@@ -72,33 +81,41 @@ def largest_of_inverse(
     size = full - apart.shape[1]
     start = np.random.default_rng(0).standard_normal((full, min(_BLOCK, size)))
     new = orthonormalise(apart, mass, start)
-    space = np.zeros((full, 0))
-    images = np.zeros((full, 0))
-    for _ in range(_MOST_STEPS):
-        image = solve(mass @ new)
+    space, images, small = np.zeros((full, 0)), np.zeros((full, 0)), np.zeros((0, 0))
+    for _ in range(_MOST_STEPS + count):
+        weighted = mass @ new
+        image = solve(weighted)
         image = image - apart @ (apart.T @ (mass @ image))
         space = np.concatenate([space, new], axis=1)
+        small = _bordered(small, space.T @ (mass @ image))
         images = np.concatenate([images, image], axis=1)
-        if space.shape[1] >= min(count + _BLOCK, size):
-            value, vector = _ritz(space, images, mass, count)
-            left = images @ vector - (space @ vector) * value
+        value, vector = np.linalg.eigh(small)
+        wanted = max(count, int(np.count_nonzero(value >= down_to)) + 1)
+        if space.shape[1] >= min(wanted + _BLOCK, size):
+            value, vector = value[::-1][:wanted], vector[:, ::-1][:, :wanted]
+            found = space @ vector
+            left = images @ vector - found * value
             error = np.sqrt(np.einsum("nk,nk->k", left, mass @ left))
-            if np.all(error <= _CONVERGED * value):
-                return value, np.asarray(space @ vector)
+            if np.all(error <= converged * value) or space.shape[1] == size:
+                return value, np.asarray(found)
         new = orthonormalise(np.concatenate([apart, space], axis=1), mass, image)
         if not new.shape[1]:
             break
     if space.shape[1] == size:
-        value, vector = _ritz(space, images, mass, count)
-        return value, np.asarray(space @ vector)
+        order = np.argsort(-value)[:count]
+        return value[order], np.asarray(space @ vector[:, order])
     raise BadData(
         f"{count} modes do not converge; the matrices are badly scaled: check units"
     )
 
 
-def _ritz(
-    space: FloatArray, images: FloatArray, mass: Sparse, count: int
-) -> tuple[FloatArray, FloatArray]:
-    small = images.T @ (mass @ space)
-    value, vector = np.linalg.eigh(0.5 * (small + small.T))
-    return value[::-1][:count], vector[:, ::-1][:, :count]
+def _bordered(small: FloatArray, column: FloatArray) -> FloatArray:
+    """Return a symmetric matrix with new columns, and rows of the same values."""
+    old, new = small.shape[0], column.shape[1]
+    whole = np.zeros((old + new, old + new))
+    whole[:old, :old] = small
+    whole[:, old:] = column
+    whole[old:, :old] = column[:old].T
+    corner = column[old:]
+    whole[old:, old:] = 0.5 * (corner + corner.T)
+    return whole

@@ -9,7 +9,10 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.matrices.structure import Structure, pick
-from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
+from jointbench.analysis.structures.reduction.reduced_model import (
+    ReducedModel,
+    rows_of,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,4 +70,4 @@ def readout(
     Returns:
         Shape (n_sensors, r) [-].
     """
-    return np.asarray(sensor_rows(structure, sensors) @ model.basis)
+    return rows_of(model, sensor_rows(structure, sensors))

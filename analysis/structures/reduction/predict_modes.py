@@ -53,7 +53,7 @@ def modal_state(model: ReducedModel, stiffness: FloatArray) -> ModalState:
     """Find all reduced modes at one set of stiffnesses [N/m], shape (n_parameters,)."""
     found = solve_reduced(model, stiffness, model.size)
     vector = found.shapes
-    flex = np.array([vector.T @ (spread @ vector) for spread in model.spread])
+    flex = model.spread.between(vector)
     loss = vector.T @ (model.loss @ vector)
     return ModalState(found.eigenvalue, vector, flex, loss, found.rigid)
 

@@ -1,61 +1,124 @@
 # SPDX-License-Identifier: MIT
-"""Reduce a structure body by body for a whole box of joint stiffnesses."""
+"""Reduce a structure by its interfaces, for a whole box of joint stiffnesses."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
-from scipy.stats import qmc
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.structure import Structure
-from jointbench.analysis.structures.reduction.bodywise import (
-    BodyFactors,
-    body_modes,
-    factor_bodies,
-    solve_bodywise,
+from jointbench.analysis.structures.reduction.assembled import (
+    Assembled,
+    assemble_components,
 )
-from jointbench.analysis.structures.reduction.krylov_subspace import orthonormalise
+from jointbench.analysis.structures.reduction.box_reduction import (
+    BoxReduction,
+    ReductionStep,
+    reduce_box,
+    trial_points,
+    weak_points,
+)
+from jointbench.analysis.structures.reduction.component import Component, Port
+from jointbench.analysis.structures.reduction.compressed import compressed
+from jointbench.analysis.structures.reduction.enrichment import enrichment, widened
+from jointbench.analysis.structures.reduction.full_modes import shift_of
+from jointbench.analysis.structures.reduction.reduce_body import (
+    FactoredBody,
+    factor_body,
+    reduce_body,
+)
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
-    frequency_bound,
+    solve_reduced,
 )
-from jointbench.analysis.structures.reduction.rigid_motions import (
-    joint_strains,
-    unstrained_bodies,
+from jointbench.analysis.structures.reduction.reduction_cache import (
+    body_key,
+    cached_component,
 )
 from jointbench.analysis.structures.reduction.sparse_factor import Solver
+from jointbench.analysis.structures.reduction.structure_bodies import (
+    LOADS,
+    BodyRange,
+    body_matrices,
+    body_ranges,
+    structure_ports,
+)
 
 DEFAULT_BOX = (1e6, 1e11)
 """Range of total stiffness of machine joints [N/m]."""
 
-# Trial points of the box, in addition to its lowest and highest corner.
-_TRIALS = 128
-# Points tried before the basis grows again.
-_AT_ONCE = 16
-_MOST_POINTS = 60
-# First residual norm for the modes of a point: its square is the error of an isolated
-# frequency. Where the bound of that point needs more (close modes, soft joints), it is
-# reduced to a tenth each time, down to rounding.
-_RESIDUAL_NORM = 3e-4
-_TIGHTER = 0.1
-_SMALLEST_NORM = 1e-7
-# Directions of A^-1 this small relative to the largest are rounding.
-_RANK = 1e-15
+MACHINE_BOX = (1e5, 1e11)
+"""Range of total stiffness of the joints of a machine, printed values included."""
+
+# Order of the polynomials of the traction patterns: of a machine, and to begin with.
+_MACHINE_ORDER = 5
+_FIRST_ORDER = 4
+# Enrichments before the reduction gives up.
+_MOST_ROUNDS = 10
+# ... or if the bound falls by less than this over so many.
+_NO_GAIN, _NO_GAIN_ROUNDS = 0.8, 3
+# Trial points that are checked before the second reduction, and used at once.
+_FIRST_CHECKED = 12
+_AT_ONCE = 4
+# The band may be exceeded by this factor.
+_BAND_SLACK = 1.05
 
 
-@dataclass(frozen=True, slots=True)
-class ReductionStep:
-    """Result of one added point.
+def reduce_machine(
+    structure: Structure,
+    band_hz: float,
+    *,
+    box: tuple[float, float] = MACHINE_BOX,
+    modes: int = 20,
+    order: int = _MACHINE_ORDER,
+    loads: FloatArray | None = None,
+    solver: Solver = Solver.AUTO,
+    cache: Path | None = None,
+) -> Assembled:
+    """Reduce every body once, and close the machine over its joints.
 
-    Attributes:
-        worst: largest bound of all trial points, relative frequency [-].
-        size: of the basis.
+    A body is factored, reduced and freed before the next one. The band should hold the
+    modes that are wanted.
+
+    Args:
+        structure: bodies and joints.
+        band_hz: highest frequency of interest [Hz].
+        box: smallest and largest total stiffness of any joint and direction [N/m].
+        modes: number of modes that are wanted, rigid ones included.
+        order: of the polynomials of the traction patterns.
+        loads: rows of `sensor_rows` where forces act or motion is read, shape
+            (n_points, n_free).
+        solver: of the factors.
+        cache: folder of reduced bodies, by content; None keeps none.
+
+    Returns:
+        The assembly; `Assembled.bound` bounds its errors.
     """
+    ports, joints = structure_ports(structure, order, loads)
+    bodies = [
+        _one_body(structure, where, ports[where.name], band_hz, solver, cache)
+        for where in body_ranges(structure)
+    ]
+    whole = assemble_components(bodies, joints, box=box, modes=modes)
+    return compressed(whole, (LOADS,))
 
-    worst: float
-    size: int
+
+def _one_body(
+    structure: Structure,
+    where: BodyRange,
+    ports: list[Port],
+    band_hz: float,
+    solver: Solver,
+    cache: Path | None,
+) -> Component:
+    """Reduce one body of a machine, or read it from the cache."""
+    body = body_matrices(structure, where)
+    key = body_key(body, ports, band_hz) if cache is not None else ""
+    return cached_component(
+        cache, key, lambda: reduce_body(body, ports, band_hz, solver=solver)
+    )
 
 
 def reduce_structure(
@@ -68,11 +131,11 @@ def reduce_structure(
     solver: Solver = Solver.AUTO,
     progress: Callable[[ReductionStep], None] | None = None,
 ) -> ReducedModel:
-    """Reduce a structure to a basis valid for all joints in a box.
+    """Reduce a structure to a model valid for all joints in a box.
 
-    The basis starts with the free modes of the bodies. The modes at the point of the
-    box with the worst error bound are added, until the bound is small everywhere. No
-    factor is larger than that of one body, or of bodies that are glued together.
+    The bodies are reduced by their interfaces, with traction patterns and motions from
+    the points of the box with the largest bound until it is small everywhere; then the
+    assembly is reduced to its modes in the box.
 
     Args:
         structure: bodies and joints.
@@ -89,56 +152,90 @@ def reduce_structure(
         The reduced structure.
 
     Raises:
-        BadData: the bound stays above `tolerance` although the modes of its worst point
-            are in the basis to rounding, or after so many points.
+        BadData: the bound stays above `tolerance` after many enrichments.
         UsageError: there is no joint with parameters, or the box is empty.
-
-    Source:
-        Rozza et al. 2008, Arch. Comput. Methods Eng. 15, 229-275 (greedy choice).
     """
     _require_box(structure, box)
-    factors = factor_bodies(structure, solver)
-    space = _Space.over(structure, factors, box[1])
-    start = body_modes(structure, modes, solver)
-    space.add(orthonormalise(space.basis, structure.mass, start))
-    if loads is not None:
-        space.add(_compliance(structure, factors, space.basis, loads))
-    trials = _trial_points(len(structure.spread), box)
-    norm, point = _RESIDUAL_NORM, np.zeros(0)
-    for _ in range(_MOST_POINTS):
-        model = space.model(box, modes)
-        worst, trials = _open_points(model, trials, tolerance)
-        if progress is not None:
-            progress(ReductionStep(worst, model.size))
-        if not trials:
-            return model
-        # A repeated point was not solved as accurately as its bound requires.
-        again = np.array_equal(point, trials[0])
-        norm, point = norm * _TIGHTER if again else _RESIDUAL_NORM, trials[0]
-        if norm < _SMALLEST_NORM:
-            break
-        shapes = solve_bodywise(structure, factors, point, space.basis, modes + 2, norm)
-        space.add(orthonormalise(space.basis, structure.mass, shapes))
-    raise BadData(_stays(worst, tolerance, point, norm))
-
-
-def _stays(worst: float, tolerance: float, point: FloatArray, norm: float) -> str:
-    """Return the reason for a large bound: rounding, or too many points."""
-    where = ", ".join(f"{one:.2g}" for one in point)
-    text = (
-        f"the reduced model's error bound stays at {worst:.2g} of the frequency, "
-        f"{tolerance:g} is allowed, "
-    )
-    if norm < _SMALLEST_NORM:
-        return text + (
-            f"though the modes at joints of {where} N/m are solved to rounding; these "
-            "joints are far softer or stiffer than the bodies: allow a larger "
-            "tolerance, or narrow the box"
+    ports, joints = structure_ports(structure, _FIRST_ORDER, loads)
+    # Waves of about the size of the structure.
+    band = float(np.sqrt(shift_of(structure.stiffness, structure.mass)) / (2 * np.pi))
+    bodies = _factored(structure, band, modes, solver)
+    inertia: Mapping[str, FloatArray] = {}
+    worst: list[float] = []
+    while len(worst) < _MOST_ROUNDS and not _stuck(worst):
+        whole = assemble_components(
+            [
+                one.reduce(ports[one.body.name], inertia.get(one.body.name))
+                for one in bodies
+            ],
+            joints,
+            box=box,
+            modes=modes,
         )
-    return text + (
-        f"after {_MOST_POINTS} points, the last at {where} N/m; reduce fewer modes, or "
-        "narrow the box"
+        top = _highest(whole.model)
+        if top > _BAND_SLACK * band:
+            band = top
+            bodies = _factored(structure, band, modes, solver)
+            continue
+        found = _checked(whole, tolerance, progress)
+        if not found.weak:
+            return found.model
+        worst.append(found.worst)
+        more = enrichment(whole, found.weak[:_AT_ONCE])
+        ports = widened(ports, joints, more.patterns)
+        inertia = more.inertia
+    raise BadData(
+        f"the reduced model's error bound stays at {found.worst:.2g} of the frequency, "
+        f"{tolerance:g} is allowed, with {whole.model.size} coordinates, and more of "
+        "them do not lower it; narrow the box, allow a larger tolerance, or reduce "
+        "fewer modes"
     )
+
+
+def _stuck(worst: Sequence[float]) -> bool:
+    """Return whether the last enrichments did not lower the bound."""
+    if len(worst) <= _NO_GAIN_ROUNDS or worst[-1] >= 1.0:
+        return False
+    return worst[-1] > _NO_GAIN * worst[-1 - _NO_GAIN_ROUNDS]
+
+
+def _factored(
+    structure: Structure, band: float, modes: int, solver: Solver
+) -> list[FactoredBody]:
+    return [
+        factor_body(
+            body_matrices(structure, one), band, least_modes=modes, solver=solver
+        )
+        for one in body_ranges(structure)
+    ]
+
+
+def _highest(model: ReducedModel) -> float:
+    """Return the highest wanted frequency at the stiffest joints [Hz]."""
+    stiffest = np.full(len(model.names), model.box[1])
+    return float(solve_reduced(model, stiffest).natural_frequency[-1])
+
+
+def _checked(
+    whole: Assembled,
+    tolerance: float,
+    progress: Callable[[ReductionStep], None] | None,
+) -> BoxReduction:
+    """Check a few points first; reduce once more where these are good."""
+    model = whole.model
+    points = trial_points(len(model.names), model.box)[:_FIRST_CHECKED]
+    weak = sorted(weak_points(model, points, tolerance), key=lambda one: -one[0])
+    if weak:
+        if progress is not None:
+            progress(ReductionStep(weak[0][0], model.size))
+        return BoxReduction(model, tuple(point for _, point in weak), weak[0][0])
+    loads = [
+        whole.rows((body.name, LOADS))
+        for body in whole.components
+        if LOADS in body.rows
+    ]
+    rows = np.concatenate([np.zeros((0, model.size)), *loads])
+    return reduce_box(model, tolerance, loads=rows, progress=progress)
 
 
 def _require_box(structure: Structure, box: tuple[float, float]) -> None:
@@ -147,143 +244,3 @@ def _require_box(structure: Structure, box: tuple[float, float]) -> None:
             f"a reduction over joints from {box[0]:g} to {box[1]:g} N/m with "
             f"{len(structure.spread)} joint directions; give joints, and low below high"
         )
-
-
-def _compliance(
-    structure: Structure, factors: BodyFactors, basis: FloatArray, loads: FloatArray
-) -> FloatArray:
-    """Return the static response of the bodies to point loads.
-
-    The response to each load at the shift, and the next term of its series.
-    """
-    first = factors.solve(np.ascontiguousarray(loads.T))
-    second = factors.solve(structure.mass @ first)
-    return orthonormalise(
-        basis, structure.mass, np.concatenate([first, second], axis=1)
-    )
-
-
-def _open_points(
-    model: ReducedModel, points: list[FloatArray], tolerance: float
-) -> tuple[float, list[FloatArray]]:
-    """Return the worst bound found, and the remaining points, the worst first.
-
-    A growing basis only improves: a point within tolerance remains so.
-    """
-    while points:
-        some, rest = points[:_AT_ONCE], points[_AT_ONCE:]
-        bounds = np.array([_relative_bound(model, point) for point in some])
-        order = [at for at in np.argsort(-bounds) if bounds[at] > tolerance]
-        points = [*(some[at] for at in order), *rest]
-        if order:
-            return float(bounds[order[0]]), points
-    return 0.0, points
-
-
-def _relative_bound(model: ReducedModel, point: FloatArray) -> float:
-    frequency, bound = frequency_bound(model, point)
-    elastic = frequency > 0
-    return float((bound[elastic] / frequency[elastic]).max(initial=0.0))
-
-
-def _trial_points(count: int, box: tuple[float, float]) -> list[FloatArray]:
-    """Spread points evenly over the logarithm of the box; two corners first."""
-    low, high = np.log(box[0]), np.log(box[1])
-    share = qmc.Sobol(count, seed=0).random(_TRIALS)
-    corners = np.stack([np.zeros(count), np.ones(count)])
-    return list(np.exp(low + (high - low) * np.concatenate([corners, share])))
-
-
-@dataclass(slots=True, eq=False)
-class _Space:
-    """A growing basis, its products with the matrices, and their Riesz vectors."""
-
-    structure: Structure
-    factors: BodyFactors
-    scale: FloatArray
-    strains: FloatArray
-    basis: FloatArray
-    products: list[FloatArray]
-    riesz: list[FloatArray]
-
-    @classmethod
-    def over(
-        cls, structure: Structure, factors: BodyFactors, largest: float
-    ) -> "_Space":
-        """Return a basis of the motions that strain no body."""
-        count = len(structure.spread)
-        empty = [np.zeros((structure.size, 0)) for _ in range(2 + count)]
-        still = unstrained_bodies(structure)
-        strains = joint_strains(structure, still)
-        space = cls(
-            structure,
-            factors,
-            np.full(count, largest),
-            strains,
-            empty[0],
-            empty,
-            empty[:],
-        )
-        space.add(still)
-        return space
-
-    def add(self, new: FloatArray) -> None:
-        """Append orthonormal columns, if there are any."""
-        if not new.shape[1]:
-            return
-        mass = self.structure.mass @ new
-        bodies = self.structure.stiffness @ new + self.structure.glue @ new
-        bodies += self.factors.shift * mass
-        joints = [
-            scale * (spread @ new)
-            for scale, spread in zip(self.scale, self.structure.spread, strict=True)
-        ]
-        products = [bodies, mass, *joints]
-        riesz = [new, *(self.factors.solve(part) for part in products[1:])]
-        self.basis = np.concatenate([self.basis, new], axis=1)
-        self.products = _appended(self.products, products)
-        self.riesz = _appended(self.riesz, riesz)
-
-    def model(self, box: tuple[float, float], modes: int) -> ReducedModel:
-        """Return the reduced model of the basis as it is."""
-        basis, shift = self.basis, self.factors.shift
-        bodies, mass, *joints = (_symmetric(basis.T @ part) for part in self.products)
-        loss = _symmetric(basis.T @ (self.structure.loss @ basis))
-        spread = [part / scale for part, scale in zip(joints, self.scale, strict=True)]
-        elastic = bodies - shift * mass
-        # Motions without strain have exactly zero strain, not rounding.
-        still = self.strains.shape[1]
-        for matrix in (elastic, loss):
-            matrix[:still] = matrix[:, :still] = 0.0
-        return ReducedModel(
-            stiffness=elastic,
-            spread=np.array(spread),
-            loss=loss,
-            basis=basis,
-            riesz=self._norm(),
-            scale=self.scale,
-            strains=self.strains,
-            shift=shift,
-            box=box,
-            modes=modes,
-            names=self.structure.parameter_names,
-        )
-
-    def _norm(self) -> FloatArray:
-        """Return a square root of the Gram matrix of the Riesz vectors."""
-        gram = np.block(
-            [[one.T @ other for other in self.products] for one in self.riesz]
-        )
-        length = np.sqrt(np.maximum(np.diag(gram), 1e-300))
-        value, vector = np.linalg.eigh(_symmetric(gram / np.outer(length, length)))
-        kept = value > _RANK * value[-1]
-        root = np.sqrt(value[kept])[:, None] * vector[:, kept].T
-        return np.asarray(root * length)
-
-
-def _appended(old: list[FloatArray], new: list[FloatArray]) -> list[FloatArray]:
-    return [np.concatenate(pair, axis=1) for pair in zip(old, new, strict=True)]
-
-
-def _symmetric(matrix: FloatArray) -> FloatArray:
-    return np.asarray(0.5 * (matrix + matrix.T))

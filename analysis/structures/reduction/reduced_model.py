@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
 """A reduced structure, solved in about a millisecond, with an error bound."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh
 
-from jointbench.acquisition.basics.arrays import FloatArray, freeze
+from jointbench.acquisition.basics.arrays import BoolArray, FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.reduction.dense_modes import lowest_dense_modes
 from jointbench.analysis.structures.reduction.full_modes import frequency_of
+from jointbench.analysis.structures.reduction.joint_spread import JointSpread
+from jointbench.analysis.structures.reduction.residual_norm import ResidualNorm
 from jointbench.analysis.structures.reduction.rigid_motions import unstrained
 
 # Extra modes solved, so that the last requested one has neighbours.
@@ -21,36 +23,39 @@ class ReducedModel:
 
     Attributes:
         stiffness: of the bodies, shape (r, r); the mass is the unit matrix.
-        spread: of every joint and direction, total 1 N/m, shape (n_parameters, r, r).
+        spread: of every joint and direction.
         loss: loss factor times stiffness, shape (r, r).
-        basis: from reduced to free degrees of freedom, shape (n_free, r).
-        riesz: the norm of the residual is that of riesz @ (y, (shift + lambda) y,
-            theta_1/scale_1 y, ...), shape (n_rank, (2 + n_parameters) r).
-        scale: of the stiffnesses in `riesz` [N/m], shape (n_parameters,).
-        strains: of `joint_strains`, for the first columns of the basis, motions without
-            strain of the bodies; shape (n_parameters, n_motions, n_motions) [-].
+        damping: viscous, of the bodies [1/s], shape (r, r).
+        residual: norm of what the basis leaves out.
+        strains: of every joint and direction by the first coordinates, the motions
+            without strain of the bodies; relative to the trace, shape (n_parameters,
+            n_motions, n_motions) [-].
         shift: of the norm [1/s^2].
         box: smallest and largest valid stiffness [N/m].
         modes: number of accurate modes, rigid ones included.
         names: of the parameters.
+        fixed_strain: of springs without parameters by the same motions, relative to the
+            trace, shape (n_motions, n_motions) [-]; None is none.
+        guess: motions near the lowest modes, shape (r, k): a start of their solution.
     """
 
     stiffness: FloatArray
-    spread: FloatArray
+    spread: JointSpread
     loss: FloatArray
-    basis: FloatArray
-    riesz: FloatArray
-    scale: FloatArray
+    damping: FloatArray
+    residual: ResidualNorm
     strains: FloatArray
     shift: float
     box: tuple[float, float]
     modes: int
     names: tuple[str, ...]
+    guess: FloatArray | None = None
+    fixed_strain: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "stiffness", "spread", "loss", "basis", "riesz", "scale")
-        freeze(self, "strains")
+        freeze(self, "stiffness", "loss", "damping", "strains", "guess")
+        freeze(self, "fixed_strain")
 
     @property
     def size(self) -> int:
@@ -60,12 +65,74 @@ class ReducedModel:
     def with_joints(self, stiffness: FloatArray) -> FloatArray:
         """Return reduced K(theta) [1/s^2], shape (r, r)."""
         values = np.asarray(stiffness, float)
-        if values.shape != self.scale.shape or not np.all(values >= 0):
+        if values.shape != (len(self.names),) or not np.all(values >= 0):
             raise BadData(
-                f"joint stiffnesses are {values.tolist()} N/m; give {self.scale.size} "
-                "values, none below zero"
+                f"joint stiffnesses are {values.tolist()} N/m; give "
+                f"{len(self.names)} values, none below zero"
             )
-        return np.asarray(self.stiffness + np.tensordot(values, self.spread, 1))
+        return np.asarray(self.stiffness + self.spread.total(values))
+
+    def restricted(self, turn: FloatArray) -> "ReducedModel":
+        """Return the model in fewer coordinates.
+
+        Args:
+            turn: orthonormal columns, shape (r, s); the motions without strain of the
+                bodies stay the first coordinates.
+        """
+        return replace(
+            self,
+            stiffness=_between(self.stiffness, turn),
+            spread=self.spread.restricted(turn),
+            loss=_between(self.loss, turn),
+            damping=_between(self.damping, turn),
+            residual=self.residual.restricted(turn),
+            guess=None,
+        )
+
+
+def _between(matrix: FloatArray, turn: FloatArray) -> FloatArray:
+    small = turn.T @ matrix @ turn
+    return np.asarray(0.5 * (small + small.T))
+
+
+def motion_of(model: ReducedModel, shapes: FloatArray) -> FloatArray:
+    """Return the motion of the mesh from reduced coordinates.
+
+    Args:
+        model: of bodies with a mesh.
+        shapes: columns, shape (r, m).
+
+    Returns:
+        Over the degrees of freedom of all bodies, in their order, shape (n_free, m).
+    """
+    residual = model.residual
+    whole = residual.turn @ shapes
+    return np.concatenate(
+        [
+            body.basis @ whole[place]
+            for body, place in zip(residual.components, residual.places, strict=True)
+        ]
+    )
+
+
+def rows_of(model: ReducedModel, rows: FloatArray) -> FloatArray:
+    """Return rows over the degrees of freedom in reduced coordinates.
+
+    Args:
+        model: of bodies with a mesh.
+        rows: shape (n, n_free).
+
+    Returns:
+        Shape (n, r).
+    """
+    residual = model.residual
+    wide = np.zeros((rows.shape[0], residual.turn.shape[0]))
+    at = 0
+    for body, place in zip(residual.components, residual.places, strict=True):
+        size = body.basis.shape[0]
+        wide[:, place] = rows[:, at : at + size] @ body.basis
+        at += size
+    return np.asarray(wide @ residual.turn)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,25 +167,39 @@ def solve_reduced(
     """
     values = np.asarray(stiffness, float)
     matrix = model.with_joints(values)
-    turn, rigid = unstrained(model.strains, values > 0)
+    turn, rigid = _unstrained(model, values > 0)
     wanted = min(count or model.modes, model.size)
     moved = turn.shape[0]
     matrix[:moved] = turn.T @ matrix[:moved]
     matrix[:, :moved] = matrix[:, :moved] @ turn
     value, vector = np.zeros(wanted), np.eye(model.size, wanted)
     if wanted > rigid:
-        straining = matrix[rigid:, rigid:]
-        # Softer joints cannot be distinguished from rounding.
-        smallest = np.finfo(float).eps * float(np.abs(straining).max())
-        found, vector[rigid:, rigid:] = eigh(
-            straining,
-            subset_by_index=(0, wanted - rigid - 1),
-            driver="evr",
-            check_finite=False,
+        value[rigid:], vector[rigid:, rigid:] = lowest_dense_modes(
+            matrix[rigid:, rigid:],
+            model.shift,
+            wanted - rigid,
+            _turned(model.guess, turn, rigid),
         )
-        value[rigid:] = np.maximum(found, smallest)
     vector[:moved] = turn @ vector[:moved]
     return ReducedModes(value, frequency_of(value), vector, min(rigid, wanted))
+
+
+def _unstrained(model: ReducedModel, stiff: BoolArray) -> tuple[FloatArray, int]:
+    """Rotate the rigid motions of the bodies: those that nothing strains first."""
+    if model.fixed_strain is None:
+        return unstrained(model.strains, stiff)
+    strains = np.concatenate([model.strains, model.fixed_strain[None]])
+    return unstrained(strains, np.append(stiff, True))
+
+
+def _turned(
+    guess: FloatArray | None, turn: FloatArray, rigid: int
+) -> FloatArray | None:
+    """Return the guess in turned coordinates, without rigid motions."""
+    if guess is None:
+        return None
+    moved = turn.shape[0]
+    return np.concatenate([turn.T @ guess[:moved], guess[moved:]])[rigid:]
 
 
 def frequency_bound(
@@ -148,24 +229,14 @@ def frequency_bound(
     wanted = min(count or model.modes, model.size)
     found = solve_reduced(model, stiffness, min(wanted + _SPARE, model.size))
     level = found.eigenvalue + model.shift
-    error = _residual_norms(model, found, stiffness) / np.sqrt(level)
+    norm = model.residual.of_modes(found.shapes, found.eigenvalue, stiffness)
+    error = norm / np.sqrt(level)
     inverse = 1.0 / level
     slack = _inverse_slack(inverse, error)
     lowest = 1.0 / (inverse + slack) - model.shift
     frequency = found.natural_frequency
     bound = np.where(frequency > 0, frequency - frequency_of(lowest), 0.0)
     return frequency[:wanted], bound[:wanted]
-
-
-def _residual_norms(
-    model: ReducedModel, found: ReducedModes, stiffness: FloatArray
-) -> FloatArray:
-    y = found.shapes
-    ratio = np.asarray(stiffness, float) / model.scale
-    stack = np.concatenate(
-        [y, -(found.eigenvalue + model.shift) * y, *(value * y for value in ratio)]
-    )
-    return np.asarray(np.linalg.norm(model.riesz @ stack, axis=0))
 
 
 def _inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:

@@ -1,19 +1,37 @@
 # SPDX-License-Identifier: MIT
-"""Reduced models on disk, named by a hash of their input."""
+"""Reduced bodies and models on disk, named by a hash of their input."""
 
 import hashlib
+import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.component import (
+    BodyMatrices,
+    Component,
+    Port,
+    Residual,
+    Source,
+)
+from jointbench.analysis.structures.reduction.joint_spread import JointSpread
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
+from jointbench.analysis.structures.reduction.residual_norm import (
+    JointMotion,
+    ResidualNorm,
+)
 
 # Incremented when the reduction changes, so that old files are not used.
-_VERSION = 3
-_ARRAYS = ("stiffness", "spread", "loss", "basis", "riesz", "scale", "strains")
+_VERSION = 4
+_COMPONENT = ("stiffness", "loss", "damping", "basis")
+_MODEL = ("stiffness", "loss", "damping", "strains")
+Arrays = dict[str, NDArray[Any]]
 
 
 def content_key(structure: Structure, *options: object) -> str:
@@ -26,9 +44,45 @@ def content_key(structure: Structure, *options: object) -> str:
         structure.glue,
         *structure.spread,
     ):
-        for part in (matrix.indptr, matrix.indices, matrix.data):
-            digest.update(np.ascontiguousarray(part).tobytes())
+        _add(digest, matrix)
     return digest.hexdigest()
+
+
+def body_key(body: BodyMatrices, ports: list[Port], *options: object) -> str:
+    """Return the SHA-256 of a body, its ports and options of its reduction."""
+    text = (_VERSION, body.name, body.loss_factor, body.source, options)
+    digest = hashlib.sha256(repr(text).encode())
+    for matrix in (body.stiffness, body.mass, body.loss):
+        if matrix is not None:
+            _add(digest, matrix)
+    for port in ports:
+        digest.update(port.name.encode())
+        _add(digest, port.rows)
+        digest.update(np.ascontiguousarray(port.patterns).tobytes())
+    return digest.hexdigest()
+
+
+def _add(digest: Any, matrix: Sparse) -> None:
+    for part in (matrix.indptr, matrix.indices, matrix.data):
+        digest.update(np.ascontiguousarray(part).tobytes())
+
+
+def cached_component(
+    folder: Path | None, key: str, make: Callable[[], Component]
+) -> Component:
+    """Return the reduced body of a key from disk, or create and store it.
+
+    Args:
+        folder: of the cache; None stores nothing.
+        key: of `body_key`.
+        make: creates the body if it is not stored.
+    """
+    found = _read(folder, key)
+    if found is not None:
+        return _component("", found)
+    body = make()
+    _write(folder, key, _component_arrays("", body))
+    return body
 
 
 def cached(
@@ -44,40 +98,152 @@ def cached(
     Returns:
         The reduced model.
     """
-    if folder is None:
-        return make()
-    path = folder / f"{key}.npz"
-    if path.is_file():
-        found = _read(path)
-        if found is not None:
-            return found
+    found = _read(folder, key)
+    if found is not None:
+        return _model(found)
     model = make()
-    folder.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part.npz")
-    np.savez(
-        part,
-        shift=model.shift,
-        box=np.array(model.box),
-        modes=model.modes,
-        names=np.array(model.names),
-        **{name: getattr(model, name) for name in _ARRAYS},
-    )
-    os.replace(part, path)  # noqa: PTH105 - replaces on Windows too
+    _write(folder, key, _model_arrays(model))
     return model
 
 
-def _read(path: Path) -> ReducedModel | None:
-    """Return the model of a file; None if the file is truncated."""
+def _write(folder: Path | None, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
+    if folder is None:
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    part = folder / f"{key}.part.npz"
+    np.savez(part, allow_pickle=False, **arrays)
+    os.replace(part, folder / f"{key}.npz")  # noqa: PTH105 - replaces on Windows too
+
+
+def _read(folder: Path | None, key: str) -> Arrays | None:
+    """Return the arrays of a file; None if there is none, or it is truncated."""
+    if folder is None or not (folder / f"{key}.npz").is_file():
+        return None
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in _ARRAYS}
-            low, high = file["box"].tolist()
-            return ReducedModel(
-                **arrays,
-                shift=float(file["shift"]),
-                box=(low, high),
-                modes=int(file["modes"]),
-                names=tuple(str(name) for name in file["names"]),
-            )
+        with np.load(folder / f"{key}.npz", allow_pickle=False) as file:
+            return {name: file[name] for name in file.files}
     except (OSError, ValueError, KeyError, EOFError):
         return None
+
+
+def _component_arrays(start: str, body: Component) -> Arrays:
+    """Return the arrays of a body; names begin with `start`."""
+    found = {start + name: getattr(body, name) for name in _COMPONENT}
+    facts = {
+        "name": body.name,
+        "rigid": body.rigid,
+        "source": str(body.source),
+        "loss_factor": body.loss_factor,
+        "error_bound": body.error_bound,
+        "rows": list(body.rows),
+        "shift": None if body.residual is None else body.residual.shift,
+        "ports": [] if body.residual is None else list(body.residual.patterns),
+    }
+    found[start + "facts"] = np.array(json.dumps(facts))
+    for at, rows in enumerate(body.rows.values()):
+        found[f"{start}rows{at}"] = rows
+    if body.residual is not None:
+        found[start + "root"] = body.residual.root
+        found[start + "compliance"] = np.array(list(body.residual.compliance.values()))
+        for at, pattern in enumerate(body.residual.patterns.values()):
+            found[f"{start}pattern{at}"] = pattern
+    return found
+
+
+def _component(start: str, arrays: Arrays) -> Component:
+    facts = json.loads(str(arrays[start + "facts"]))
+    residual = None
+    if facts["shift"] is not None:
+        compliance = arrays[start + "compliance"].tolist()
+        residual = Residual(
+            arrays[start + "root"],
+            {p: arrays[f"{start}pattern{at}"] for at, p in enumerate(facts["ports"])},
+            dict(zip(facts["ports"], compliance, strict=True)),
+            facts["shift"],
+        )
+    return Component(
+        **{name: arrays[start + name] for name in _COMPONENT},
+        name=facts["name"],
+        rows={p: arrays[f"{start}rows{at}"] for at, p in enumerate(facts["rows"])},
+        rigid=facts["rigid"],
+        source=Source(facts["source"]),
+        residual=residual,
+        loss_factor=facts["loss_factor"],
+        error_bound=facts["error_bound"],
+    )
+
+
+def _model_arrays(model: ReducedModel) -> Arrays:
+    residual = model.residual
+    facts = {
+        "shift": model.shift,
+        "box": list(model.box),
+        "modes": model.modes,
+        "names": list(model.names),
+        "bodies": len(residual.components),
+        "groups": len(model.spread.columns),
+        "size": model.spread.size,
+        "joints": [
+            [joint.compliance, [[b, c.start, c.stop, s] for b, c, s in joint.loads]]
+            for joint in residual.joints
+        ],
+    }
+    found = {name: getattr(model, name) for name in _MODEL}
+    found |= {"facts": np.array(json.dumps(facts)), "turn": residual.turn}
+    for at, (body, place) in enumerate(
+        zip(residual.components, residual.places, strict=True)
+    ):
+        found |= _component_arrays(f"body{at}.", body)
+        found[f"place{at}"] = place
+    for at, joint in enumerate(residual.joints):
+        found |= {
+            f"columns{at}": joint.columns,
+            f"moments{at}": joint.moments,
+            f"rest{at}": joint.rest,
+        }
+    for at, (columns, block) in enumerate(
+        zip(model.spread.columns, model.spread.blocks, strict=True)
+    ):
+        found |= {f"spread_columns{at}": columns, f"spread{at}": block}
+    for name in ("guess", "fixed_strain"):
+        if getattr(model, name) is not None:
+            found[name] = getattr(model, name)
+    return found
+
+
+def _model(arrays: Arrays) -> ReducedModel:
+    facts = json.loads(str(arrays["facts"]))
+    joints = [
+        JointMotion(
+            arrays[f"columns{at}"],
+            arrays[f"moments{at}"],
+            arrays[f"rest{at}"],
+            compliance,
+            tuple((b, slice(low, high), sign) for b, low, high, sign in loads),
+        )
+        for at, (compliance, loads) in enumerate(facts["joints"])
+    ]
+    bodies, groups = range(facts["bodies"]), range(facts["groups"])
+    residual = ResidualNorm(
+        tuple(_component(f"body{at}.", arrays) for at in bodies),
+        tuple(arrays[f"place{at}"] for at in bodies),
+        tuple(joints),
+        arrays["turn"],
+    )
+    spread = JointSpread(
+        facts["size"],
+        tuple(arrays[f"spread_columns{at}"] for at in groups),
+        tuple(arrays[f"spread{at}"] for at in groups),
+    )
+    low, high = facts["box"]
+    return ReducedModel(
+        **{name: arrays[name] for name in _MODEL},
+        spread=spread,
+        residual=residual,
+        shift=facts["shift"],
+        box=(low, high),
+        modes=facts["modes"],
+        names=tuple(facts["names"]),
+        guess=arrays.get("guess"),
+        fixed_strain=arrays.get("fixed_strain"),
+    )

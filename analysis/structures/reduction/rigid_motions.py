@@ -7,13 +7,18 @@ joints each exclude the motions that strain them. Each is compared with its own
 stiffness, so that the softest joint is not lost in the rounding of a stiff body.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.parts import MeshedBody
-from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.matrices.structure import (
+    Structure,
+    glued_blocks,
+)
 from jointbench.analysis.structures.reduction.krylov_subspace import orthonormalise
 
 # Strain energy below this number of units in the last place of |x|' |K| |x| is
@@ -35,9 +40,32 @@ def unstrained_bodies(structure: Structure) -> FloatArray:
     Returns:
         Columns orthonormal in M, shape (n_free, n_motions).
     """
+    edges = glued_blocks(structure)
+    found = []
+    for low, high in pairwise(edges.tolist()):
+        motion = unstrained_block(structure, low, high)
+        column = np.zeros((structure.size, motion.shape[1]))
+        column[low:high] = motion
+        found.append(column)
+    return np.concatenate(found, axis=1)
+
+
+def unstrained_block(structure: Structure, low: int, high: int) -> FloatArray:
+    """Return the motions that strain no body of a block, no support and no glue.
+
+    Args:
+        structure: bodies and joints; joints are ignored.
+        low: first degree of freedom of the block.
+        high: the one after its last.
+
+    Returns:
+        Columns orthonormal in M, shape (high - low, n_motions).
+    """
     found = []
     for at, body in enumerate(structure.bodies):
         rows = slice(int(structure.blocks[at]), int(structure.blocks[at + 1]))
+        if rows.start < low or rows.stop > high or rows.start == rows.stop:
+            continue
         within = structure.free[rows] - 3 * int(structure.first_node[at])
         mass = Sparse(structure.mass[rows, rows])
         own = Sparse(body.stiffness[within][:, within])
@@ -45,12 +73,13 @@ def unstrained_bodies(structure: Structure) -> FloatArray:
             np.zeros((within.size, 0)), mass, _rigid_motions(body)[within]
         )
         motion = motion @ _kept(_strain(own, motion, _precision(own)))
-        column = np.zeros((structure.size, motion.shape[1]))
-        column[rows] = motion
+        column = np.zeros((high - low, motion.shape[1]))
+        column[rows.start - low : rows.stop - low] = motion
         found.append(column)
     motions = np.concatenate(found, axis=1)
     for part in (structure.springs, structure.glue):
-        motions = motions @ _kept(_strain(part, motions, _ROUNDING))
+        own = Sparse(part[low:high, low:high])
+        motions = motions @ _kept(_strain(own, motions, _ROUNDING))
     return np.asarray(motions)
 
 

@@ -72,3 +72,32 @@ def test_a_text_is_no_matrix(tmp_path: Path) -> None:
     path.write_text("not a matrix\n", encoding="utf-8")
     with pytest.raises(FormatError, match="Harwell-Boeing"):
         read_matrix(path)
+
+
+def test_lines_surfaces_and_sets_of_gmsh_are_left_out(
+    marble: Material, tmp_path: Path
+) -> None:
+    """Abaqus as gmsh writes it: T3D3 lines and CPS6 surfaces beside C3D10 solids."""
+    pytest.importorskip("meshio")
+    mesh = box_mesh((0.2, 0.1, 0.05), (1, 1, 1), kind=ElementKind.TET10)
+    rows = [
+        f"{n + 1}, {x:.12g}, {y:.12g}, {z:.12g}"
+        for n, (x, y, z) in enumerate(mesh.nodes)
+    ]
+    solids = [
+        ", ".join(map(str, [n + 9, *(cell + 1)])) for n, cell in enumerate(mesh.cells)
+    ]
+    text = [
+        *("*Heading", " box.inp", "*NODE"),
+        *rows,
+        "******* E L E M E N T S *************",
+        *("*ELEMENT, type=T3D3, ELSET=Line1", "1, 1, 2, 9"),
+        *("*ELEMENT, type=CPS6, ELSET=Surface1", "2, 1, 2, 3, 9, 10, 11"),
+        "*ELEMENT, type=C3D10, ELSET=Volume1",
+        *solids,
+        *("*ELSET,ELSET=Surface1", "2", "*NSET,NSET=Surface1", "1, 2, 3"),
+    ]
+    path = tmp_path / "box.inp"
+    path.write_text("\n".join(text) + "\n", encoding="utf-8")
+    _, mass = assemble(read_mesh(path), marble)
+    assert mass.sum() / 3 == pytest.approx(2600.0 * 0.001, rel=1e-9)

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""Complex modes and receptances of an assembly, with dampers of any strength.
+
+The equations are projected on the modes at the joints' stiffness, those with the
+dampers locked, and the static responses to the loads; the small state matrix gives
+poles and residues, and every line is a sum over them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
+from jointbench.analysis.structures.reduction.dense_modes import shifted_inverse
+from jointbench.analysis.structures.reduction.predict_modes import JointValues
+from jointbench.analysis.structures.reduction.reduced_model import (
+    ReducedModel,
+    ReducedModes,
+    solve_reduced,
+)
+
+# Part of a direction outside of the others below which it is dropped.
+_DEPENDENT = 1e-7
+# Modes are kept up to this multiple of the highest line.
+_REACH = 1.2
+# Terms of the series of the response to a load.
+_TERMS = 4
+# Dampers are light if the largest damping ratio of a mode stays below this.
+_LIGHT = 0.02
+# Shares of the highest line at which dampers are replaced by springs.
+_LOCKED = (1.0, 0.2)
+# Least ratio of imaginary to real part of an oscillating pole.
+_SWINGS = 0.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ComplexModes:
+    """Modes of a damped assembly, the lowest first.
+
+    Attributes:
+        pole: [1/s], shape (n_modes,); with positive imaginary part, or real.
+        shapes: in the coordinates of the model, columns, largest entry 1, shape (r,
+            n_modes).
+    """
+
+    pole: ComplexArray
+    shapes: ComplexArray
+
+    def __post_init__(self) -> None:
+        """Make the arrays read-only."""
+        freeze(self, "pole", "shapes")
+
+    @property
+    def natural_frequency(self) -> FloatArray:
+        """|pole| / 2 pi [Hz]."""
+        return np.asarray(np.abs(self.pole) / (2.0 * np.pi))
+
+    @property
+    def damping_ratio(self) -> FloatArray:
+        """-Re pole / |pole| [-]; of a decay without oscillation it is 1."""
+        return np.asarray(-self.pole.real / np.maximum(np.abs(self.pole), 1e-300))
+
+    @property
+    def overdamped(self) -> FloatArray:
+        """Whether a pole is a decay without oscillation."""
+        return np.asarray(np.abs(self.pole.imag) <= _SWINGS * np.abs(self.pole.real))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Projected:
+    """Second-order matrices over a few orthonormal directions; the mass is unit."""
+
+    space: FloatArray
+    stiffness: ComplexArray
+    damping: FloatArray
+
+
+def damping_matrix(model: ReducedModel, values: JointValues) -> FloatArray:
+    """Return viscous damping of bodies, springs and joints [1/s], shape (r, r)."""
+    return np.asarray(model.damping + model.spread.total(values.damping))
+
+
+def _project(
+    model: ReducedModel, values: JointValues, top: float, loads: FloatArray
+) -> _Projected:
+    """Project on modes up to a frequency [rad/s] and on responses to loads.
+
+    Strong dampers hold their joints: then also on the modes with the dampers locked,
+    and on responses with half-locked ones.
+    """
+    stiffness, damping = values.stiffness, values.damping
+    found = _modes_up_to(model, stiffness, _REACH * top)
+    space = _with_responses(model, stiffness, found.shapes, loads)
+    viscous = damping_matrix(model, values)
+    omega = np.sqrt(np.maximum(found.eigenvalue, model.shift))
+    ratio = np.einsum("rm,rm->m", found.shapes, viscous @ found.shapes) / omega
+    if 0.5 * ratio.max(initial=0.0) > _LIGHT:
+        locked = stiffness + top * damping
+        space = _joined(space, _modes_up_to(model, locked, top).shapes)
+        for share in _LOCKED:
+            partly = stiffness + share * top * damping
+            space = _with_responses(model, partly, space, loads)
+    whole = model.with_joints(stiffness)
+    small = space.T @ (whole @ space) + 1j * (space.T @ (model.loss @ space))
+    small[: found.rigid] = small[:, : found.rigid] = 0.0
+    return _Projected(space, small, space.T @ (viscous @ space))
+
+
+def _modes_up_to(
+    model: ReducedModel, stiffness: FloatArray, top: float
+) -> ReducedModes:
+    """Return the modes up to a frequency [rad/s], at least those of the model."""
+    count = min(model.modes, model.size)
+    found = solve_reduced(model, stiffness, count)
+    while count < model.size and found.eigenvalue[-1] < top**2:
+        count = min(2 * count, model.size)
+        found = solve_reduced(model, stiffness, count)
+    return found
+
+
+def _with_responses(
+    model: ReducedModel, stiffness: FloatArray, space: FloatArray, loads: FloatArray
+) -> FloatArray:
+    """Append the response to loads at the shift, and the next terms of its series."""
+    if not loads.shape[1]:
+        return space
+    solve = shifted_inverse(model.with_joints(stiffness), model.shift)
+    new = loads
+    for _ in range(_TERMS):
+        count = space.shape[1]
+        space = _joined(space, solve(new))
+        new = space[:, count:]
+        if not new.shape[1]:
+            break
+    return space
+
+
+def _joined(space: FloatArray, new: FloatArray) -> FloatArray:
+    new = new / np.maximum(np.linalg.norm(new, axis=0), 1e-300)
+    for limit in (_DEPENDENT, 0.5):
+        new = new - space @ (space.T @ new)
+        vector, size, _ = np.linalg.svd(new, full_matrices=False)
+        new = vector[:, size > limit]
+    return np.concatenate([space, new], axis=1)
+
+
+def complex_modes(model: ReducedModel, values: JointValues) -> ComplexModes:
+    """Find the modes of a damped assembly.
+
+    Args:
+        model: of the assembly.
+        values: of its joints.
+
+    Returns:
+        Oscillating modes and decays, at most twice the number of modes of the model,
+        by |pole|; rigid motions are left out.
+
+    Source:
+        Ewins, Modal Testing (2000), sec. 2.7.
+    """
+    top = float(np.sqrt(solve_reduced(model, values.stiffness).eigenvalue[-1]))
+    small = _project(model, values, top, np.zeros((model.size, 0)))
+    count = small.damping.shape[0]
+    pole, vector = np.linalg.eig(_state_matrix(small))
+    size = np.abs(pole)
+    kept = (size > 1e-9 * np.sqrt(model.shift)) & (
+        pole.imag > -_SWINGS * np.abs(pole.real)
+    )
+    order = np.flatnonzero(kept)[np.argsort(size[kept])][: 2 * model.modes]
+    shapes = small.space @ vector[:count, order]
+    largest = shapes[np.abs(shapes).argmax(axis=0), np.arange(order.size)]
+    return ComplexModes(pole[order], shapes / largest)
+
+
+def _state_matrix(small: _Projected) -> ComplexArray:
+    count = small.damping.shape[0]
+    state = np.zeros((2 * count, 2 * count), complex)
+    state[:count, count:] = np.eye(count)
+    state[count:, :count] = -small.stiffness
+    state[count:, count:] = -small.damping
+    return state
+
+
+def receptance(
+    model: ReducedModel,
+    values: JointValues,
+    laplace: ComplexArray,
+    outputs: FloatArray,
+    inputs: FloatArray,
+) -> ComplexArray:
+    """Return receptances at many lines.
+
+    Args:
+        model: of the assembly.
+        values: of its joints.
+        laplace: lines [1/s], shape (n_lines,).
+        outputs: rows from the coordinates of the model, shape (n_outputs, r).
+        inputs: the same of the forces, shape (n_inputs, r).
+
+    Returns:
+        [m/N], shape (n_outputs, n_inputs, n_lines).
+    """
+    top = float(np.abs(laplace).max(initial=0.0))
+    loads = np.concatenate([outputs, inputs]).T
+    small = _project(model, values, top, _distinct(loads))
+    count = small.damping.shape[0]
+    still = _uncoupled(small)
+    moving = np.arange(still, count)
+    inner = _Projected(
+        small.space[:, moving],
+        small.stiffness[np.ix_(moving, moving)],
+        small.damping[np.ix_(moving, moving)],
+    )
+    out, into = outputs @ small.space, inputs @ small.space
+    pole, vector = np.linalg.eig(_state_matrix(inner))
+    force = np.zeros((2 * moving.size, inputs.shape[0]), complex)
+    force[moving.size :] = into[:, moving].T
+    weight = np.linalg.solve(vector, force)
+    residue = (out[:, moving] @ vector[: moving.size])[:, None] * weight.T
+    lines = 1.0 / (laplace[:, None] - pole)
+    found = residue.reshape(-1, pole.size) @ lines.T
+    rigid = (out[:, :still] @ into[:, :still].T)[:, :, None] / laplace**2
+    shape = (outputs.shape[0], inputs.shape[0], laplace.size)
+    return np.asarray(found.reshape(shape) + (rigid if still else 0.0))
+
+
+def _uncoupled(small: _Projected) -> int:
+    """Return the number of first directions with neither stiffness nor damping."""
+    held = np.abs(small.damping).max(axis=0) + np.abs(small.stiffness).max(axis=0)
+    free = held <= 1e-12 * held.max(initial=0.0)
+    return int(np.argmin(free)) if not free.all() else int(free.size)
+
+
+def _distinct(loads: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of load vectors, which often repeat."""
+    vector, size, _ = np.linalg.svd(loads, full_matrices=False)
+    return np.asarray(vector[:, size > _DEPENDENT * size.max(initial=0.0)])

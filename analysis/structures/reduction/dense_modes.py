@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""Modes of a small dense matrix whose eigenvalues span many decades.
+
+A soft joint's mode has a millionth of a millionth of the largest eigenvalue, below the
+rounding of a direct solution. The inverse of K + shift has its largest eigenvalues
+there, and its range ends at 1/shift.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
+
+from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.acquisition.basics.errors import BadData
+
+# Relative residual of each vector; its square is the error of the eigenvalue.
+_CONVERGED = 1e-6
+# Vectors in one block beyond the number of modes.
+_SPARE = 4
+# From this share of all modes on, all of them are computed.
+_MOST_OF_ALL = 0.25
+_SMALL = 90
+# Blocks before the first check: fewer never suffice.
+_FIRST_CHECK = 4
+
+
+def lowest_dense_modes(
+    matrix: FloatArray, shift: float, count: int, start: FloatArray | None = None
+) -> tuple[FloatArray, FloatArray]:
+    """Find the lowest eigenvalues of a symmetric positive semi-definite matrix.
+
+    Args:
+        matrix: shape (n, n) [1/s^2].
+        shift: added to its diagonal before the inversion [1/s^2].
+        count: number of eigenvalues.
+        start: vectors near the wanted ones, shape (n, k); None for random ones.
+
+    Returns:
+        Eigenvalues, the lowest first, and orthonormal vectors as columns.
+
+    Raises:
+        BadData: the matrix is not positive semi-definite.
+    """
+    size = matrix.shape[0]
+    factor = _factor(matrix, shift)
+    if size <= _SMALL or count > _MOST_OF_ALL * size:
+        inverse = cho_solve(factor, np.eye(size), check_finite=False)
+        value, vector = np.linalg.eigh(0.5 * (inverse + inverse.T))
+        value, vector = value[::-1][:count], vector[:, ::-1][:, :count]
+    else:
+        value, vector = _block_lanczos(factor, size, count, start)
+    # Softer joints cannot be distinguished from rounding.
+    least = np.finfo(float).eps * shift
+    return np.maximum(1.0 / value - shift, least), vector
+
+
+def shifted_inverse(
+    matrix: FloatArray, shift: float
+) -> Callable[[FloatArray], FloatArray]:
+    """Return a function that solves with matrix + shift."""
+    factor = _factor(matrix, shift)
+
+    def solve(load: FloatArray) -> FloatArray:
+        return np.asarray(cho_solve(factor, load, check_finite=False))
+
+    return solve
+
+
+def _factor(matrix: FloatArray, shift: float) -> tuple[FloatArray, bool]:
+    shifted = matrix.copy()
+    shifted.flat[:: matrix.shape[0] + 1] += shift
+    try:
+        factor: tuple[FloatArray, bool] = cho_factor(
+            shifted, lower=True, overwrite_a=True, check_finite=False
+        )
+    except LinAlgError as error:
+        raise BadData(
+            f"the reduced stiffness is not positive ({error}); a joint's stiffness "
+            "exceeds the box of the reduction by far"
+        ) from error
+    return factor
+
+
+def _block_lanczos(
+    factor: tuple[FloatArray, bool], size: int, count: int, start: FloatArray | None
+) -> tuple[FloatArray, FloatArray]:
+    """Return the largest eigenvalues of the inverse, and vectors."""
+    if start is None:
+        block = min(count + _SPARE, size)
+        start = np.random.default_rng(0).standard_normal((size, block))
+    new = np.linalg.qr(start)[0]
+    space, images = np.zeros((size, 0)), np.zeros((size, 0))
+    for step in range(size):
+        image = cho_solve(factor, new, check_finite=False)
+        space = np.concatenate([space, new], axis=1)
+        images = np.concatenate([images, image], axis=1)
+        if step + 1 < _FIRST_CHECK and space.shape[1] < size:
+            new = _next_block(space, image)
+            continue
+        small = space.T @ images
+        value, vector = np.linalg.eigh(0.5 * (small + small.T))
+        value, vector = value[::-1][:count], vector[:, ::-1][:, :count]
+        better = images @ vector
+        left = np.linalg.norm(better - (space @ vector) * value, axis=0)
+        if np.all(left <= _CONVERGED * value) or space.shape[1] == size:
+            break
+        new = _next_block(space, image)
+    # One more inversion damps what high modes leave; it stays orthonormal to rounding.
+    return value, np.asarray(np.linalg.qr(better)[0])
+
+
+def _next_block(space: FloatArray, image: FloatArray) -> FloatArray:
+    """Return an orthonormal block outside of the space."""
+    new = image
+    room = space.shape[0] - space.shape[1]
+    for _ in range(2):
+        new = new - space @ (space.T @ new)
+        new = np.linalg.qr(new)[0][:, :room]
+    return np.asarray(new)
