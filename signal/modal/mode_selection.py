@@ -17,10 +17,6 @@ from jointbench.acquisition.basics.arrays import (
     IntArray,
 )
 from jointbench.signal.modal.computational_modes import find_beyond
-from jointbench.signal.modal.doubtful_neighbours import (
-    DoubtfulNeighbours,
-    doubtful_neighbours,
-)
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import (
     line_noise,
@@ -29,17 +25,23 @@ from jointbench.signal.modal.line_noise import (
     model_error,
     residual_around,
 )
-from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lscf import Progress
-from jointbench.signal.modal.lsfd import LinearFit, needed, significance
-from jointbench.signal.modal.missing_modes import Seen, find_missing
+from jointbench.signal.modal.lsfd import LinearFit
+from jointbench.signal.modal.mode_significance import needed, significance
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
     unresolved,
 )
+from jointbench.signal.modal.residual_search.doubtful_neighbours import (
+    DoubtfulNeighbours,
+    doubtful_neighbours,
+)
+from jointbench.signal.modal.residual_search.local_fit import WholeFit
+from jointbench.signal.modal.residual_search.missing_modes import Seen, find_missing
 from jointbench.signal.modal.shared_errors import (
     ForceNoise,
+    FrfErrors,
     force_covariance,
     shared_covariance,
 )
@@ -90,12 +92,10 @@ class FittedModes:
 def fit_modes(
     lines: FrfLines,
     candidates: ComplexArray,
-    scatter: FloatArray | None,
+    errors: FrfErrors,
     *,
     held: BoolArray | None = None,
     seen: Seen | None = None,
-    n_inputs: int = 1,
-    force: ForceNoise | None = None,
     refine: bool = True,
     progress: Progress | None = None,
 ) -> FittedModes:
@@ -108,18 +108,17 @@ def fit_modes(
     Args:
         lines: lines of the fit.
         candidates: poles [rad/s], shape (n_candidates,).
-        scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
+        errors: known before the fit.
         held: True for candidates that are always kept, shape (n_candidates,), or None.
         seen: whether a pole that the residual shows is one of the FRF; None adds no
             modes, as where some were dropped by hand and their residual is wanted.
-        n_inputs: references; inputs vary fastest over the rows of the lines.
-        force: noise of the force, None where it is not known.
         refine: False keeps the poles of LSCF.
         progress: called with the current step and its share; None for no reports.
 
     Returns:
         The modes, possibly none.
     """
+    scatter = errors.scatter
     noise, level = line_noise(lines.response, scatter), local_level(lines.response)
     variance = noise + _FIRST_MODEL_ERROR**2 * level
     steps = _STEPS if refine else 0
@@ -166,8 +165,8 @@ def fit_modes(
         done.significance,
         start.error,
         residual_around(lines, done.poles.pole, done.poles.residual, start.noise),
-        shared_covariance(lines, done.poles, done.fit, start.variance, n_inputs),
-        _forced(lines, start, done, force),
+        shared_covariance(lines, done.poles, done.fit, start.variance, errors.n_inputs),
+        _forced(lines, start, done, errors.force),
         _doubts(lines, start, done, tried=refine and seen is not None),
     )
 

@@ -20,14 +20,14 @@ from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.line_weights import weights_of
 from jointbench.signal.kalman.process_models import StageGain
 from jointbench.signal.kalman.stage_provenance import stage_gain_of
-from jointbench.signal.modal.doubtful_neighbours import neighbour_words
 from jointbench.signal.modal.frf_lines import FrfLines, lines_of
 from jointbench.signal.modal.lscf import Progress, fit_poles
 from jointbench.signal.modal.manual_selection import Choices, overrule
 from jointbench.signal.modal.modal_model import ModalModel, build_model
 from jointbench.signal.modal.mode_selection import FittedModes, fit_modes
 from jointbench.signal.modal.repeated_roots import separate_repeated
-from jointbench.signal.modal.shared_errors import ForceNoise
+from jointbench.signal.modal.residual_search.doubtful_neighbours import neighbour_words
+from jointbench.signal.modal.shared_errors import ForceNoise, FrfErrors
 from jointbench.signal.modal.stabilisation import (
     Stabilisation,
     StabilityLimits,
@@ -144,11 +144,9 @@ def identify_modes(
     fitted = fit_modes(
         lines,
         start,
-        _scatter(frf, keep),
+        FrfErrors(_scatter(frf, keep), len(frf.inputs), _force_noise(frf, keep)),
         held=np.array([c.by_hand for c in found], bool),
         seen=None if settings.choices.drop else partial(recurs, table),
-        n_inputs=len(frf.inputs),
-        force=_force_noise(frf, keep),
         refine=settings.refine,
         progress=progress,
     )

@@ -5,15 +5,15 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.computational_modes import find_beyond
-from jointbench.signal.modal.doubtful_neighbours import (
+from jointbench.signal.modal.frf_lines import FrfLines
+from jointbench.signal.modal.lsfd import fit_residues
+from jointbench.signal.modal.refined_pole_covariance import refine_poles
+from jointbench.signal.modal.residual_search.doubtful_neighbours import (
     doubtful_neighbours,
     neighbour_words,
 )
-from jointbench.signal.modal.frf_lines import FrfLines
-from jointbench.signal.modal.local_fit import WholeFit
-from jointbench.signal.modal.lsfd import fit_residues
-from jointbench.signal.modal.missing_modes import find_missing
-from jointbench.signal.modal.refined_pole_covariance import refine_poles
+from jointbench.signal.modal.residual_search.local_fit import WholeFit
+from jointbench.signal.modal.residual_search.missing_modes import find_missing
 from jointbench.signal.modal.shared_errors import shared_covariance
 
 OMEGA = 2.0 * np.pi * np.arange(50.0, 150.0, 0.125)

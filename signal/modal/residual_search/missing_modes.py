@@ -18,12 +18,19 @@ from jointbench.acquisition.basics.arrays import (
     FloatArray,
 )
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
-from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
-from jointbench.signal.modal.lsfd import least_significance, significance
+from jointbench.signal.modal.mode_significance import (
+    least_significance,
+    significance,
+)
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
     unresolved,
+)
+from jointbench.signal.modal.residual_search.local_fit import (
+    Group,
+    WholeFit,
+    group_around,
 )
 
 Seen = Callable[[complex], bool]
@@ -32,7 +39,7 @@ Seen = Callable[[complex], bool]
 _DECAYS = (0.5, 1.0, 2.0)
 # Lines on each side of a trial: half-power half-widths, and lines at least.
 _REACH_WIDTHS, _REACH_LINES = 8.0, 40
-# Trials in one pass over the residual.
+# PoleTrials in one pass over the residual.
 _TRIALS = 12
 _STEPS = 12
 # A mode must explain this share of the residual power above the noise around it.

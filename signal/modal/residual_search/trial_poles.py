@@ -16,7 +16,6 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
-from jointbench.signal.modal.local_fit import WholeFit
 from jointbench.signal.modal.lsfd import modal_basis, modal_columns, modal_size
 from jointbench.signal.modal.normal_equations import (
     correlations,
@@ -24,6 +23,7 @@ from jointbench.signal.modal.normal_equations import (
     inverses,
 )
 from jointbench.signal.modal.refined_pole_covariance import pole_slopes, slope_turns
+from jointbench.signal.modal.residual_search.local_fit import WholeFit
 
 # Sd of (Re p, Im p) without data, in half-power half-widths, as in a refinement.
 _LEASH = 1.0
@@ -31,7 +31,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Trials:
+class PoleTrials:
     """What one more pole at each place would change.
 
     Attributes:
@@ -68,7 +68,7 @@ def try_poles(
     trials: ComplexArray,
     scale: FloatArray,
     shares: Sequence[float] = (1.0,),
-) -> Trials:
+) -> PoleTrials:
     """Return the evidence for one more pole at each place.
 
     Args:
@@ -122,7 +122,7 @@ def try_poles(
         np.concatenate(part) for part in zip(*found, strict=True)
     )
     shape = (log_factor.size, -1, 2)
-    return Trials(
+    return PoleTrials(
         log_factor,
         np.where(np.isfinite(log_factor), gain, 0.0),
         change.reshape(shape),

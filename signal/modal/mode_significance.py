@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""Which modes of a fit the FRF needs.
+
+A mode is needed where leaving it out raises chi-squared by more than noise and the
+local residual can explain.
+"""
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    IntArray,
+)
+from jointbench.acquisition.basics.tail_probabilities import chi2_limit
+from jointbench.signal.modal.frf_lines import FrfLines, measured_width
+from jointbench.signal.modal.line_noise import local_residual
+from jointbench.signal.modal.lsfd import fit_residues
+
+# Probability that noise anywhere in the band passes for a mode; every line is one test
+# (Bonferroni).
+_CHANCE = 1e-6
+
+
+def least_significance(lines: FrfLines) -> float:
+    """Return the chi-squared above which a mode is needed [-]."""
+    chance = _CHANCE / lines.laplace.size
+    return chi2_limit(chance, 2 * lines.response.shape[0])
+
+
+def needed(
+    lines: FrfLines,
+    pole: ComplexArray,
+    held: BoolArray,
+    noise: FloatArray,
+    variance: FloatArray,
+    beyond: ComplexArray,
+    residual: ComplexArray | None = None,
+) -> IntArray:
+    """Drop the least needed pole until all that are left are needed.
+
+    Args:
+        lines: lines of the fit.
+        pole: [rad/s], shape (n_modes,).
+        held: poles that are always kept, shape (n_modes,).
+        noise: noise variance of the lines, shape (n_frf, n_lines).
+        variance: noise and model error, same shape.
+        beyond: computational poles [rad/s].
+        residual: of the fit with all of them, None if it is not known.
+
+    Returns:
+        Indices of the poles that are left.
+    """
+    left = np.arange(pole.size)
+    limit = least_significance(lines)
+    while left.size:
+        if residual is None:
+            fit = fit_residues(lines, np.append(pole[left], beyond), variance)
+            residual = lines.response - fit.synthesis
+        found = significance(lines, residual, pole[left], noise, beyond)
+        residual = None
+        weak: BoolArray = (found < limit) & ~held[left]
+        if not weak.any():
+            break
+        # Weak poles may replace each other: only the weakest is dropped, and those far
+        # below the limit.
+        weak &= found <= max(0.1 * limit, float(found[weak].min()))
+        left = left[~weak]
+    return left
+
+
+def significance(
+    lines: FrfLines,
+    residual: ComplexArray,
+    pole: ComplexArray,
+    noise: FloatArray,
+    beyond: ComplexArray,
+) -> FloatArray:
+    """Judge each mode by the noise or by the local residual, whichever is larger.
+
+    Args:
+        lines: lines of the fit.
+        residual: of a fit with all poles, shape (n_frf, n_lines).
+        pole: modes [rad/s], shape (n_modes,).
+        noise: noise variance of the lines, shape (n_frf, n_lines).
+        beyond: computational poles [rad/s].
+
+    Returns:
+        Increase of chi-squared without each mode, shape (n_modes,).
+    """
+    local = local_residual(residual)
+    everything = np.append(pole, beyond)
+    judged = fit_residues(lines, everything, np.maximum(noise, local))
+    apparent = np.nan_to_num(judged.significance[: pole.size])
+    return np.asarray(apparent / _window_gain(lines, pole))
+
+
+def _window_gain(lines: FrfLines, pole: ComplexArray) -> FloatArray:
+    """Return the noise at a mode over that on its lines, 1 or more.
+
+    An exponential window exp(-a t) on a block T keeps the noise early in the block,
+    where the mode is too: its power there is 2 a T / (1 - exp(-2 a T)) times the mean.
+    Weighted with a decay exp(-(a + d) t), that is the factor below; 1 without a window.
+    In terms of lines: the window correlates the errors of neighbours.
+    """
+    added = float(lines.laplace.real[0])
+    if added <= 0.0:
+        return np.ones(pole.size)
+    exponent = 2.0 * added * 2.0 * np.pi / float(np.median(np.diff(lines.laplace.imag)))
+    early = exponent / -np.expm1(-exponent)
+    width = measured_width(lines, pole)
+    return np.asarray(np.maximum(1.0, early * width / (width + added)))
