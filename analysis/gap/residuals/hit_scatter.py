@@ -212,13 +212,16 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
     )
     free = replace(plain, highest=np.full(size.size, np.inf))
     tried = [replace(free, rho=rho) for rho in RESIDUALS.correlations]
-    first = [problem.deviance(size) for problem in tried]
-    reach = free.deviance(size) + RESIDUALS.correlation_reach
+    # Trends have taken their share of the sizes; the steps between hits remain.
+    white = likeliest_sizes(free, np.where(size > 0.0, size, 1e-4))
+    starts = [white / np.sqrt(1.0 - problem.rho**2) for problem in tried]
+    first = [p.deviance(own) for p, own in zip(tried, starts, strict=True)]
+    reach = free.deviance(white) + RESIDUALS.correlation_reach
     best = found
-    for at in np.argsort(first)[:2].tolist():
+    for at in np.argsort(first).tolist():
         if first[at] > reach:
             break
-        own = likeliest_sizes(tried[at], np.where(size > 0.0, size, 1e-4))
+        own = likeliest_sizes(tried[at], starts[at])
         if (now := tried[at].deviance(own)) < least:
             best, least = _Estimate(tried[at], own, found.outstanding), now
     least += RESIDUALS.correlation_doubt
