@@ -29,6 +29,7 @@ from jointbench.analysis.gap.response.law_forces import (
     FORCE,
     GUESS,
     LANES,
+    LAST,
     LAW,
     MOTION,
     OWN,
@@ -75,6 +76,7 @@ def _begin_step(
         for k in range(LANES):
             at = q * PORT + k
             w[at + GUESS] = 0.0
+            w[at + LAST] = w[at + BEFORE]
             w[at + BEFORE] = w[at + MOTION]
             w[at + MOTION] = displacement[q, step, first + k]
     for a in range(ports.size):
@@ -179,6 +181,7 @@ def _integrate_lanes(
                     lanes=LANES,
                     now=port + MOTION,
                     last=port + BEFORE,
+                    earlier=port + LAST,
                     force=a * LAW + OWN,
                 )
                 bank_forces(bank, w, f, states, active, sliders, tables, tops)

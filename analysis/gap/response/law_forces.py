@@ -28,10 +28,10 @@ MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES, POWER_DAMPING)
 LANES = RESPONSE.lanes
 _STILL = RESPONSE.still_speed
 
-FORCE, GUESS, BEFORE, MOTION, SPEED, SLOPE = (i * LANES for i in range(6))
-"""Offsets within a port: force of its laws, its estimate, the last motion, the motion,
-its rate, and the change of that rate per unit force of the port within a step."""
-PORT = 6 * LANES
+FORCE, GUESS, LAST, BEFORE, MOTION, SPEED, SLOPE = (i * LANES for i in range(7))
+"""Offsets within a port: force of its laws, its estimate, the two last motions, the
+motion, its rate, and the change of that rate per unit force of the port in a step."""
+PORT = 7 * LANES
 OWN, EARLIER, EXTRAPOLATED = (i * LANES for i in range(3))
 """Offsets within a law: its force, that of the previous step, and the extrapolation."""
 LAW = 3 * LANES
