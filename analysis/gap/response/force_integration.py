@@ -24,6 +24,7 @@ from jointbench.analysis.gap.response.law_forces import (
     BEFORE,
     COULOMB,
     CURVES,
+    DEFECT,
     EARLIER,
     EXTRAPOLATED,
     FORCE,
@@ -31,11 +32,18 @@ from jointbench.analysis.gap.response.law_forces import (
     LANES,
     LAST,
     LAW,
+    LEAN,
     MOTION,
+    ONE_SIDED,
     OWN,
+    PACE,
     PORT,
+    SHIFT,
     SLIDERS,
+    SLOPE,
     SPEED,
+    SPREAD,
+    TWO_SIDED,
     IntegrationLaws,
     force_of_real_joint,
     force_without_memory,
@@ -48,6 +56,8 @@ from jointbench.analysis.gap.response.mode_steps import (
     mode_size,
     predict_one_port,
     predict_ports,
+    push_one_port,
+    push_ports,
     resting_state,
 )
 from jointbench.analysis.gap.response.slider_integration import (
@@ -76,6 +86,10 @@ def _begin_step(
         for k in range(LANES):
             at = q * PORT + k
             w[at + GUESS] = 0.0
+            w[at + DEFECT] = 0.0
+            w[at + LEAN] = 0.0
+            w[at + SHIFT] = 0.0
+            w[at + SPREAD] = 0.0
             w[at + LAST] = w[at + BEFORE]
             w[at + BEFORE] = w[at + MOTION]
             w[at + MOTION] = displacement[q, step, first + k]
@@ -143,6 +157,50 @@ def _end_step(
             w[at + GUESS] = w[at + FORCE] - w[at + GUESS]
 
 
+@compiled(fastmath=True, inline="always")
+def _add_defects(
+    w: FloatArray, n_modes: int, several: bool, out: FloatArray, step: int, first: int
+) -> None:
+    """Add what a force that jumps or bends within a step does to modes and samples.
+
+    A band-limited response shows the first moments of the force over the step. Three
+    samples carry those that the samples at the ends of the step lack.
+
+    Source:
+        Euler and Maclaurin: sums of samples and integrals, at a jump between samples.
+    """
+    n_ports = out.shape[0] if several else 1
+    for q in range(n_ports):
+        for k in range(LANES):
+            at = q * PORT + k
+            mean, shift = w[at + DEFECT], w[at + SHIFT]
+            far = 0.5 * (w[at + SPREAD] - 0.25 * mean)
+            half, lean = 0.5 * (mean - far), shift + 1.5 * far
+            out[q, step, first + k] += half + lean
+            if step > 1:
+                out[q, step - 1, first + k] += half - lean
+                out[q, step - 2, first + k] += far
+    if several:
+        push_ports(w, n_modes, n_ports)
+    else:
+        push_one_port(w, n_modes)
+
+
+@compiled(fastmath=True, inline="always")
+def _keep_pace(w: FloatArray, coupled: int, n_ports: int, several: bool) -> None:
+    """Store the speeds at the end of a step, corrected for the forces found."""
+    for p in range(n_ports):
+        for k in range(LANES):
+            pace = w[p * PORT + SPEED + k]
+            for q in range(n_ports):
+                slope = w[p * PORT + SLOPE + k]
+                if several:
+                    slope = w[coupled + (p * n_ports + q) * LANES + k]
+                at = q * PORT + k
+                pace -= slope * (w[at + GUESS] + 2.0 * w[at + DEFECT])
+            w[p * PORT + PACE + k] = pace
+
+
 @compiled(fastmath=True)
 def _integrate_lanes(
     displacement: FloatArray,
@@ -165,7 +223,8 @@ def _integrate_lanes(
     # Unpacked once: each access to a tuple changes a reference count.
     kinds, ports, p, ends, slips, weights, tables, tops, curves = laws
     sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * LAW)
-    rubbing = (kinds == COULOMB).sum()
+    rubbing = (kinds == COULOMB).any()
+    uneven = rubbing or (kinds == ONE_SIDED).any() or (kinds == TWO_SIDED).any()
     for step in range(displacement.shape[1]):
         _begin_step(w, f, ports, several, displacement, step, first)
         _predict(w, n_modes, n_ports, several)
@@ -189,9 +248,13 @@ def _integrate_lanes(
                 force_of_real_joint(a, port, w, f, kinds, p)
             else:
                 force_without_memory(a, port, w, f, kinds, p, curves)
-        if several and rubbing > 1:
+        if rubbing:
             balance_friction(w, f, kinds, ports, p, coupled, n_ports)
         _end_step(w, f, ports, several, out, step, first)
+        if uneven:
+            _add_defects(w, n_modes, several, out, step, first)
+        if rubbing:
+            _keep_pace(w, coupled, n_ports, several)
         if several:
             correct_ports(w, n_modes, n_ports)
         else:

@@ -22,7 +22,7 @@ from jointbench.analysis.gap.response.force_integration import (
     LaneModes,
     integrate_forces,
 )
-from jointbench.analysis.gap.response.law_forces import COULOMB, CURVES, LANES, MOVING
+from jointbench.analysis.gap.response.law_forces import CURVES, LANES, MOVING
 from jointbench.analysis.gap.response.packed_laws import pack_laws
 
 
@@ -98,8 +98,7 @@ def port_forces(
     """Integrate the forces of all laws at all ports along their coupled motion.
 
     The error of the time integration is proportional to the square of its step, so a
-    solution with half as many steps gives an extrapolation to zero step; dry friction
-    at standstill is not smooth enough for that.
+    solution with half as many steps gives an extrapolation to zero step.
 
     Args:
         motions: of the ports from rest without the laws: displacement [m] and, if a law
@@ -141,8 +140,7 @@ def port_forces(
             )
         )
 
-    smooth = all(x.law.kind != COULOMB for x in laws)
-    return integrated(1), integrated(2) if extrapolated and smooth else None
+    return integrated(1), integrated(2) if extrapolated else None
 
 
 def filled_lanes(records: int) -> int:
