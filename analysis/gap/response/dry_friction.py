@@ -15,6 +15,7 @@ from jointbench.acquisition.basics.compiled import compiled
 from jointbench.analysis.gap.response.law_forces import (
     COULOMB,
     DEFECT,
+    DRIFT,
     EARLIER,
     EXTRAPOLATED,
     LANES,
@@ -23,7 +24,6 @@ from jointbench.analysis.gap.response.law_forces import (
     OWN,
     PACE,
     PORT,
-    PULL,
     SHIFT,
     SLOPE,
     SPEED,
@@ -35,15 +35,17 @@ from jointbench.analysis.gap.response.response_settings import RESPONSE
 _SWEEPS = RESPONSE.friction_sweeps
 _TOLERANCE = RESPONSE.friction_tolerance
 _SWITCH = RESPONSE.friction_switch
+_RIGID = RESPONSE.friction_rigid
 _PIECES = RESPONSE.friction_pieces
 _LAYER = RESPONSE.friction_layer
+_FAR = RESPONSE.friction_far
 
 
 @compiled()
 def follow_switch(
-    limit: float, width: float, start: float, pull: float, growth: float, slope: float
+    limit: float, width: float, start: float, drift: float, growth: float, slope: float
 ) -> tuple[float, float, float, float]:
-    """Follow v' = pull(t) - 2 slope limit tanh(v / width) over a step of length 1.
+    """Follow v' = drift(t) - 2 slope limit tanh(v / width) over a step of length 1.
 
     Far from a speed of zero the force is constant; near it, each piece changes the
     speed by a part of `width`, and a speed that comes to rest there decays.
@@ -52,8 +54,8 @@ def follow_switch(
         limit: largest force [N].
         width: speed over which the force changes its sign [m/s].
         start: speed at the start [m/s].
-        pull: change of the speed by all else, on average over the step [m/s].
-        growth: change of the pull over the step [m/s].
+        drift: change of the speed by all else, on average over the step [m/s].
+        growth: change of the drift over the step [m/s].
         slope: change of the speed by a force that rises to 1 N in the step [m/s].
 
     Returns:
@@ -66,16 +68,17 @@ def follow_switch(
     v, t, moment, second = start, 0.0, 0.0, 0.0
     for piece in range(_PIECES):
         bend = math.tanh(v / width)
-        rate = pull + growth * (t - 0.5) - 2.0 * slope * limit * bend
-        steep = -2.0 * slope * limit * (1.0 - bend * bend) / width
-        left = 1.0 - t
-        reach = max(abs(v) - 3.0 * width, _LAYER * width)
-        if v * rate > 0.0 and abs(v) > 3.0 * width:
+        rate = drift + growth * (t - 0.5) - 2.0 * slope * limit * bend
+        steep, reach = 0.0, abs(v) - _FAR * width
+        if reach < _LAYER * width:
+            steep = -2.0 * slope * limit * (1.0 - bend * bend) / width
+            reach = _LAYER * width
+        elif v * rate > 0.0:
             reach = 1e300
-        h = left
+        h = 1.0 - t
         if piece < _PIECES - 1:
-            h = min(left, reach / (abs(rate) + 1e-300))
-        here = pull + growth * (t + 0.5 * h - 0.5)
+            h = min(h, reach / (abs(rate) + 1e-300))
+        here = drift + growth * (t + 0.5 * h - 0.5)
         grown = (here - 2.0 * slope * limit * bend) * h
         if abs(steep * h) > 1e-9:
             grown *= math.expm1(steep * h) / (steep * h)
@@ -86,7 +89,7 @@ def follow_switch(
         v, t = v + grown, t + h
         if t >= 1.0 - 1e-12:
             break
-    mean = (pull - (v - start)) / (2.0 * slope)
+    mean = (drift - (v - start)) / (2.0 * slope)
     return limit * math.tanh(v / width), mean, moment, second
 
 
@@ -140,12 +143,13 @@ def balance_friction(
             at = ports[a] * PORT + k
             v = _others_moved(w, f, kinds, ports, a, k, coupled, n_ports)
             slope, start = w[at + SLOPE], w[at + PACE]
-            pull = v - start + slope * (before + f[own + EXTRAPOLATED])
-            growth, f[own + PULL] = pull - f[own + PULL], pull
-            if abs(force - before) < _SWITCH * abs(limit):
+            drift = v - start + slope * (before + f[own + EXTRAPOLATED])
+            growth, f[own + DRIFT] = drift - f[own + DRIFT], drift
+            small = abs(force - before) < _SWITCH * abs(limit)
+            if small or slope * abs(limit) < _RIGID * p[a, 1]:
                 continue
             force, mean, moment, second = follow_switch(
-                limit, p[a, 1], start, pull, growth, slope
+                limit, p[a, 1], start, drift, growth, slope
             )
             f[own + OWN] = force
             w[at + DEFECT] += mean - 0.5 * (before + force)

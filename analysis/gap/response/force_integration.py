@@ -40,7 +40,6 @@ from jointbench.analysis.gap.response.law_forces import (
     PORT,
     SHIFT,
     SLIDERS,
-    SLOPE,
     SPEED,
     SPREAD,
     TWO_SIDED,
@@ -56,8 +55,6 @@ from jointbench.analysis.gap.response.mode_steps import (
     mode_size,
     predict_one_port,
     predict_ports,
-    push_one_port,
-    push_ports,
     resting_state,
 )
 from jointbench.analysis.gap.response.slider_integration import (
@@ -158,10 +155,10 @@ def _end_step(
 
 
 @compiled(fastmath=True, inline="always")
-def _add_defects(
-    w: FloatArray, n_modes: int, several: bool, out: FloatArray, step: int, first: int
+def _add_to_samples(
+    w: FloatArray, several: bool, out: FloatArray, step: int, first: int
 ) -> None:
-    """Add what a force that jumps or bends within a step does to modes and samples.
+    """Add to the samples what a force does that jumps or bends within a step.
 
     A band-limited response shows the first moments of the force over the step. Three
     samples carry those that the samples at the ends of the step lack.
@@ -180,25 +177,22 @@ def _add_defects(
             if step > 1:
                 out[q, step - 1, first + k] += half - lean
                 out[q, step - 2, first + k] += far
-    if several:
-        push_ports(w, n_modes, n_ports)
-    else:
-        push_one_port(w, n_modes)
 
 
 @compiled(fastmath=True, inline="always")
-def _keep_pace(w: FloatArray, coupled: int, n_ports: int, several: bool) -> None:
-    """Store the speeds at the end of a step, corrected for the forces found."""
-    for p in range(n_ports):
+def _keep_pace(
+    w: FloatArray,
+    n_modes: int,
+    several: bool,
+    velocity: FloatArray,
+    step: int,
+    first: int,
+) -> None:
+    """Store the speeds at the end of a step, after the modes were corrected."""
+    _set_speeds(w, n_modes, several, velocity, step, first)
+    for p in range(velocity.shape[0] if several else 1):
         for k in range(LANES):
-            pace = w[p * PORT + SPEED + k]
-            for q in range(n_ports):
-                slope = w[p * PORT + SLOPE + k]
-                if several:
-                    slope = w[coupled + (p * n_ports + q) * LANES + k]
-                at = q * PORT + k
-                pace -= slope * (w[at + GUESS] + 2.0 * w[at + DEFECT])
-            w[p * PORT + PACE + k] = pace
+            w[p * PORT + PACE + k] = w[p * PORT + SPEED + k]
 
 
 @compiled(fastmath=True)
@@ -221,10 +215,11 @@ def _integrate_lanes(
     states = np.zeros((LANES, laws.slips.size, 2))
     active = np.zeros((n_laws, LANES), dtype=np.int64)
     # Unpacked once: each access to a tuple changes a reference count.
-    kinds, ports, p, ends, slips, weights, tables, tops, curves = laws
+    kinds, ports, p, ends, slips, weights, tables, tops, curves, band_limited = laws
     sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * LAW)
     rubbing = (kinds == COULOMB).any()
-    uneven = rubbing or (kinds == ONE_SIDED).any() or (kinds == TWO_SIDED).any()
+    bent = (kinds == ONE_SIDED).any() or (kinds == TWO_SIDED).any()
+    uneven = band_limited and (rubbing or bent)
     for step in range(displacement.shape[1]):
         _begin_step(w, f, ports, several, displacement, step, first)
         _predict(w, n_modes, n_ports, several)
@@ -252,13 +247,13 @@ def _integrate_lanes(
             balance_friction(w, f, kinds, ports, p, coupled, n_ports)
         _end_step(w, f, ports, several, out, step, first)
         if uneven:
-            _add_defects(w, n_modes, several, out, step, first)
-        if rubbing:
-            _keep_pace(w, coupled, n_ports, several)
+            _add_to_samples(w, several, out, step, first)
         if several:
-            correct_ports(w, n_modes, n_ports)
+            correct_ports(w, n_modes, n_ports, uneven)
         else:
-            correct_one_port(w, n_modes)
+            correct_one_port(w, n_modes, uneven)
+        if rubbing:
+            _keep_pace(w, n_modes, several, velocity, step, first)
 
 
 class LaneModes(NamedTuple):

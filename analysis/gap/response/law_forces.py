@@ -37,7 +37,7 @@ DEFECT, LEAN, SHIFT, SPREAD = (i * LANES for i in range(8, 12))
 less those of a straight line, and its first and second moment less those of the samples
 of a band-limited signal. Moments are about the middle of a step of length 1."""
 PORT = 12 * LANES
-OWN, EARLIER, EXTRAPOLATED, PULL = (i * LANES for i in range(4))
+OWN, EARLIER, EXTRAPOLATED, DRIFT = (i * LANES for i in range(4))
 """Offsets within a law: its force, that of the previous step, the extrapolation, and,
 for dry friction, the change of the speed in the last step by all else."""
 LAW = 4 * LANES
@@ -60,6 +60,8 @@ class IntegrationLaws(NamedTuple):
         tables: of sliders, four rows per law, shape (4 n_laws, n_points).
         tops: properties of these tables, see `slide`, shape (n_laws, 7).
         curves: of curve laws, three rows per law, shape (3 n_laws, n_points).
+        band_limited: True for samples of the band-limited force, False for the force at
+            the instants themselves.
     """
 
     kinds: IntArray
@@ -71,6 +73,7 @@ class IntegrationLaws(NamedTuple):
     tables: FloatArray
     tops: FloatArray
     curves: FloatArray
+    band_limited: bool
 
 
 @compiled()

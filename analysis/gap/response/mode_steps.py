@@ -128,8 +128,16 @@ def add_speed_one_port(w: FloatArray, n_modes: int) -> None:
 
 
 @compiled(fastmath=True, inline="always")
-def correct_one_port(w: FloatArray, n_modes: int) -> None:
-    """Correct the modes by the force minus its estimate, which is in `GUESS`."""
+def correct_one_port(w: FloatArray, n_modes: int, uneven: bool) -> None:
+    """Correct the modes by the force minus its estimate, which is in `GUESS`.
+
+    Args:
+        w: state of the lanes; changed in place.
+        n_modes: number of modes.
+        uneven: True if the force may jump or bend within a step.
+    """
+    if uneven:
+        _push_one_port(w, n_modes)
     for m in range(n_modes):
         for k in range(LANES):
             at = PORT + m * _ONE_PORT_MODE + k
@@ -138,7 +146,7 @@ def correct_one_port(w: FloatArray, n_modes: int) -> None:
 
 
 @compiled(fastmath=True, inline="always")
-def push_one_port(w: FloatArray, n_modes: int) -> None:
+def _push_one_port(w: FloatArray, n_modes: int) -> None:
     """Move the modes by what the force of the step exceeds a straight line by.
 
     A line has the same mean and first moment.
@@ -153,7 +161,7 @@ def push_one_port(w: FloatArray, n_modes: int) -> None:
 
 
 @compiled(fastmath=True, inline="always")
-def push_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
+def _push_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
     """Move the modes by what the forces of the step exceed straight lines by."""
     for m in range(n_modes):
         at = n_ports * PORT + m * mode_size(n_ports)
@@ -227,8 +235,10 @@ def add_speed_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
 
 
 @compiled(fastmath=True, inline="always")
-def correct_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
+def correct_ports(w: FloatArray, n_modes: int, n_ports: int, uneven: bool) -> None:
     """Correct the modes by the forces minus their estimates, which are in `GUESS`."""
+    if uneven:
+        _push_ports(w, n_modes, n_ports)
     for m in range(n_modes):
         at = n_ports * PORT + m * mode_size(n_ports)
         _drive(w, at, n_ports)

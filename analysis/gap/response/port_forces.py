@@ -94,6 +94,7 @@ def port_forces(
     laws: Sequence[PortLaw],
     *,
     extrapolated: bool,
+    band_limited: bool = True,
 ) -> tuple[FloatArray, FloatArray | None]:
     """Integrate the forces of all laws at all ports along their coupled motion.
 
@@ -109,6 +110,8 @@ def port_forces(
         dt: step [s].
         laws: at least one for each port.
         extrapolated: True for a solution of half as many steps as well.
+        band_limited: True for samples of the band-limited force, which differ from the
+            force itself where it jumps or bends within a step.
 
     Returns:
         Force of each port [N], shape (n_ports, n_steps, n_columns), and that at every
@@ -127,7 +130,9 @@ def port_forces(
     moving = need_velocity(laws)
     if moving and len(motions) < 2:
         raise UsageError("a law depends on the speed; give the speeds of the ports")
-    packed = pack_laws([x.law for x in laws], [x.port for x in laws])
+    packed = pack_laws(
+        [x.law for x in laws], [x.port for x in laws], band_limited=band_limited
+    )
     scaled = modes.scaled()
     further = any(x.law.kind > CURVES for x in laws)
     version = VERSIONS[2 * further + (count > 1)]
