@@ -8,6 +8,9 @@ whole catalogue; every second one again with the family of its main law taken ou
 second one without a law, so that only model error is there. One JSON line for each
 judgement; those that are in the file are skipped. With --whole the whole engine runs
 before, as in `jointbench gap`; without it only the part under model error.
+
+With --outside the joint law is one that no catalogue has, and every second bench is
+free of model error but for its scatter.
 """
 
 import argparse
@@ -21,7 +24,13 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "judges"))
-from imperfect_benches import FAMILY, ImperfectBench, make_bench_with_errors
+from imperfect_benches import (
+    FAMILY,
+    ImperfectBench,
+    Imperfection,
+    make_bench_with_errors,
+)
+from imperfect_laws import OUTSIDE
 
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.analysis.gap.diagnosis.base_fit import fit_base
@@ -56,6 +65,19 @@ def waiting(seeds: range, done: set[str]) -> Iterator[tuple[str, int]]:
                 yield kind, seed
 
 
+def drawn_outside(seed: int) -> ImperfectBench:
+    """Return a bench with a law that no catalogue has, of the size of a seed."""
+    rng = np.random.default_rng([seed, 78])
+    name = tuple(OUTSIDE)[seed // 2 % len(OUTSIDE)]
+    visible = float(np.exp(rng.uniform(*np.log(VISIBLE))))
+    errors = Imperfection()
+    if seed % 2:
+        errors = Imperfection(absorber=(1e-9, 2e-9), mass=0.003, gain=0.0)
+        # The size of a law is relative to the change by the model error.
+        visible *= 3.0
+    return make_bench_with_errors(seed, (name,), visible=visible, imperfection=errors)
+
+
 def judged(kind: str, seed: int, bench: ImperfectBench, whole: bool) -> dict[str, Any]:
     """Return truth and judgement of one bench."""
     family = bench.family
@@ -63,9 +85,12 @@ def judged(kind: str, seed: int, bench: ImperfectBench, whole: bool) -> dict[str
         name for name, own in FAMILY.items() if kind == "taken out" and own == family
     )
     start = time.process_time()
+    effects: list[str] = []
     if whole:
         found = diagnosis_json(diagnose(bench.campaign, without=without))
         base_seconds = 0.0
+        effects = [f"{e['name']}@{e['site']}" for e in found["effects"]]
+        left = min(c["chi2_per_dof"] for c in found["candidates"])
         partial = found["mostly"]
         verdict = found["verdict"]
     else:
@@ -74,6 +99,7 @@ def judged(kind: str, seed: int, bench: ImperfectBench, whole: bool) -> dict[str
             base_seconds = time.process_time() - start
             if not isinstance(inner, LumpedBench):
                 raise TypeError("a lumped bench is expected")
+            left = base.chi2 / inner.blocks.dof
             one = explain_mostly(inner, base, lambda line: None)
         partial = None if one is None else partial_json(one)
         verdict = "mostly" if one is not None and one.named else "unknown"
@@ -85,6 +111,8 @@ def judged(kind: str, seed: int, bench: ImperfectBench, whole: bool) -> dict[str
         "family": family,
         "visible": bench.visible,
         "verdict": verdict,
+        "effects": effects,
+        "left": left,
         "mostly": partial,
         "seconds": time.process_time() - start - base_seconds,
     }
@@ -109,6 +137,19 @@ def run(path: Path, seeds: range, whole: bool) -> None:
         sys.stderr.write(f"\r{kind} {seed}   ")
 
 
+def run_outside(path: Path, seeds: range, whole: bool) -> None:
+    """Judge benches with an effect outside every catalogue that are not in the file."""
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    done = {r["seed"] for r in map(json.loads, lines) if r["kind"] == "outside"}
+    for seed in seeds:
+        if seed in done:
+            continue
+        found = judged("outside", seed, drawn_outside(seed), whole)
+        with path.open("a", encoding="utf-8") as out:
+            out.write(json.dumps(found) + "\n")
+        sys.stderr.write(f"\routside {seed}   ")
+
+
 def main() -> None:
     """Run the judgements."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -116,8 +157,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=120)
     parser.add_argument("--seed", type=int, default=4000)
     parser.add_argument("--whole", action="store_true")
+    parser.add_argument("--outside", action="store_true")
     arguments = parser.parse_args()
     seeds = range(arguments.seed, arguments.seed + arguments.count)
+    if arguments.outside:
+        run_outside(arguments.runs, seeds, arguments.whole)
+        return
     run(arguments.runs, seeds, arguments.whole)
 
 

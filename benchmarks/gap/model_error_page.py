@@ -121,8 +121,48 @@ def _visible(run: Run) -> str:
     return "law below model error" if run["visible"] < 1.0 else "law above model error"
 
 
-def page(runs: Sequence[Run]) -> str:
+def outside_part(runs: Sequence[Run]) -> list[str]:
+    """Return what the verdict makes of effects that no catalogue has."""
+    own = [r for r in runs if r["kind"] == "outside"]
+    if not own:
+        return []
+    lines = [
+        "## Effects outside every catalogue",
+        "",
+        "The joint law is one that the catalogue lacks; every second bench has hardly "
+        "any model error. A family that is not true of the law counts as a wrong name "
+        "(a stiffness that drifts within a record has none).",
+        "",
+        "| effect | true family | n | wrong name | right family | joint called "
+        "nonlinear | unknown |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    names = list(dict.fromkeys(r["truth"][0] for r in own))
+    for label in (*names, "all"):
+        some = [r for r in own if label in ("all", r["truth"][0])]
+        words = Counter(_outside_word(r) for r in some)
+        family = "" if label == "all" else some[0]["family"]
+        cells = [share(words["wrong"], len(some)), str(words["right"])]
+        cells += [str(words["open"]), str(words["unknown"])]
+        lines.append(f"| {label} | {family} | {len(some)} | {' | '.join(cells)} |")
+    whole = sum(r["whole"] for r in own)
+    lines += ["", f"The whole engine ran in {whole} of them.", ""]
+    return lines
+
+
+def _outside_word(run: Run) -> str:
+    """Return wrong, right, open or unknown for an effect outside every catalogue."""
+    if run["verdict"] not in ("mostly", "unknown", "none"):
+        return "wrong"
+    if family := named_with(run):
+        return "right" if family == run["family"] else "wrong"
+    partial = run["mostly"]
+    return "open" if partial is not None and partial["nonlinear"] else "unknown"
+
+
+def page(every: Sequence[Run]) -> str:
     """Return the page."""
+    runs = [r for r in every if r["kind"] != "outside"]
     seconds = [r["seconds"] for r in runs if not r["whole"]]
     lines = [
         _INTRO,
@@ -137,6 +177,7 @@ def page(runs: Sequence[Run]) -> str:
         f"largest {np.max(seconds):.1f} s (of a machine that was also busy with other "
         "work).",
         "",
+        *outside_part(every),
         "## Mixtures by main law, and by size",
         *_by(runs, "main law", lambda r: str(r["truth"][0])),
         *_by(runs, "size", _visible),

@@ -186,7 +186,7 @@ def _forward_part(forward: list[dict[str, Any]]) -> list[str]:
         "",
         "## Forward response",
         "",
-        f"All {len(apart)} pairs of {len(PAIRED)} laws against `solve_ivp` (DOP853, "
+        f"All {len(apart)} pairs of {len(PAIRED)} laws against `solve_ivp` (LSODA, "
         "tolerance 1e-9): largest difference of an acceleration over its peak. The bar "
         f"is {BAR:g}. Last row: two single responses added up, for comparison.",
         "",

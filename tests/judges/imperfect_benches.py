@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import scipy.signal
-from imperfect_laws import Floats, Law, law_of, newmark
+from imperfect_laws import OUTSIDE, Floats, Law, law_of, newmark
 
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.two_body_model import two_body_model
@@ -90,8 +90,9 @@ class ImperfectBench:
 
     @property
     def family(self) -> str:
-        """Family of the main law; none where there is no law."""
-        return FAMILY.get(self.names[0], "outside") if self.names else "none"
+        """Family of the main law; none where there is no law or it has no family."""
+        known = FAMILY | OUTSIDE
+        return known[self.names[0]] or "none" if self.names else "none"
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,15 @@ from numba import njit
 
 Floats = npt.NDArray[np.float64]
 
-OUTSIDE = ("slot", "dead_zone_damping", "stiffness_in_time")
-"""Effects that no catalogue has; a slot is a two-sided stop."""
+OUTSIDE = {
+    "slot": "contact",
+    "dead_zone_damping": "damping",
+    "stiffness_in_time": "",
+    "quintic_stiffness": "stiffness",
+    "root_stiffness": "stiffness",
+}
+"""Effects that the catalogue lacks, with the family that is true of each: a slot is a
+two-sided stop, and a stiffness that drifts within a record is of no family of laws."""
 
 
 @dataclass(frozen=True)
@@ -23,13 +30,14 @@ class Law:
     Attributes:
         numbers: cubic [N/m^3], quadratic [N/m^2], stop stiffness [N/m] and gap [m],
             dry friction [N] and its speed [m/s], quadratic damping [N s^2/m^2], slot
-            stiffness [N/m] and half gap [m], dead-zone damping [N s/m] and zone [m].
+            stiffness [N/m] and half gap [m], dead-zone damping [N s/m] and zone [m],
+            quintic [N/m^5], root [N/m] and the motion of its bend [m].
         sliders: stiffness [N/m] and slip force [N] of each, shape (2, n).
         hysteresis: k [N/m], n, b, g, zy [m] of a Bouc-Wen element.
         drift: relative change of the joint's stiffness over the record [-].
     """
 
-    numbers: Floats = field(default_factory=lambda: np.zeros(11))
+    numbers: Floats = field(default_factory=lambda: np.zeros(14))
     sliders: Floats = field(default_factory=lambda: np.zeros((2, 0)))
     hysteresis: Floats = field(default_factory=lambda: np.zeros(5))
     drift: float = 0.0
@@ -59,6 +67,9 @@ def _law_force(u, v, dt, numbers, sliders, place, moved, hysteresis, z):  # type
     if numbers[9] != 0.0:
         square = (u / numbers[10]) ** 2
         total += numbers[9] * v * square**4 / (1.0 + square**4)
+    total += numbers[11] * u**5
+    if numbers[12] != 0.0:
+        total += numbers[12] * u / (1.0 + (u / numbers[13]) ** 2) ** 0.25
     for i in range(sliders.shape[1]):
         reach = sliders[1, i] / sliders[0, i]
         moved[i] = min(max(place[i], u - reach), u + reach)
@@ -123,7 +134,7 @@ def law_of(
     u, v = motion
     if size <= 0.0:
         return Law()
-    numbers, force = np.zeros(11), size * kj * u
+    numbers, force = np.zeros(14), size * kj * u
     numbers[5] = 1e-3 * v
     if name == "cubic_stiffness":
         numbers[0] = force / u**3 * (1.0 if rng.random() < 0.6 else -0.4)
@@ -141,6 +152,11 @@ def law_of(
         numbers[7:9] = force / (u - gap), gap
     elif name == "dead_zone_damping":
         numbers[9:11] = force / v, u * rng.uniform(0.1, 0.4)
+    elif name == "quintic_stiffness":
+        numbers[11] = force / u**5
+    elif name == "root_stiffness":
+        bend = u * rng.uniform(0.05, 0.2)
+        numbers[12:14] = force / u * (1.0 + (u / bend) ** 2) ** 0.25, bend
     elif name == "stiffness_in_time":
         return Law(drift=size * kj * rng.choice([-1.0, 1.0]))
     elif name == "bouc_wen":

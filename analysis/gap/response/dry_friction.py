@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Balance of dry friction at several ports within one step of the time integration.
+"""Dry friction within one step of the time integration, at one port or several.
 
 Dry friction is stiff: within a step its force changes the speed of its own port, and
 that of every other port, by much more than the speed over which it changes sign. The
-forces at the end of a step are therefore solved for together.
+forces at the end of a step are therefore solved for together. Where a force switches,
+the step is followed in pieces: with the instant of the switch, mean and first moment of
+the force over the step are known, and the step need not be short.
 """
 
 import math
@@ -12,19 +14,83 @@ from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.analysis.gap.response.law_forces import (
     COULOMB,
+    DEFECT,
+    DRIFT,
+    EARLIER,
     EXTRAPOLATED,
     LANES,
     LAW,
+    LEAN,
     OWN,
+    PACE,
     PORT,
+    SHIFT,
     SLOPE,
     SPEED,
+    SPREAD,
     rub,
 )
 from jointbench.analysis.gap.response.response_settings import RESPONSE
 
 _SWEEPS = RESPONSE.friction_sweeps
 _TOLERANCE = RESPONSE.friction_tolerance
+_SWITCH = RESPONSE.friction_switch
+_RIGID = RESPONSE.friction_rigid
+_PIECES = RESPONSE.friction_pieces
+_LAYER = RESPONSE.friction_layer
+_FAR = RESPONSE.friction_far
+
+
+@compiled()
+def follow_switch(
+    limit: float, width: float, start: float, drift: float, growth: float, slope: float
+) -> tuple[float, float, float, float]:
+    """Follow v' = drift(t) - 2 slope limit tanh(v / width) over a step of length 1.
+
+    Far from a speed of zero the force is constant; near it, each piece changes the
+    speed by a part of `width`, and a speed that comes to rest there decays.
+
+    Args:
+        limit: largest force [N].
+        width: speed over which the force changes its sign [m/s].
+        start: speed at the start [m/s].
+        drift: change of the speed by all else, on average over the step [m/s].
+        growth: change of the drift over the step [m/s].
+        slope: change of the speed by a force that rises to 1 N in the step [m/s].
+
+    Returns:
+        Force at the end [N]; its mean, first and second moment over the step [N], about
+        the middle of the step.
+
+    Source:
+        Hochbruck and Ostermann 2010, Acta Numerica 19, 209, eq. (2.27), for a piece.
+    """
+    v, t, moment, second = start, 0.0, 0.0, 0.0
+    for piece in range(_PIECES):
+        bend = math.tanh(v / width)
+        rate = drift + growth * (t - 0.5) - 2.0 * slope * limit * bend
+        steep, reach = 0.0, abs(v) - _FAR * width
+        if reach < _LAYER * width:
+            steep = -2.0 * slope * limit * (1.0 - bend * bend) / width
+            reach = _LAYER * width
+        elif v * rate > 0.0:
+            reach = 1e300
+        h = 1.0 - t
+        if piece < _PIECES - 1:
+            h = min(h, reach / (abs(rate) + 1e-300))
+        here = drift + growth * (t + 0.5 * h - 0.5)
+        grown = (here - 2.0 * slope * limit * bend) * h
+        if abs(steep * h) > 1e-9:
+            grown *= math.expm1(steep * h) / (steep * h)
+        force = (here - grown / h) / (2.0 * slope)
+        middle = t + 0.5 * h - 0.5
+        moment += force * h * middle
+        second += force * h * (middle * middle + h * h / 12.0)
+        v, t = v + grown, t + h
+        if t >= 1.0 - 1e-12:
+            break
+    mean = (drift - (v - start)) / (2.0 * slope)
+    return limit * math.tanh(v / width), mean, moment, second
 
 
 @compiled()
@@ -49,25 +115,65 @@ def balance_friction(
         kinds: of all laws.
         ports: of all laws.
         p: parameters of all laws.
-        coupled: offset of the changes of speed in `w`.
+        coupled: offset of the changes of speed in `w`; only for several ports.
         n_ports: number of ports.
     """
+    several = 0
+    for a in range(kinds.size):
+        several += kinds[a] == COULOMB
     for k in range(LANES):
-        for _ in range(_SWEEPS):
+        for _ in range(_SWEEPS if n_ports > 1 and several > 1 else 0):
             change = 0.0
             for a in range(kinds.size):
                 if kinds[a] != COULOMB:
                     continue
                 at, limit, width = ports[a] * PORT, p[a, 0], p[a, 1]
-                v = w[at + SPEED + k]
-                for b in range(kinds.size):
-                    if b != a and kinds[b] == COULOMB:
-                        across = (ports[a] * n_ports + ports[b]) * LANES
-                        away = f[b * LAW + OWN + k] - f[b * LAW + EXTRAPOLATED + k]
-                        v -= w[coupled + across + k] * away
+                v = _others_moved(w, f, kinds, ports, a, k, coupled, n_ports)
                 guess, before = f[a * LAW + EXTRAPOLATED + k], f[a * LAW + OWN + k]
                 force = rub(limit, width, v, w[at + SLOPE + k], guess, before)
                 f[a * LAW + OWN + k] = force
                 change = max(change, math.fabs(force - before) / (abs(limit) + 1e-300))
             if change < _TOLERANCE:
                 break
+        for a in range(kinds.size):
+            own, limit = a * LAW + k, p[a, 0]
+            if kinds[a] != COULOMB or limit == 0.0:
+                continue
+            force, before = f[own + OWN], f[own + EARLIER]
+            at = ports[a] * PORT + k
+            v = _others_moved(w, f, kinds, ports, a, k, coupled, n_ports)
+            slope, start = w[at + SLOPE], w[at + PACE]
+            drift = v - start + slope * (before + f[own + EXTRAPOLATED])
+            growth, f[own + DRIFT] = drift - f[own + DRIFT], drift
+            small = abs(force - before) < _SWITCH * abs(limit)
+            if small or slope * abs(limit) < _RIGID * p[a, 1]:
+                continue
+            force, mean, moment, second = follow_switch(
+                limit, p[a, 1], start, drift, growth, slope
+            )
+            f[own + OWN] = force
+            w[at + DEFECT] += mean - 0.5 * (before + force)
+            w[at + LEAN] += moment - (force - before) / 12.0
+            w[at + SHIFT] += moment - (force - before) / 6.0
+            w[at + SPREAD] += second - (force + before) / 24.0
+
+
+@compiled(inline="always")
+def _others_moved(
+    w: FloatArray,
+    f: FloatArray,
+    kinds: IntArray,
+    ports: IntArray,
+    a: int,
+    k: int,
+    coupled: int,
+    n_ports: int,
+) -> float:
+    """Return the speed of a law's port, corrected for all other dry friction."""
+    v = w[ports[a] * PORT + SPEED + k]
+    for b in range(kinds.size):
+        if n_ports > 1 and b != a and kinds[b] == COULOMB:
+            across = (ports[a] * n_ports + ports[b]) * LANES
+            away = f[b * LAW + OWN + k] - f[b * LAW + EXTRAPOLATED + k]
+            v -= w[coupled + across + k] * away
+    return float(v)

@@ -24,17 +24,25 @@ from jointbench.analysis.gap.response.law_forces import (
     BEFORE,
     COULOMB,
     CURVES,
+    DEFECT,
     EARLIER,
     EXTRAPOLATED,
     FORCE,
     GUESS,
     LANES,
+    LAST,
     LAW,
+    LEAN,
     MOTION,
+    ONE_SIDED,
     OWN,
+    PACE,
     PORT,
+    SHIFT,
     SLIDERS,
     SPEED,
+    SPREAD,
+    TWO_SIDED,
     IntegrationLaws,
     force_of_real_joint,
     force_without_memory,
@@ -75,6 +83,11 @@ def _begin_step(
         for k in range(LANES):
             at = q * PORT + k
             w[at + GUESS] = 0.0
+            w[at + DEFECT] = 0.0
+            w[at + LEAN] = 0.0
+            w[at + SHIFT] = 0.0
+            w[at + SPREAD] = 0.0
+            w[at + LAST] = w[at + BEFORE]
             w[at + BEFORE] = w[at + MOTION]
             w[at + MOTION] = displacement[q, step, first + k]
     for a in range(ports.size):
@@ -141,6 +154,47 @@ def _end_step(
             w[at + GUESS] = w[at + FORCE] - w[at + GUESS]
 
 
+@compiled(fastmath=True, inline="always")
+def _add_to_samples(
+    w: FloatArray, several: bool, out: FloatArray, step: int, first: int
+) -> None:
+    """Add to the samples what a force does that jumps or bends within a step.
+
+    A band-limited response shows the first moments of the force over the step. Three
+    samples carry those that the samples at the ends of the step lack.
+
+    Source:
+        Euler and Maclaurin: sums of samples and integrals, at a jump between samples.
+    """
+    n_ports = out.shape[0] if several else 1
+    for q in range(n_ports):
+        for k in range(LANES):
+            at = q * PORT + k
+            mean, shift = w[at + DEFECT], w[at + SHIFT]
+            far = 0.5 * (w[at + SPREAD] - 0.25 * mean)
+            half, lean = 0.5 * (mean - far), shift + 1.5 * far
+            out[q, step, first + k] += half + lean
+            if step > 1:
+                out[q, step - 1, first + k] += half - lean
+                out[q, step - 2, first + k] += far
+
+
+@compiled(fastmath=True, inline="always")
+def _keep_pace(
+    w: FloatArray,
+    n_modes: int,
+    several: bool,
+    velocity: FloatArray,
+    step: int,
+    first: int,
+) -> None:
+    """Store the speeds at the end of a step, after the modes were corrected."""
+    _set_speeds(w, n_modes, several, velocity, step, first)
+    for p in range(velocity.shape[0] if several else 1):
+        for k in range(LANES):
+            w[p * PORT + PACE + k] = w[p * PORT + SPEED + k]
+
+
 @compiled(fastmath=True)
 def _integrate_lanes(
     displacement: FloatArray,
@@ -161,9 +215,11 @@ def _integrate_lanes(
     states = np.zeros((LANES, laws.slips.size, 2))
     active = np.zeros((n_laws, LANES), dtype=np.int64)
     # Unpacked once: each access to a tuple changes a reference count.
-    kinds, ports, p, ends, slips, weights, tables, tops, curves = laws
+    kinds, ports, p, ends, slips, weights, tables, tops, curves, band_limited = laws
     sliders, f = Sliders(slips, 1.0 / slips, weights), np.zeros(n_laws * LAW)
-    rubbing = (kinds == COULOMB).sum()
+    rubbing = (kinds == COULOMB).any()
+    bent = (kinds == ONE_SIDED).any() or (kinds == TWO_SIDED).any()
+    uneven = band_limited and (rubbing or bent)
     for step in range(displacement.shape[1]):
         _begin_step(w, f, ports, several, displacement, step, first)
         _predict(w, n_modes, n_ports, several)
@@ -179,6 +235,7 @@ def _integrate_lanes(
                     lanes=LANES,
                     now=port + MOTION,
                     last=port + BEFORE,
+                    earlier=port + LAST,
                     force=a * LAW + OWN,
                 )
                 bank_forces(bank, w, f, states, active, sliders, tables, tops)
@@ -186,13 +243,17 @@ def _integrate_lanes(
                 force_of_real_joint(a, port, w, f, kinds, p)
             else:
                 force_without_memory(a, port, w, f, kinds, p, curves)
-        if several and rubbing > 1:
+        if rubbing:
             balance_friction(w, f, kinds, ports, p, coupled, n_ports)
         _end_step(w, f, ports, several, out, step, first)
+        if uneven:
+            _add_to_samples(w, several, out, step, first)
         if several:
-            correct_ports(w, n_modes, n_ports)
+            correct_ports(w, n_modes, n_ports, uneven)
         else:
-            correct_one_port(w, n_modes)
+            correct_one_port(w, n_modes, uneven)
+        if rubbing:
+            _keep_pace(w, n_modes, several, velocity, step, first)
 
 
 class LaneModes(NamedTuple):

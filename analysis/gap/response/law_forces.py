@@ -28,13 +28,19 @@ MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES, POWER_DAMPING)
 LANES = RESPONSE.lanes
 _STILL = RESPONSE.still_speed
 
-FORCE, GUESS, BEFORE, MOTION, SPEED, SLOPE = (i * LANES for i in range(6))
-"""Offsets within a port: force of its laws, its estimate, the last motion, the motion,
-its rate, and the change of that rate per unit force of the port within a step."""
-PORT = 6 * LANES
-OWN, EARLIER, EXTRAPOLATED = (i * LANES for i in range(3))
-"""Offsets within a law: its force, that of the previous step, and the extrapolation."""
-LAW = 3 * LANES
+FORCE, GUESS, LAST, BEFORE, MOTION, SPEED, SLOPE, PACE = (i * LANES for i in range(8))
+"""Offsets within a port: force of its laws, its estimate, the two last motions, the
+motion, its rate, the change of that rate per unit force of the port in a step, and the
+rate at the start of the step."""
+DEFECT, LEAN, SHIFT, SPREAD = (i * LANES for i in range(8, 12))
+"""Where a force jumps or bends within a step: its mean and first moment over the step
+less those of a straight line, and its first and second moment less those of the samples
+of a band-limited signal. Moments are about the middle of a step of length 1."""
+PORT = 12 * LANES
+OWN, EARLIER, EXTRAPOLATED, DRIFT = (i * LANES for i in range(4))
+"""Offsets within a law: its force, that of the previous step, the extrapolation, and,
+for dry friction, the change of the speed in the last step by all else."""
+LAW = 4 * LANES
 
 
 class IntegrationLaws(NamedTuple):
@@ -54,6 +60,8 @@ class IntegrationLaws(NamedTuple):
         tables: of sliders, four rows per law, shape (4 n_laws, n_points).
         tops: properties of these tables, see `slide`, shape (n_laws, 7).
         curves: of curve laws, three rows per law, shape (3 n_laws, n_points).
+        band_limited: True for samples of the band-limited force, False for the force at
+            the instants themselves.
     """
 
     kinds: IntArray
@@ -65,6 +73,7 @@ class IntegrationLaws(NamedTuple):
     tables: FloatArray
     tops: FloatArray
     curves: FloatArray
+    band_limited: bool
 
 
 @compiled()
@@ -92,6 +101,18 @@ def rub(
 
 
 @compiled(fastmath=True, inline="always")
+def corner(before: float, now: float, edge: float) -> float:
+    """Return the mean of max(r - edge, 0) over a step less that of its ends [m].
+
+    The motion r is taken as a straight line; without this mean, each contact would
+    leave an error of the order of the step squared that depends on its instant.
+    """
+    low, high = min(before, now), max(before, now)
+    inside = max(edge - low, 0.0) * max(high - edge, 0.0)
+    return -0.5 * inside / (high - low + 1e-300)
+
+
+@compiled(fastmath=True, inline="always")
 def force_of_real_joint(
     a: int, at: int, w: FloatArray, f: FloatArray, kinds: IntArray, p: FloatArray
 ) -> None:
@@ -104,9 +125,12 @@ def force_of_real_joint(
     if kind == TWO_SIDED:
         slope, rest = p[a, 3], first * (max(-second, 0.0) - max(third, 0.0))
         for k in range(LANES):
-            r = w[at + MOTION + k]
+            r, before = w[at + MOTION + k], w[at + BEFORE + k]
             stops = max(r - second, 0.0) - max(third - r, 0.0)
             f[own + k] = first * stops - rest - slope * r
+            corners = corner(before, r, second) - corner(before, r, third)
+            w[at + DEFECT + k] += first * corners
+            w[at + SPREAD + k] += 0.25 * first * corners
     elif kind == FIFTH_POWER:
         for k in range(LANES):
             r = w[at + MOTION + k]
@@ -146,7 +170,11 @@ def force_without_memory(
             f[own + k] = r * r * (first + second * r)
     elif kind == ONE_SIDED:
         for k in range(LANES):
-            f[own + k] = first * max(w[at + MOTION + k] - second, 0.0)
+            r, before = w[at + MOTION + k], w[at + BEFORE + k]
+            f[own + k] = first * max(r - second, 0.0)
+            bend = first * corner(before, r, second)
+            w[at + DEFECT + k] += bend
+            w[at + SPREAD + k] += 0.25 * bend
     elif kind == QUADRATIC_DAMPING:
         for k in range(LANES):
             v = w[at + SPEED + k]

@@ -62,7 +62,14 @@ def force_along(
         np.zeros((1, 1, records), dtype=np.complex128),
         np.zeros((1, 1, records), dtype=np.complex128),
     )
-    force, _ = port_forces(padded, rigid, 1.0, [PortLaw(0, law)], extrapolated=False)
+    force, _ = port_forces(
+        padded,
+        rigid,
+        1.0,
+        [PortLaw(0, law)],
+        extrapolated=False,
+        band_limited=False,
+    )
     return np.asarray(force[0, :, :records].reshape(motion.shape))
 
 

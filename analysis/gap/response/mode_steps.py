@@ -13,9 +13,11 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.acquisition.basics.compiled import compiled
 from jointbench.analysis.gap.response.law_forces import (
+    DEFECT,
     FORCE,
     GUESS,
     LANES,
+    LEAN,
     MOTION,
     PORT,
     SLOPE,
@@ -126,13 +128,57 @@ def add_speed_one_port(w: FloatArray, n_modes: int) -> None:
 
 
 @compiled(fastmath=True, inline="always")
-def correct_one_port(w: FloatArray, n_modes: int) -> None:
-    """Correct the modes by the force minus its estimate, which is in `GUESS`."""
+def correct_one_port(w: FloatArray, n_modes: int, uneven: bool) -> None:
+    """Correct the modes by the force minus its estimate, which is in `GUESS`.
+
+    Args:
+        w: state of the lanes; changed in place.
+        n_modes: number of modes.
+        uneven: True if the force may jump or bend within a step.
+    """
+    if uneven:
+        _push_one_port(w, n_modes)
     for m in range(n_modes):
         for k in range(LANES):
             at = PORT + m * _ONE_PORT_MODE + k
             w[at + _REAL] -= w[at + _END] * w[GUESS + k]
             w[at + _IMAGINARY] -= w[at + _END_I] * w[GUESS + k]
+
+
+@compiled(fastmath=True, inline="always")
+def _push_one_port(w: FloatArray, n_modes: int) -> None:
+    """Move the modes by what the force of the step exceeds a straight line by.
+
+    A line has the same mean and first moment.
+    """
+    for m in range(n_modes):
+        for k in range(LANES):
+            at = PORT + m * _ONE_PORT_MODE + k
+            lean = 6.0 * w[LEAN + k]
+            start, end = w[DEFECT + k] - lean, w[DEFECT + k] + lean
+            w[at + _REAL] -= w[at + _START] * start + w[at + _END] * end
+            w[at + _IMAGINARY] -= w[at + _START_I] * start + w[at + _END_I] * end
+
+
+@compiled(fastmath=True, inline="always")
+def _push_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
+    """Move the modes by what the forces of the step exceed straight lines by."""
+    for m in range(n_modes):
+        at = n_ports * PORT + m * mode_size(n_ports)
+        for k in range(LANES):
+            start, start_i, end, end_i = 0.0, 0.0, 0.0, 0.0
+            for p in range(n_ports):
+                there, own = at + _PORTS + p * _AT_PORT + k, p * PORT + k
+                mean, lean = w[own + DEFECT], 6.0 * w[own + LEAN]
+                start += w[there + _INPUT] * (mean - lean)
+                start_i += w[there + _INPUT_I] * (mean - lean)
+                end += w[there + _INPUT] * (mean + lean)
+                end_i += w[there + _INPUT_I] * (mean + lean)
+            own = at + k
+            w[own + _REAL] -= w[own + _START] * start - w[own + _START_I] * start_i
+            w[own + _REAL] -= w[own + _END] * end - w[own + _END_I] * end_i
+            w[own + _IMAGINARY] -= w[own + _START] * start_i + w[own + _START_I] * start
+            w[own + _IMAGINARY] -= w[own + _END] * end_i + w[own + _END_I] * end
 
 
 @compiled(fastmath=True, inline="always")
@@ -189,8 +235,10 @@ def add_speed_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
 
 
 @compiled(fastmath=True, inline="always")
-def correct_ports(w: FloatArray, n_modes: int, n_ports: int) -> None:
+def correct_ports(w: FloatArray, n_modes: int, n_ports: int, uneven: bool) -> None:
     """Correct the modes by the forces minus their estimates, which are in `GUESS`."""
+    if uneven:
+        _push_ports(w, n_modes, n_ports)
     for m in range(n_modes):
         at = n_ports * PORT + m * mode_size(n_ports)
         _drive(w, at, n_ports)

@@ -18,12 +18,15 @@ SLIDER_ROWS = 4
 CURVE_ROWS = 3
 
 
-def pack_laws(laws: Sequence[Law], ports: Sequence[int]) -> IntegrationLaws:
+def pack_laws(
+    laws: Sequence[Law], ports: Sequence[int], *, band_limited: bool
+) -> IntegrationLaws:
     """Return laws that act together in packed arrays.
 
     Args:
         laws: in the order of their forces.
         ports: port of each law.
+        band_limited: True for samples of the band-limited force.
     """
     p = np.zeros((len(laws), PARAMETERS))
     for row, law in zip(p, laws, strict=True):
@@ -39,6 +42,7 @@ def pack_laws(laws: Sequence[Law], ports: Sequence[int]) -> IntegrationLaws:
         tables=_rows(laws, SLIDERS, SLIDER_ROWS),
         tops=np.stack([law.tops for law in laws]),
         curves=_rows(laws, CURVES, CURVE_ROWS),
+        band_limited=band_limited,
     )
 
 

@@ -22,7 +22,7 @@ from jointbench.analysis.gap.response.force_integration import (
     LaneModes,
     integrate_forces,
 )
-from jointbench.analysis.gap.response.law_forces import COULOMB, CURVES, LANES, MOVING
+from jointbench.analysis.gap.response.law_forces import CURVES, LANES, MOVING
 from jointbench.analysis.gap.response.packed_laws import pack_laws
 
 
@@ -94,12 +94,12 @@ def port_forces(
     laws: Sequence[PortLaw],
     *,
     extrapolated: bool,
+    band_limited: bool = True,
 ) -> tuple[FloatArray, FloatArray | None]:
     """Integrate the forces of all laws at all ports along their coupled motion.
 
     The error of the time integration is proportional to the square of its step, so a
-    solution with half as many steps gives an extrapolation to zero step; dry friction
-    at standstill is not smooth enough for that.
+    solution with half as many steps gives an extrapolation to zero step.
 
     Args:
         motions: of the ports from rest without the laws: displacement [m] and, if a law
@@ -110,6 +110,8 @@ def port_forces(
         dt: step [s].
         laws: at least one for each port.
         extrapolated: True for a solution of half as many steps as well.
+        band_limited: True for samples of the band-limited force, which differ from the
+            force itself where it jumps or bends within a step.
 
     Returns:
         Force of each port [N], shape (n_ports, n_steps, n_columns), and that at every
@@ -128,7 +130,9 @@ def port_forces(
     moving = need_velocity(laws)
     if moving and len(motions) < 2:
         raise UsageError("a law depends on the speed; give the speeds of the ports")
-    packed = pack_laws([x.law for x in laws], [x.port for x in laws])
+    packed = pack_laws(
+        [x.law for x in laws], [x.port for x in laws], band_limited=band_limited
+    )
     scaled = modes.scaled()
     further = any(x.law.kind > CURVES for x in laws)
     version = VERSIONS[2 * further + (count > 1)]
@@ -141,8 +145,7 @@ def port_forces(
             )
         )
 
-    smooth = all(x.law.kind != COULOMB for x in laws)
-    return integrated(1), integrated(2) if extrapolated and smooth else None
+    return integrated(1), integrated(2) if extrapolated else None
 
 
 def filled_lanes(records: int) -> int:

@@ -96,6 +96,36 @@ class ResponseSettings:
         "change in a sweep below which dry friction is balanced",
         "ten times the tolerance of the solution for one port",
     )
+    friction_switch: float = numerical(
+        0.01,
+        "of the friction force",
+        "change of dry friction in a step above which the step is followed in pieces",
+        "a smaller change is a straight line within 1e-5 of the response",
+    )
+    friction_rigid: float = numerical(
+        1e-3,
+        "of the width",
+        "change of the speed by dry friction in a step below which it is not stiff",
+        "the force then follows the speed without being solved for",
+    )
+    friction_pieces: int = numerical(
+        200,
+        "pieces",
+        "most pieces of such a step",
+        "a speed that changes its sign needs 40",
+    )
+    friction_far: float = numerical(
+        5.0,
+        "widths",
+        "speed above which dry friction is constant",
+        "tanh(5) is 1 to 1e-4",
+    )
+    friction_layer: float = numerical(
+        0.3,
+        "of the width",
+        "change of the speed in a piece near a speed of zero",
+        "convergence tests of the second method (tests/judges)",
+    )
     loop_points: int = numerical(
         200,
         "points",

@@ -95,6 +95,7 @@ class Bank(NamedTuple):
         lanes: number of records integrated in parallel.
         now: offset of its motions [m].
         last: offset of the motions of the previous step [m].
+        earlier: offset of the motions of the step before that [m].
         force: offset of its forces [N].
     """
 
@@ -104,6 +105,7 @@ class Bank(NamedTuple):
     lanes: int
     now: int
     last: int
+    earlier: int
     force: int
 
 
@@ -119,6 +121,25 @@ class Sliders(NamedTuple):
     slips: FloatArray
     rates: FloatArray
     weights: FloatArray
+
+
+@compiled(fastmath=True, inline="always")
+def _turning_point(earlier: float, before: float, now: float) -> float:
+    """Return the motion at which a step turns, or that at its start if it does not.
+
+    A slider follows the way, not its ends: a turn missed within a step would leave an
+    error of the order of the step squared at every reversal. The motion is a parabola
+    through the last three points.
+
+    Args:
+        earlier: motion two steps before [m].
+        before: motion at the start of the step [m].
+        now: motion at its end [m].
+    """
+    rise, bend = 0.5 * (now - earlier), now - 2.0 * before + earlier
+    if rise * bend < 0.0 and abs(rise) < abs(bend):
+        return before - 0.5 * rise * rise / bend
+    return before
 
 
 @compiled(fastmath=True, inline="always")
@@ -163,16 +184,20 @@ def bank_forces(
     )
     for k in range(bank.lanes):
         r, before = w[bank.now + k], w[bank.last + k]
+        turn = _turning_point(w[bank.earlier + k], before, r)
+        farthest = max(abs(r), abs(turn))
         total, end = 0.0, first + active[a, k]
-        while end < beyond and abs(r) > own[4] * slips[end]:
+        while end < beyond and farthest > own[4] * slips[end]:
             states[k, end, 0] = before / slips[end]
             states[k, end, 1] = states[k, end, 0]
             end += 1
         active[a, k] = end - first
-        step = r - before
+        out, back = turn - before, r - turn
         for i in range(first, end):
             u, loading = states[k, i, 0], states[k, i, 1]
-            u, loading = slide(u, loading, step * rates[i], tables, own, 4 * a)
+            if out != 0.0:
+                u, loading = slide(u, loading, out * rates[i], tables, own, 4 * a)
+            u, loading = slide(u, loading, back * rates[i], tables, own, 4 * a)
             states[k, i, 0], states[k, i, 1] = u, loading
             total += weights[i] * (slips[i] * u - r)
         f[bank.force + k] = total
