@@ -145,6 +145,7 @@ def test_an_added_mass_and_a_relaxation_are_both_named(tmp_path: Path) -> None:
     assert found.verdict is Finding.NAMED
 
 
+@pytest.mark.heavy(reason="a search that finds nothing tries every pair")
 @pytest.mark.parametrize(
     ("name", "size"),
     [("extra_damping", 0.1), ("hidden_mode", 0.3), ("saturation", 0.3)],
