@@ -12,7 +12,7 @@ CPU_LIMIT = 120.0
 MOST_CPU = 20.0
 """CPU time, child processes included, that a test may take without a mark [s].
 
-Twice what the slowest tests take, compilation included: machines differ.
+Twice what the slowest of them take, compilation included: machines differ.
 """
 
 

@@ -149,6 +149,7 @@ def test_the_page_holds_every_setting_as_it_is_in_force() -> None:
             assert f"| {' | '.join(cells)} |" in page, one.name
 
 
+@pytest.mark.heavy(reason="six diagnoses: two campaigns under three policies each")
 def test_a_small_sweep_finds_the_verdict_that_a_rival_decides(tmp_path: Path) -> None:
     """A null stays; of two explanations 10.5 to 15 apart, one remains with less."""
     campaigns, runs = [("null", 121000), ("single", 121105)], tmp_path / "runs.jsonl"
