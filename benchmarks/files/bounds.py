@@ -16,7 +16,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from bounds_files import FILES, READERS
+from costly_files import FILES
+from foreign_readers import READERS
 
 from jointbench.acquisition.basics.errors import JointbenchError
 

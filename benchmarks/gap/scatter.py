@@ -2,8 +2,8 @@
 """Judge the gap engine on hits that scatter in ways it does not share.
 
 Usage:
-  python benchmarks/gap/scatter.py nulls RUNS.jsonl [--seed 140000] [--rounds 13]
-  python benchmarks/gap/scatter.py singles RUNS.jsonl [--seed 141000] [--count 200]
+  python benchmarks/gap/scatter.py nulls RUNS.jsonl [--seed S] [--rounds N] [--way WAY]
+  python benchmarks/gap/scatter.py singles RUNS.jsonl [--seed S] [--count 200]
   python benchmarks/gap/scatter.py page RUNS.jsonl --engine COMMIT
 
 `nulls`: nothing is missing; each round judges one campaign of every cell (a way of
@@ -62,12 +62,15 @@ LEAST_MARGIN = 100.0
 KEPT = ("verdict", "effects", "reason", "noise", "scatter")
 
 
-def null_cells(seed: int, rounds: int) -> Iterator[tuple[str, float, int]]:
+def null_cells(
+    seed: int, rounds: int, only: str | None = None
+) -> Iterator[tuple[str, float, int]]:
     """Yield way, size and seed of each campaign without an effect."""
     for k in range(rounds):
         for i, way in enumerate(WAYS):
             for j, size in enumerate(SIZES):
-                yield way, size, seed + 100 * k + 10 * i + j
+                if only in {None, way}:
+                    yield way, size, seed + 100 * k + 10 * i + j
 
 
 def judged(campaign: SimulatedCampaign, facts: Run) -> Run:
@@ -276,6 +279,7 @@ def main() -> None:
     parser.add_argument("runs", type=Path)
     parser.add_argument("--seed", type=int, default=140000)
     parser.add_argument("--rounds", type=int, default=13)
+    parser.add_argument("--way", choices=sorted(WAYS), help="nulls of this way alone")
     parser.add_argument("--engine", default="not stated", help="commit of the runs")
     parser.add_argument("--count", type=int, default=200)
     arguments = parser.parse_args()
@@ -286,7 +290,7 @@ def main() -> None:
     done = {key_of(run) for run in runs}
     nulls = arguments.what == "nulls"
     cells = (
-        null_cells(arguments.seed, arguments.rounds)
+        null_cells(arguments.seed, arguments.rounds, arguments.way)
         if nulls
         else single_cells(arguments.seed, arguments.count)
     )

@@ -60,6 +60,13 @@ class DiagnosisSettings:
         "most rounds of alternating base fit and noise estimate",
         "nulls of docs/gap-null.md",
     )
+    base_approach_share: float = numerical(
+        0.5,
+        "of the cost",
+        "cost of a base far from the records, over that of the round before, above "
+        "which rounds of fit and noise estimate end",
+        "case 14: the rounds repeat four costs without end",
+    )
     base_settled_cost: float = numerical(
         0.5,
         "chi2",
@@ -234,10 +241,10 @@ class DiagnosisSettings:
         "computing time: 0.3 to 2 s for 1,024 samples",
     )
     check_tolerance: float = numerical(
-        1e-8,
+        1e-10,
         "of the state",
-        "local error of the second method",
-        "at 1e-7 and 1e-9 the difference of the methods is the same to 1 %",
+        "local error of the second method, which is a multistep one for one record",
+        "the difference of the methods is that of DOP853 at 1e-8, in half the time",
     )
 
     curve_draws: int = numerical(

@@ -3,12 +3,10 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
-from jointbench.analysis.gap.judgement.judgement_settings import JUDGEMENT
 from jointbench.analysis.gap.model.effect import labels_of
 from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
+from jointbench.analysis.gap.residuals.noise_models import chi2_sd
 
 
 def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
@@ -35,9 +33,5 @@ def forgiven(fit: Fit, others: Sequence[Fit], dof: int) -> float:
 
 
 def noise_sd(bench: Bench) -> float:
-    """Return the sd of chi2/dof under noise, including that of the noise estimate.
-
-    The noise is estimated from a share of the same samples, so their common part
-    cancels.
-    """
-    return float(np.sqrt(2.0 / bench.blocks.dof * (1.0 / JUDGEMENT.noise_share - 1.0)))
+    """Return the sd of chi2/dof under noise, including that of the noise estimate."""
+    return chi2_sd(bench.blocks.dof)

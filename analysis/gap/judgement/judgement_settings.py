@@ -38,12 +38,6 @@ class JudgementSettings:
         "sd of the noise",
         "maximum from which a record is checked for clipping",
     )
-    noise_share: float = numerical(
-        0.2,
-        "of the samples",
-        "effective number of samples of the noise estimate",
-        "0.39 of the spectrum, halved by the taper",
-    )
     refit_growth: float = numerical(
         1.5,
         "-",
@@ -121,6 +115,24 @@ class JudgementSettings:
         "chi2",
         "change of the cost of the best fit below which fit and noise have converged",
         "development campaigns",
+    )
+    wandering_rounds: int = numerical(
+        4,
+        "rounds",
+        "rounds without an approach to the records after which fit and noise wander",
+        "case 26: 30 rounds between chi2/dof 1.38 and 1.51, in no order",
+    )
+    approach_share: float = numerical(
+        0.8,
+        "of the excess",
+        "lowest excess of these rounds, over that before them, which is no approach",
+        "case 26",
+    )
+    wandering_excess: float = numerical(
+        0.05,
+        "of dof",
+        "excess of chi2 above which rounds may count as wandering",
+        "nine sd of chi2 with 16 records: a fit at the noise settles",
     )
     repeated_cost: float = numerical(
         20.0,

@@ -16,6 +16,7 @@ from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.joint_fit import make_problem
 from jointbench.analysis.gap.search.candidate_starts import started
 from jointbench.analysis.gap.search.descent import minimise
+from jointbench.analysis.gap.search.hit_stiffness import settled_near
 from jointbench.analysis.gap.search.restarts import caught_up
 from jointbench.analysis.gap.search.screening import Screening, screen
 from jointbench.analysis.gap.search.selection_round import Progress, finish, score
@@ -102,10 +103,12 @@ def _brought_near(
     r = there.residual(fit.base, fit.terms, FULL)
     if float(r @ r) < bench.policy.far_chi2 * bench.blocks.dof:
         return bench, fit
-    there = bench.refine(fit.base, fit.terms, diverged=True)
-    if not there.expanded:
+    near = settled_near(bench, fit.base, fit.terms)
+    if near is None:
         return None
-    again = finish(make_problem(there, fit.candidates), fit.x, progress)
+    there, base = near
+    start = np.concatenate([base, fit.x[base.size :]])
+    again = finish(make_problem(there, fit.candidates), start, progress)
     return None if far_off(there, again) else (there, again)
 
 
@@ -240,24 +243,38 @@ def _settled(bench: Bench, fit: Fit, progress: Progress) -> tuple[Bench, Fit]:
     """Alternate fit and noise estimate until they converge or the fit diverges.
 
     A trend that counts as scatter in every other round makes the iteration alternate
-    without end. Then the fit with the higher cost is used: it has the least scatter.
+    without end, and a law that leaves a residual makes it wander. Then the fit with the
+    higher cost is used: it has the least scatter.
     """
-    earlier, before = np.inf, fit.cost
+    rounds: list[tuple[Bench, Fit]] = []
+    costs = [np.inf, fit.cost]
     for _ in range(JUDGEMENT.settling_rounds):
         bench = bench.refine(fit.base, fit.terms)
         problem = make_problem(bench, fit.candidates)
         fit = finish(problem, fit.x, progress)
+        rounds = [*rounds, (bench, fit)][-JUDGEMENT.wandering_rounds :]
         alternates = (
-            abs(fit.cost - earlier) < JUDGEMENT.repeated_cost and fit.cost > before
+            abs(fit.cost - costs[-2]) < JUDGEMENT.repeated_cost and fit.cost > costs[-1]
         )
-        if (
-            abs(fit.cost - before) < JUDGEMENT.settled_cost
-            or alternates
-            or far_off(bench, fit)
-        ):
+        converged = abs(fit.cost - costs[-1]) < JUDGEMENT.settled_cost
+        if converged or alternates or far_off(bench, fit):
             break
-        earlier, before = before, fit.cost
+        costs.append(fit.cost)
+        if _wanders(costs[2:], bench.blocks.dof):
+            return max(rounds, key=lambda found: found[1].cost)
     return bench, fit
+
+
+def _wanders(costs: Sequence[float], dof: int) -> bool:
+    """Return whether rounds far above the noise no longer approach the records."""
+    count = JUDGEMENT.wandering_rounds
+    if len(costs) <= count:
+        return False
+    lately, before = min(costs[-count:]) - dof, min(costs[:-count]) - dof
+    return (
+        lately > JUDGEMENT.wandering_excess * dof
+        and lately > JUDGEMENT.approach_share * before
+    )
 
 
 def _left_by(bench: Bench, fit: Fit) -> Screening:

@@ -184,12 +184,20 @@ class ModalBench:
         """Set samples without weight to 0, in place."""
         values *= self.data.scored
 
+    @property
+    def stiffness_sd(self) -> FloatArray:
+        """Empty: the ports of a modal base do not settle."""
+        return np.zeros(0)
+
+    def at_stiffness(self, settling: FloatArray) -> "ModalBench":
+        """Return the bench unchanged."""
+        return self
+
     def refine(
         self,
         base: FloatArray,
         terms: Sequence[Term],
         *,
-        diverged: bool = False,
         without: Sequence[int] = (),
     ) -> "ModalBench":
         """Return the bench with its noise estimated at a solution.

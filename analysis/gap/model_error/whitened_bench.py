@@ -80,12 +80,20 @@ class WhitenedBench:
         """Return no starts beyond the grid."""
         return []
 
+    @property
+    def stiffness_sd(self) -> FloatArray:
+        """Empty: settling is part of the discrepancy."""
+        return np.zeros(0)
+
+    def at_stiffness(self, settling: FloatArray) -> "WhitenedBench":
+        """Return the bench unchanged."""
+        return self
+
     def refine(
         self,
         base: FloatArray,
         terms: Sequence[Term],
         *,
-        diverged: bool = False,
         without: Sequence[int] = (),
     ) -> "WhitenedBench":
         """Return the bench unchanged; `law_race` estimates its discrepancy."""

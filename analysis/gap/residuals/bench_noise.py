@@ -56,7 +56,6 @@ def refine_noise(
     base: FloatArray,
     terms: Sequence[Term],
     *,
-    diverged: bool = False,
     without: Sequence[int] = (),
 ) -> SomeBench:
     """Return the bench with its noise estimated at a solution.
@@ -65,8 +64,6 @@ def refine_noise(
         bench: measurement and model.
         base: of the solution, shape (n_base,).
         terms: of the solution.
-        diverged: expand about the settling of the hits even if the solution is far
-            from the records.
         without: records that are held out of the estimate.
     """
     seen = ~np.isin(np.arange(len(bench.campaign.hit)), without)
@@ -86,8 +83,6 @@ def refine_noise(
     if scatter.joint_size == 0.0 or lost:
         return settle(refined, None)
     size, off = scatter.joint_size, -scatter.joint_values
-    if diverged and np.abs(off).max() > RESIDUALS.diverged_reach * size:
-        return settle(refined, None)
     off = np.clip(
         off, -RESIDUALS.settling_reach * size, RESIDUALS.settling_reach * size
     )
@@ -97,7 +92,7 @@ def refine_noise(
     )
     expanded = _expanded(refined, settling, base, terms, columns)
     left = expanded.residual(base, terms, FULL)
-    if left @ left > bench.policy.far_chi2 * bench.blocks.dof and not diverged:
+    if left @ left > bench.policy.far_chi2 * bench.blocks.dof:
         return settle(refined, None)
     return expanded
 

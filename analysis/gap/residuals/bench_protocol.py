@@ -62,6 +62,23 @@ class Bench(Scaled, Protocol):
         """Whether the model is expanded about one fit, a disadvantage for others."""
         ...
 
+    @property
+    def stiffness_sd(self) -> FloatArray:
+        """Prior sd of the joint's log stiffness in each hit, shape (n_hits,).
+
+        Empty for a bench without hits or without a joint that settles.
+        """
+        ...
+
+    def at_stiffness(self, settling: FloatArray) -> "Bench":
+        """Return the bench at a given stiffness of each hit, scatter not whitened.
+
+        Args:
+            settling: log of the joint's stiffness in each hit over that of the base,
+                shape (n_hits,).
+        """
+        ...
+
     def phases(self, candidate: Candidate) -> int:
         """Return the number of free phases that an effect fits; 0 for most effects."""
         ...
@@ -75,7 +92,6 @@ class Bench(Scaled, Protocol):
         base: FloatArray,
         terms: Sequence[Term],
         *,
-        diverged: bool = False,
         without: Sequence[int] = (),
     ) -> "Bench":
         """Return the bench with its noise estimated at a solution.
@@ -83,8 +99,6 @@ class Bench(Scaled, Protocol):
         Args:
             base: of the solution, shape (n_base,).
             terms: of the solution.
-            diverged: use the estimated scatter of the hits even if the solution is far
-                from the records, since the scatter may be the cause.
             without: groups of rows that are held out of the estimate.
         """
         ...

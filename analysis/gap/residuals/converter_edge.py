@@ -31,7 +31,8 @@ def with_converter_edge(
     """Return the bench with the end of the pass band estimated at a solution.
 
     Args:
-        bench: with any filter; it is estimated again, or reset to the default.
+        bench: with any filter; it is estimated again, or reset to the default. It is
+            not expanded about the settling of hits.
         base: log(parameter / nominal), shape (n_base,).
         terms: effects; without a nonlinear law the end of the pass band has no
             influence.
@@ -40,15 +41,16 @@ def with_converter_edge(
     plain = _with_taper(bench, usual)
     if not any(a.entry.law is not None for a in bench.actions(terms)):
         return plain
-    residual = plain.residual(base, terms, FULL)
     splines = _splines(_frequency(bench))
-    mute = _with_taper(bench, usual * (1.0 - splines.sum(axis=0)))
-    heard = residual - mute.residual(base, terms, FULL)
+    muted = usual * (1.0 - splines.sum(axis=0))
+    tapers = [usual, muted, *(usual + s for s in splines)]
+    residual, mute, *raised = (
+        plain.residual_of(y - bench.campaign.response)
+        for y in plain.tapered(base, terms, tapers, FULL.oversampling)
+    )
+    heard = residual - mute
     if not heard @ heard > RESIDUALS.edge_chi2:
         return plain
-    raised = [
-        _with_taper(bench, usual + s).residual(base, terms, FULL) for s in splines
-    ]
     slopes = np.stack([r - residual for r in raised])
     normal = slopes @ slopes.T + np.eye(len(splines)) / RESIDUALS.edge_prior_sd**2
     left = plain.residual(base, terms, FINE)

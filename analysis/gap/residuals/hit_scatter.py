@@ -9,6 +9,7 @@ import scipy.stats
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
+from jointbench.analysis.gap.residuals.noise_models import chi2_sd
 from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.residuals.scatter_likelihood import (
     CompressedRecords,
@@ -21,11 +22,11 @@ from jointbench.analysis.gap.residuals.scatter_record import (
 )
 from jointbench.analysis.gap.residuals.scatter_sizes import (
     SizeProblem,
+    bounded_by_repeats,
     descended,
     likeliest_sizes,
     of_repeats,
     regressed_sizes,
-    repeat_limits,
 )
 
 
@@ -37,11 +38,14 @@ class HitsSeen:
         patterns: possible trends over the records, shape (n_patterns, n_records).
         groups: records of each condition that was measured more than once.
         joints: directions that are the stiffness of a joint.
+        unexplained: whether the records leave the model by more than noise beside every
+            direction; it may then do so along them as well, in every repeat.
     """
 
     patterns: FloatArray
     groups: tuple[IntArray, ...]
     joints: frozenset[int] = frozenset()
+    unexplained: bool = False
 
 
 def repeat_groups(
@@ -68,8 +72,10 @@ def estimate_scatter(
 
     The mean of all hits is not scatter, neither is a trend: what varies at random is.
     All records together bear on the sizes, but a missing effect influences them;
-    repeats bound the sizes, because repeats share every missing effect. Where the
-    records are far from the model even so, repeats alone count.
+    repeats bound the sizes, because repeats share every missing effect. A size that
+    repeats exclude is the one they suggest if the model does not fit beside the
+    directions either, and otherwise the largest that they allow. Where the records are
+    far from the model even so, repeats alone count.
 
     Args:
         records: compressed along the columns.
@@ -86,7 +92,9 @@ def estimate_scatter(
         np.full(len(directions), np.inf),
     )
     joints = frozenset(k for k, d in enumerate(directions) if d.is_joint)
-    seen = replace(seen, joints=joints)
+    beside = 1.0 + policy.chi2_limit * chi2_sd(dof)
+    unexplained = bool(records.beside.sum() > beside * dof)
+    seen = replace(seen, joints=joints, unexplained=unexplained)
     start = np.maximum(regressed_sizes(records, direction), 1e-4)
     found = _Estimate(problem, likeliest_sizes(problem, start), ())
     found = _within_repeats(found, seen)
@@ -162,16 +170,14 @@ def _within_repeats(found: _Estimate, seen: HitsSeen) -> _Estimate:
         return found
     free = replace(found.problem, highest=np.full(found.size.size, np.inf))
     repeats = of_repeats(_less(free, found.outstanding), seen.groups)
-    likeliest = likeliest_sizes(repeats, np.where(found.size > 0.0, found.size, 1e-4))
-    limits = repeat_limits(repeats, likeliest, found.size)
+    wider = 1.0
     if free.rho > 0.0:
         # Correlated repeats differ by less than their scatter.
         lag = np.concatenate([np.diff(rows) for rows in seen.groups])
-        limits = limits / np.sqrt(1.0 - float(np.mean(free.rho**lag)))
-    bound = replace(free, highest=limits)
-    if np.all(found.size <= limits):
-        return replace(found, problem=bound)
-    size = likeliest_sizes(bound, np.minimum(found.size, limits))
+        wider = 1.0 / np.sqrt(1.0 - float(np.mean(free.rho**lag)))
+    bound, size = bounded_by_repeats(
+        free, repeats, found.size, wider=wider, likeliest=seen.unexplained
+    )
     return replace(found, problem=bound, size=size)
 
 
@@ -190,7 +196,9 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
     """Return the estimate with correlated hits and no trends, if that is likelier.
 
     A slow drift of the scatter resembles a trend; the restricted likelihood, which
-    charges for each systematic value, decides.
+    charges for each systematic value, decides. Of the correlations that the records do
+    not exclude the largest is taken: a few hits hardly resolve it, and the mean of hits
+    with a long memory is the least certain.
     """
     size = found.size
     if not np.any(size > 0.0) or len(found.problem.records.along) > (
@@ -213,6 +221,12 @@ def _correlated(found: _Estimate, intercepts: FloatArray) -> _Estimate:
         own = likeliest_sizes(tried[at], np.where(size > 0.0, size, 1e-4))
         if (now := tried[at].deviance(own)) < least:
             best, least = _Estimate(tried[at], own, found.outstanding), now
+    least += RESIDUALS.correlation_doubt
+    for problem in tried if best is not found else ():
+        if problem.rho > best.problem.rho:
+            own = likeliest_sizes(problem, best.size)
+            if problem.deviance(own) < least:
+                best = _Estimate(problem, own, found.outstanding)
     return best
 
 

@@ -2,7 +2,7 @@
 """Joint least-squares problem of base and effects."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,7 +15,19 @@ from jointbench.analysis.gap.residuals.fit_records import split
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FitProblem:
-    """A bench with chosen effects, as a least-squares problem."""
+    """A bench with chosen effects, as a least-squares problem.
+
+    Attributes:
+        bench: measurement and model.
+        candidates: effects.
+        lower: bounds of the coordinates, shape (n,).
+        upper: likewise.
+        prior: diagonal of the prior's precision, shape (n,).
+        centre: of the prior, shape (n,).
+        n_base: number of base coordinates.
+        own: number of coordinates, the last ones, that each change one record alone,
+            in the order of the records.
+    """
 
     bench: Bench
     candidates: tuple[Candidate, ...]
@@ -24,6 +36,7 @@ class FitProblem:
     prior: FloatArray
     centre: FloatArray
     n_base: int
+    own: int = field(default=0, kw_only=True)
 
     def residual(self, x: FloatArray, resolution: Resolution) -> FloatArray:
         """Return the whitened residual at x."""

@@ -2,7 +2,7 @@
 """The bench of lumped dynamics: a campaign and its model, as used by the engine."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.residuals.bench_noise import refine_noise
 from jointbench.analysis.gap.residuals.fit_records import Fit
-from jointbench.analysis.gap.residuals.lumped_residual import LumpedResidual
+from jointbench.analysis.gap.residuals.joint_settling import joint_at
+from jointbench.analysis.gap.residuals.lumped_residual import LumpedResidual, settle
 from jointbench.analysis.gap.residuals.residual_views import residual_peaks, slice_views
 
 
@@ -39,16 +40,29 @@ class LumpedBench(LumpedResidual):
         """Prior sd of log(parameter / nominal), shape (n_base,)."""
         return self.campaign.model.spread
 
+    @property
+    def stiffness_sd(self) -> FloatArray:
+        """Prior sd of the joint's log stiffness in each hit: that of the joint."""
+        model = self.campaign.model
+        settles = any(x.joint for x in model.links) and not self.campaign.continuous
+        if not settles or self.campaign.repeatability is not None:
+            return np.zeros(0)
+        return np.full(len(self.campaign.hit), model.spread[joint_at(model)])
+
+    def at_stiffness(self, settling: FloatArray) -> "LumpedBench":
+        """Return the bench at a given stiffness of each hit, scatter not whitened."""
+        there = settle(self, settling)
+        return replace(there, shrink=np.zeros_like(there.shrink), mixing=None)
+
     def refine(
         self,
         base: FloatArray,
         terms: Sequence[Term],
         *,
-        diverged: bool = False,
         without: Sequence[int] = (),
     ) -> "LumpedBench":
         """Return the bench with its noise estimated at a solution."""
-        return refine_noise(self, base, terms, diverged=diverged, without=without)
+        return refine_noise(self, base, terms, without=without)
 
     def views(self, fit: Fit) -> tuple[View, ...]:
         """Return the residual of a fit by view."""

@@ -29,7 +29,10 @@ from jointbench.analysis.gap.residuals.residual_settings import RESIDUALS
 from jointbench.analysis.gap.response.dynamic_stiffness import Action
 from jointbench.analysis.gap.response.effect_hooks import HitConditions, LumpedEffect
 from jointbench.analysis.gap.response.excitation import Excitation, prepare_excitation
-from jointbench.analysis.gap.response.predict_records import respond
+from jointbench.analysis.gap.response.predict_records import (
+    respond,
+    respond_tapered,
+)
 from jointbench.analysis.gap.response.search_effort import spend
 
 
@@ -111,6 +114,25 @@ class LumpedResidual:
             self.theta(base),
             self.excitation,
             actions,
+            oversampling=oversampling,
+            measured=self.campaign.response,
+        )
+
+    def tapered(
+        self,
+        base: FloatArray,
+        terms: Sequence[Term],
+        tapers: Sequence[FloatArray],
+        oversampling: int,
+    ) -> list[FloatArray]:
+        """Predict the channels with each taper of the nonlinear part."""
+        spend(self.campaign.response.size, oversampling)
+        return respond_tapered(
+            self.campaign.model,
+            self.theta(base),
+            self.excitation,
+            self.actions(terms),
+            tapers,
             oversampling=oversampling,
             measured=self.campaign.response,
         )

@@ -29,6 +29,15 @@ class Noise:
     scatter: HitScatter
 
 
+def chi2_sd(dof: int) -> float:
+    """Return the sd of chi2/dof under noise, including that of the noise estimate.
+
+    The noise is estimated from a share of the same samples, so their common part
+    cancels.
+    """
+    return float(np.sqrt(2.0 / dof * (1.0 / RESIDUALS.noise_share - 1.0)))
+
+
 def high_band_sigma(residual: FloatArray) -> FloatArray:
     """Estimate white noise from the top of the spectrum.
 

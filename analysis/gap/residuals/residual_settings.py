@@ -48,6 +48,12 @@ class ResidualSettings:
         "band in which the noise is estimated, above any response to a hammer",
         "the force of a hammer ends far below",
     )
+    noise_share: float = numerical(
+        0.2,
+        "of the samples",
+        "effective number of samples of the noise estimate",
+        "0.39 of the spectrum, halved by the taper",
+    )
     least_direction: float = numerical(
         0.03,
         "of the noise",
@@ -131,6 +137,13 @@ class ResidualSettings:
         "-2 log likelihood",
         "gain below which hits are not correlated",
     )
+    correlation_doubt: float = numerical(
+        4.0,
+        "-2 log likelihood",
+        "loss up to which a larger correlation than the likeliest is taken",
+        "closed form: a chance of 5 %; null 701051 of benchmarks/gap/scatter.py: from "
+        "0.5 to 0.97 the loss is 1.2 with eight hits",
+    )
     most_correlated: int = numerical(
         64,
         "hits",
@@ -205,12 +218,6 @@ class ResidualSettings:
         "by 17 sd is modelled at the stiffness of each hit",
         "105020, 106030, 106052, 106076, 106096, 106164; eight draws of 3 to 9 % "
         "loosening, all named",
-    )
-    diverged_reach: float = numerical(
-        4.0,
-        "sd of the scatter",
-        "the same if the fit is far from the records",
-        "a trend counted as scatter changed the scale of all parameters by 40 %",
     )
     scatter_step: float = numerical(
         1e-6,

@@ -2,7 +2,7 @@
 """Sizes of scatter by restricted maximum likelihood, with limits from repeats."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -159,7 +159,38 @@ def of_repeats(problem: SizeProblem, groups: Sequence[IntArray]) -> SizeProblem:
     )
 
 
-def repeat_limits(
+def bounded_by_repeats(
+    problem: SizeProblem,
+    repeats: SizeProblem,
+    size: FloatArray,
+    *,
+    wider: float,
+    likeliest: bool,
+) -> tuple[SizeProblem, FloatArray]:
+    """Return the problem with limits by repeats, and the likeliest sizes within them.
+
+    Args:
+        problem: all records, without limits.
+        repeats: problem of the repeats alone.
+        size: likeliest sizes without limits, shape (n_directions,).
+        wider: factor on what repeats suggest and allow.
+        likeliest: whether the limit of a size that repeats exclude is the size that
+            they suggest, and not the largest that they allow.
+    """
+    own = likeliest_sizes(repeats, np.where(size > 0.0, size, 1e-4))
+    # A direction may take over what another one, now bounded, no longer explains.
+    for _ in range(size.size):
+        limits = wider * _repeat_limits(repeats, own, size)
+        if likeliest:
+            limits = np.where(np.isfinite(limits), wider * own, limits)
+        problem = replace(problem, highest=np.minimum(problem.highest, limits))
+        if np.all(size <= problem.highest):
+            break
+        size = likeliest_sizes(problem, np.minimum(size, problem.highest))
+    return problem, size
+
+
+def _repeat_limits(
     repeats: SizeProblem, likeliest: FloatArray, size: FloatArray
 ) -> FloatArray:
     """Return the largest size of each direction that repeats do not exclude.

@@ -16,6 +16,7 @@ Source:
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import scipy.fft
@@ -62,6 +63,52 @@ def respond(
         Response in the model's output, shape (n_records, n_channels, n_samples).
     """
     x = motion(model, theta, excitation, actions, oversampling=oversampling)
+    return _measured_motion(model, x, excitation, actions, measured)
+
+
+def respond_tapered(
+    model: LumpedModel,
+    theta: FloatArray,
+    excitation: Excitation,
+    actions: Sequence[Action],
+    tapers: Sequence[FloatArray],
+    *,
+    oversampling: int = 4,
+    measured: FloatArray | None = None,
+) -> list[FloatArray]:
+    """Predict the channels with several tapers of the nonlinear part.
+
+    The forces are integrated once: they arise before the converter.
+
+    Args:
+        model: bodies, links, channels.
+        theta: base parameters [SI], shape (n_base,).
+        excitation: prepared forces; its taper is not used.
+        actions: effects switched on.
+        tapers: each of shape (n_lines,).
+        oversampling: steps of the time integration per sample.
+        measured: as in `respond`.
+
+    Returns:
+        A response as of `respond` for each taper.
+    """
+    parts = _parts(model, theta, excitation, actions, oversampling)
+    return [
+        _measured_motion(
+            model, _summed(model, parts, taper), excitation, actions, measured
+        )
+        for taper in tapers
+    ]
+
+
+def _measured_motion(
+    model: LumpedModel,
+    x: Sequence[ComplexArray],
+    excitation: Excitation,
+    actions: Sequence[Action],
+    measured: FloatArray | None,
+) -> FloatArray:
+    """Return what the channels show of the displacements of the bodies."""
     s = excitation.s
     power = s ** int(model.output)
     seen = [model.index(c.body) for c in model.channels]
@@ -85,16 +132,48 @@ def motion(
     oversampling: int,
 ) -> list[ComplexArray]:
     """Return the displacement of each body, damped spectra (n_records, n_lines)."""
+    parts = _parts(model, theta, excitation, actions, oversampling)
+    return _summed(model, parts, excitation.taper)
+
+
+class _Parts(NamedTuple):
+    """Motion without nonlinear forces, these forces, and what they move.
+
+    Attributes:
+        linear: displacement of each body, damped spectra (n_records, n_lines).
+        forces: of each nonlinear link, damped spectra of the same shape.
+        receptance: [m/N], shape (n_bodies, n_bodies, 1 or n_records, n_lines).
+    """
+
+    linear: list[ComplexArray]
+    forces: dict[int, ComplexArray]
+    receptance: ComplexArray
+
+
+def _parts(
+    model: LumpedModel,
+    theta: FloatArray,
+    excitation: Excitation,
+    actions: Sequence[Action],
+    oversampling: int,
+) -> _Parts:
     z = dynamic_stiffness(model, theta, excitation.s, excitation.conditions, actions)
     h = invert(z)
     bodies = range(len(model.bodies))
     variant = np.arange(excitation.hit.size) if h.shape[2] > 1 else 0
     linear = [h[i, excitation.hit, variant] * excitation.spectrum for i in bodies]
     forces = _link_forces(model, theta, excitation, actions, linear, oversampling)
-    for link, link_force in forces.items():
-        for i in bodies:
-            linear[i] = linear[i] - _across(model, h, i, link) * link_force
-    return linear
+    return _Parts(linear, forces, h)
+
+
+def _summed(model: LumpedModel, parts: _Parts, taper: FloatArray) -> list[ComplexArray]:
+    """Return the displacement of each body with the forces tapered."""
+    x = list(parts.linear)
+    for link, force in parts.forces.items():
+        tapered = force * taper
+        for i in range(len(x)):
+            x[i] = x[i] - _across(model, parts.receptance, i, link) * tapered
+    return x
 
 
 def undamped(spectra: ComplexArray, excitation: Excitation) -> FloatArray:
@@ -121,7 +200,7 @@ def _link_forces(
     linear: Sequence[ComplexArray],
     oversampling: int,
 ) -> dict[int, ComplexArray]:
-    """Return the damped spectra of all nonlinear link forces, anti-aliased, by link.
+    """Return the damped spectra of all nonlinear link forces, by link.
 
     The links are the ports of one coupled time integration.
     """
@@ -147,7 +226,7 @@ def _link_forces(
     spectra = _spectra(excitation, force, oversampling)
     if half is not None:
         spectra = (4.0 * spectra - _spectra(excitation, half, oversampling // 2)) / 3.0
-    return dict(zip(links, spectra * excitation.taper, strict=True))
+    return dict(zip(links, spectra, strict=True))
 
 
 def _between_samples(

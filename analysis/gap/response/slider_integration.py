@@ -6,6 +6,7 @@ slip; its unloading is elastic, or follows a second curve (Bouc and Wen). Both c
 are tabulated once for a set of shape parameters, so that a step is one or two lookups.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -177,6 +178,7 @@ def bank_forces(
         f[bank.force + k] = total
 
 
+@lru_cache(maxsize=64)
 def slider_tables(
     loading: float, unloading: float, sharpness: float
 ) -> tuple[FloatArray, FloatArray]:
@@ -192,6 +194,7 @@ def slider_tables(
 
     Returns:
         Tables, shape (4, TABLE_SIZE), and their properties (`tops` of `slide`), (7,).
+        Both are shared by all calls with the same shape, and never written to.
 
     Source:
         Wen 1976, J. Eng. Mech. Div. 102, eq. (2), with |u| <= 1 normalised.

@@ -45,7 +45,16 @@ def jacobian_of(
         columns[i] -= residual
         columns[i] /= steps[i]
 
-    each(difference, x.size)
+    shared = x.size - problem.own
+    each(difference, shared)
+    if problem.own:
+        moved = x.copy()
+        moved[shared:] += steps[shared:]
+        change = problem.residual(moved, resolution) - residual
+        change = change.reshape(problem.own, -1) / steps[shared:, None]
+        columns[shared:] = 0.0
+        for i, rows in enumerate(change):
+            columns[shared + i].reshape(problem.own, -1)[i] = rows
     return columns.T
 
 
@@ -88,19 +97,21 @@ def minimise(
         return _pruned(problem, x, r)
     damping, age, j = SEARCH.least_damping, 0, slopes(x, r)
     for k in range(iterations):
-        moved, damping = _step(problem, x, r, j, cost, damping, resolution)
+        ended = max(
+            least_drop,
+            SEARCH.excess_tolerance * _excess(problem, cost)
+            + SEARCH.absolute_tolerance,
+        )
+        near = _Neighbourhood(problem, x, r, j, cost, SEARCH.promised_share * ended)
+        moved, damping = _step(near, damping, resolution)
         if moved is None:
             if age == 0:
                 break
             j, age, damping = slopes(x, r), 0, 1e-3
             continue
         drop = cost - moved[2]
-        small = drop < max(
-            least_drop,
-            SEARCH.excess_tolerance * _excess(problem, cost)
-            + SEARCH.absolute_tolerance,
-        )
-        guessed = _predicted_drop(problem, x, r, j, moved[0])
+        small = drop < ended
+        guessed = near.predicted_drop(moved[0])
         change, before = moved[0] - x, r
         x, r, cost = moved
         if small and age == 0:
@@ -140,12 +151,42 @@ def _excess(problem: FitProblem, cost: float) -> float:
     return max(cost - _problem_dof(problem), 0.0)
 
 
-def _predicted_drop(
-    problem: FitProblem, x: FloatArray, r: FloatArray, j: FloatArray, moved: FloatArray
-) -> float:
-    """Return the drop of the cost predicted by the linear model."""
-    left = r + j @ (moved - x)
-    return float(r @ r - left @ left + problem.penalty(x) - problem.penalty(moved))
+class _Neighbourhood:
+    """A point of a descent with the linear model of its residual.
+
+    Attributes:
+        problem: least-squares problem.
+        x: coordinates, shape (n,).
+        j: slopes, shape (n_rows, n).
+        cost: at x.
+        least: predicted drop below which a step is not tried.
+        hessian: of half the cost, without second derivatives, shape (n, n).
+        gradient: of half the cost, shape (n,).
+    """
+
+    def __init__(
+        self,
+        problem: FitProblem,
+        x: FloatArray,
+        r: FloatArray,
+        j: FloatArray,
+        cost: float,
+        least: float,
+    ) -> None:
+        self.problem, self.x, self.j = problem, x, j
+        self.cost, self.least = cost, least
+        self.hessian = j.T @ j + np.diag(problem.prior)
+        self.gradient = self.gradient_with(x, r)
+
+    def gradient_with(self, x: FloatArray, r: FloatArray) -> FloatArray:
+        """Return the gradient of half the cost at x, with the slopes known here."""
+        off = x - self.problem.centre
+        return np.asarray(self.j.T @ r + self.problem.prior * off)
+
+    def predicted_drop(self, moved: FloatArray) -> float:
+        """Return the drop of the cost predicted by the linear model."""
+        step = moved - self.x
+        return -float(step @ (2.0 * self.gradient + self.hessian @ step))
 
 
 def _secant(j: FloatArray, change: FloatArray, difference: FloatArray) -> FloatArray:
@@ -168,38 +209,35 @@ _Moved = tuple[FloatArray, FloatArray, float]
 
 
 def _step(
-    problem: FitProblem,
-    x: FloatArray,
-    r: FloatArray,
-    j: FloatArray,
-    cost: float,
-    damping: float,
-    resolution: Resolution,
+    near: _Neighbourhood, damping: float, resolution: Resolution
 ) -> tuple[_Moved | None, float]:
     """Try successively shorter steps until one lowers the cost.
 
     Effects and base can exchange stiffness and damping, so the valleys of the cost are
     long and curved. A step that raises the cost is first corrected along the
-    well-determined directions, with the known slopes, and only then shortened.
+    well-determined directions, with the known slopes, and only then shortened. At a
+    minimum even the longest step promises nothing, and none is tried; the promise is
+    that of the whole step, because a step cut at a bound is corrected afterwards.
     """
-    hessian = j.T @ j + np.diag(problem.prior)
-    gradient = j.T @ r + problem.prior * (x - problem.centre)
+    problem, x, gradient, cost = near.problem, near.x, near.gradient, near.cost
     free = ~(
         ((x <= problem.lower) & (gradient > 0))
         | ((x >= problem.upper) & (gradient < 0))
     )
-    size = np.sqrt(np.maximum(np.diag(hessian), 1e-12))
-    h = (hessian / np.outer(size, size))[np.ix_(free, free)]
+    size = np.sqrt(np.maximum(np.diag(near.hessian), 1e-12))
+    h = (near.hessian / np.outer(size, size))[np.ix_(free, free)]
     g = (gradient / size)[free]
     for _ in range(9):
         step = np.zeros(x.size)
         step[free] = -_solve(h + damping * np.eye(h.shape[0]), g)
+        if near.predicted_drop(x + step / size) < near.least:
+            break
         trial = _moved(problem, x, step / size)
         try_r, try_cost = _looked_at(problem, trial, resolution)
         for _ in range(SEARCH.corrections):
             if try_cost < cost or not np.isfinite(try_cost):
                 break
-            gradient = j.T @ try_r + problem.prior * (trial - problem.centre)
+            gradient = near.gradient_with(trial, try_r)
             stiff = h + SEARCH.stiff_damping * np.eye(h.shape[0])
             step[free] = -_solve(stiff, (gradient / size)[free])
             trial = _moved(problem, trial, step / size)

@@ -23,6 +23,12 @@ class SearchSettings:
         "drop of the cost added to that",
         "far below any threshold of a verdict",
     )
+    promised_share: float = numerical(
+        0.1,
+        "of the last drop",
+        "drop that a step must promise, relative to the drop at which a descent ends",
+        "a descent ends there in any case; steps at a minimum took a fifth of its time",
+    )
     base_step: float = numerical(
         1e-7,
         "-",

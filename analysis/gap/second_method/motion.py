@@ -3,10 +3,13 @@
 
 Source:
     Hairer, Norsett and Wanner 1993, Solving Ordinary Differential Equations I, II.5
-    (DOP853, as `scipy.integrate.solve_ivp` has it).
+    (DOP853); Petzold 1983, SIAM J. Sci. Stat. Comput. 4, 136 (LSODA); both as
+    `scipy.integrate.solve_ivp` has them.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import scipy.fft
@@ -81,33 +84,113 @@ def integrate_motion(
     """
     records, width, n = len(system.mass), system.width, system.mass.shape[1]
     push = force_between_samples(excitation, beyond, points)
+    pushed = _evaluated(push)
     count = (excitation.growth.size + beyond) * points
     time = np.arange(count) / (excitation.sample_rate * points)
 
     def rate(t: float, y: FloatArray) -> FloatArray:
-        return system.rates(push(t), y.reshape(records, width)).ravel()
+        return system.rates(pushed(t), y.reshape(records, width)).ravel()
 
-    # A law that runs away overflows before the integrator reports a failure.
-    with np.errstate(over="ignore", invalid="ignore"):
-        run = solve_ivp(
-            rate,
-            (0.0, time[-1]),
-            np.zeros(records * width),
-            t_eval=time,
-            method="DOP853",
-            rtol=tolerance,
-            atol=tolerance * _sizes(system, push, time).ravel(),
-            max_step=1.0 / excitation.sample_rate,
-        )
-    if not run.success or run.y.shape[1] != count:
-        raise BadData(
-            f"the second integrator stopped at {run.t[-1] if run.t.size else 0.0:g} s "
-            f"of {time[-1]:g} s ({run.message}); check the effect's parameters"
-        )
-    state = run.y.T.reshape(count, records, width)
+    sizes = _sizes(system, push, time).ravel()
+    end, sample = _end_of_hits(push, time), 1.0 / excitation.sample_rate
+    free = SECOND_METHOD.free_steps if records == 1 else 1.0
+    method = _Method(records == 1, tolerance, sizes)
+    hit = method.run(rate, np.zeros(records * width), time[: end + 1], sample)
+    rest = method.run(rate, hit.y[:, -1], time[end:], free * sample)
+    state = np.concatenate([hit.y[:, :-1], rest.y], axis=1).T
+    state = state.reshape(count, records, width)
     rates = system.rates(push(time), state)
     parts = (state[..., :n], rates[..., :n], rates[..., n : 2 * n])
-    return Motion(np.stack([p.transpose(1, 2, 0) for p in parts]), int(run.nfev))
+    return Motion(
+        np.stack([p.transpose(1, 2, 0) for p in parts]), int(hit.nfev + rest.nfev)
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Method:
+    """An adaptive integrator with its tolerance.
+
+    A multistep method needs half the evaluations of a law with reversals; with many
+    records, the reversals of each one would limit its order and step.
+
+    Attributes:
+        multistep: True for one record.
+        tolerance: local error over the size of the state [-].
+        sizes: of the states, shape (n,).
+    """
+
+    multistep: bool
+    tolerance: float
+    sizes: FloatArray
+
+    def run(
+        self,
+        rate: Callable[[float, FloatArray], FloatArray],
+        start: FloatArray,
+        time: FloatArray,
+        longest: float,
+    ) -> Any:
+        """Integrate.
+
+        Args:
+            rate: of the state.
+            start: state at the first time, shape (n,).
+            time: at which states are wanted [s], shape (n_times,).
+            longest: step [s].
+
+        Returns:
+            What `solve_ivp` returns.
+
+        Raises:
+            BadData: the integrator gave up.
+        """
+        # A law that runs away overflows before the integrator reports a failure.
+        with np.errstate(over="ignore", invalid="ignore"):
+            run = solve_ivp(
+                rate,
+                (time[0], time[-1]),
+                start,
+                t_eval=time,
+                method="LSODA" if self.multistep else "DOP853",
+                rtol=self.tolerance,
+                atol=self.tolerance * self.sizes,
+                max_step=longest,
+            )
+        if not run.success or run.y.shape[1] != time.size:
+            at = float(run.t[-1]) if run.t.size else 0.0
+            raise BadData(
+                f"the second integrator stopped at {at:g} s of {time[-1]:g} s "
+                f"({run.message}); check the effect's parameters"
+            )
+        return run
+
+
+def _evaluated(spline: CubicSpline) -> Callable[[float], FloatArray]:
+    """Return a spline of evenly spaced points as a function of one time.
+
+    The spline itself checks its arguments, which takes longer than the sum.
+    """
+    start, step = float(spline.x[0]), float(spline.x[1] - spline.x[0])
+    pieces = np.ascontiguousarray(np.moveaxis(spline.c, 1, 0))
+    last = len(pieces) - 1
+
+    def value(t: float) -> FloatArray:
+        at = min(max(int((t - start) / step), 0), last)
+        a, b, c, d = pieces[at]
+        away = t - spline.x[at]
+        return np.asarray(((a * away + b) * away + c) * away + d)
+
+    return value
+
+
+def _end_of_hits(push: CubicSpline, time: FloatArray) -> int:
+    """Return the index of the time from which no force acts any more.
+
+    While a force acts, a step may not pass over it; later the tolerance limits it.
+    """
+    force = np.abs(push(time)).max(axis=1)
+    acting = np.flatnonzero(force > SECOND_METHOD.least_force * force.max())
+    return int(np.clip(acting[-1] + 1 if acting.size else 1, 1, time.size - 2))
 
 
 def _sizes(system: System, push: CubicSpline, time: FloatArray) -> FloatArray:

@@ -1,5 +1,7 @@
 """A small hammer campaign made in code, for the tests of the gap engine."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
@@ -49,6 +51,15 @@ def quiet_campaign(
         order=np.arange(records, dtype=float),
         preload_reference=4000.0,
         model=two_body_model(NOMINAL, SPREAD),
+    )
+
+
+def first_samples(campaign: Campaign, count: int) -> Campaign:
+    """Return the campaign with records of the first samples only."""
+    return replace(
+        campaign,
+        force=campaign.force[:, :count],
+        response=campaign.response[..., :count],
     )
 
 

@@ -31,17 +31,18 @@ CPU = 3.0
 """[s]"""
 
 
-def costly_files() -> Any:
-    """Return the module of the benchmark that holds files and readers."""
+def benchmark_modules() -> tuple[Any, Any]:
+    """Return the modules of the benchmark that hold files and readers."""
     sys.path.insert(0, str(FOLDER))
     try:
-        import bounds_files
+        import costly_files
+        import foreign_readers
     finally:
         sys.path.remove(str(FOLDER))
-    return bounds_files
+    return costly_files, foreign_readers
 
 
-COSTLY = costly_files()
+COSTLY, FOREIGN = benchmark_modules()
 
 
 @pytest.mark.parametrize(
@@ -54,7 +55,7 @@ def test_a_costly_file_is_read_or_refused_soon(one: Any, tmp_path: Path) -> None
     one.make(path, 1.0 if one.reader.startswith("TOML") else SHARE)
     begun = time.process_time()
     try:
-        COSTLY.READERS[one.reader](path)
+        FOREIGN.READERS[one.reader](path)
     except JointbenchError as error:
         assert len(str(error).splitlines()) == 1
     assert time.process_time() - begun < CPU

@@ -38,12 +38,19 @@ def ways(rng: np.random.Generator) -> FloatArray:
     return found
 
 
-def estimated(values: FloatArray, seed: int = 3) -> HitScatter:
-    """Return the scatter of hits that deviate by values, (n_hits, 4)."""
+def estimated(values: FloatArray, seed: int = 3, *, beside: float = 0.0) -> HitScatter:
+    """Return the scatter of hits that deviate by values, (n_hits, 4).
+
+    Args:
+        values: of each hit along each column.
+        seed: of the noise.
+        beside: a residual that no direction describes, over the noise.
+    """
     rng = np.random.default_rng([seed, 1])
     columns = ways(rng)
     residual = np.einsum("ik,ikr->ir", values, columns)
     residual = residual + rng.standard_normal(residual.shape)
+    residual[:, ::2] += beside
     seen = HitsSeen(np.stack([ORDER, np.tile(np.arange(4.0), 4)]), REPEATS)
     return estimate_scatter(compress(residual, columns), DIRECTIONS, seen, HITS * ROWS)
 
@@ -91,6 +98,25 @@ def test_what_repeats_share_is_no_scatter_of_the_joint() -> None:
     values[:, 1] = np.tile(0.05 * rng.standard_normal(8), 2)
     values[:, 1] += 1e-3 * rng.standard_normal(HITS)
     assert estimated(values).size[1] < 0.01
+
+
+def conditions_apart(along: list[int], sd: float, seed: int) -> FloatArray:
+    """Return deviations by condition along some columns; repeats differ by 0.1 %."""
+    rng = np.random.default_rng(seed)
+    values = np.zeros((HITS, 4))
+    values[:, along] = np.tile(sd * rng.standard_normal((8, len(along))), (2, 1))
+    return values + 1e-3 * rng.standard_normal(values.shape)
+
+
+def test_no_direction_takes_over_what_repeats_deny_another() -> None:
+    """Conditions differ along all directions: every size stays near the repeats'."""
+    assert estimated(conditions_apart([0, 1, 2, 3], 0.03, 11)).size.max() < 0.01
+
+
+def test_sizes_are_those_of_repeats_where_the_model_does_not_fit_either() -> None:
+    """A law with a model error moves conditions along the directions, too."""
+    found = estimated(conditions_apart([1], 0.05, 6), beside=0.8)
+    assert found.size[1] == pytest.approx(1e-3, rel=0.5)
 
 
 def test_correlation_between_hits_is_found() -> None:

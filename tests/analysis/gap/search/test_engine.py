@@ -80,12 +80,20 @@ class Curve:
         """A curve gives no hints."""
         return []
 
+    @property
+    def stiffness_sd(self) -> FloatArray:
+        """A curve has no joint."""
+        return np.zeros(0)
+
+    def at_stiffness(self, settling: FloatArray) -> "Curve":
+        """Return the bench unchanged."""
+        return self
+
     def refine(
         self,
         base: FloatArray,
         terms: Sequence[Term],
         *,
-        diverged: bool = False,
         without: Sequence[int] = (),
     ) -> "Curve":
         """The noise is known."""
@@ -274,7 +282,6 @@ class Overestimated(Curve):
         base: FloatArray,
         terms: Sequence[Term],
         *,
-        diverged: bool = False,
         without: Sequence[int] = (),
     ) -> "Overestimated":
         """Set the noise to its true size."""
@@ -312,7 +319,6 @@ class Alternating(Curve):
         base: FloatArray,
         terms: Sequence[Term],
         *,
-        diverged: bool = False,
         without: Sequence[int] = (),
     ) -> "Alternating":
         """Change the noise once more."""
