@@ -16,7 +16,12 @@ from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
     structure_json,
 )
+from jointbench.analysis.structures.identification.stiffness_problem import Prior
 from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.body_moduli import (
+    modulus_name,
+    with_moduli,
+)
 from jointbench.analysis.structures.reduction.mounted_sensors import (
     MountedSensor,
     sensor_rows,
@@ -44,6 +49,7 @@ from jointbench.station.joints.structure_states import (
     all_evidence,
     measured_states,
 )
+from jointbench.station.joints.structure_tables import IdentifyTable
 from jointbench.station.joints.theory_records import TheoryRow
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
@@ -86,6 +92,7 @@ def run_identify_structure(
             evidence,
             sought=settings.identify.sought,
             shared=settings.identify.shared,
+            priors=_priors(settings.identify),
             structure=structure,
         )
     rows = _theory(settings, surface, preloads, result)
@@ -169,11 +176,19 @@ def _reduced(
     box = settings.identify.stiffness_box
     loads = sensor_rows(structure, list(sensors.values())) if sensors else None
     key = content_key(structure, modes, box, sorted(map(repr, sensors.values())))
-    return cached(
+    model = cached(
         cache,
         key,
         lambda: reduce_structure(structure, modes=modes, box=box, loads=loads),
     )
+    return with_moduli(model, list(settings.identify.modulus_sd))
+
+
+def _priors(table: IdentifyTable) -> dict[str, Prior]:
+    """Return the priors of joints and of moduli by the name of the parameter."""
+    joints = {n: Prior(one.stiffness, one.sd) for n, one in table.priors.items()}
+    moduli = {modulus_name(n): Prior(1.0, sd) for n, sd in table.modulus_sd.items()}
+    return joints | moduli
 
 
 def show_structure(result: StructureIdentification, json_target: str | None) -> None:

@@ -64,6 +64,8 @@ from jointbench.station.machine.machine_tables import (
 
 TOOL = "tool"
 """The point whose receptance is reported."""
+# A table of a load: a million points.
+_MOST_BYTES = 50_000_000
 
 
 class MachineModel(StrictTable):
@@ -183,6 +185,8 @@ def _table(
     if load.file is None:
         return None
     path = folder / load.file
+    if path.is_file() and path.stat().st_size > _MOST_BYTES:
+        raise BadData(f"{path}: more than {_MOST_BYTES} bytes; shorten the table")
     try:
         values = np.loadtxt(path, delimiter=",", comments="#", ndmin=2)
     except (OSError, ValueError) as error:

@@ -15,6 +15,7 @@ from jointbench.analysis.structures.identification.joint_result import (
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.meshes.elements import ELEMENTS
 from jointbench.analysis.structures.meshes.mesh import outer_faces
+from jointbench.analysis.structures.reduction.body_moduli import is_modulus
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     motion_of,
@@ -184,7 +185,8 @@ def _stiffness(model: ReducedModel, result: StructureIdentification) -> FloatArr
     best = result.solutions[0].parameters
     values = []
     for name in model.names:
-        hits = [v for k, v in best.items() if k.endswith(f"{name}_stiffness")]
+        own = name if is_modulus(name) else f"{name}_stiffness"
+        hits = [v for k, v in best.items() if k.endswith(own)]
         values.append(hits[0] if hits else 1.0)
     return np.array(values)
 

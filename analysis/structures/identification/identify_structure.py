@@ -34,6 +34,7 @@ from jointbench.analysis.structures.identification.profile_likelihood import (
 )
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,
+    Prior,
     StiffnessProblem,
     pose_problem,
     values_of,
@@ -45,6 +46,10 @@ from jointbench.analysis.structures.identification.structure_evidence import (
     states,
 )
 from jointbench.analysis.structures.matrices.structure import Structure
+from jointbench.analysis.structures.reduction.body_moduli import (
+    is_modulus,
+    scaled_structure,
+)
 from jointbench.analysis.structures.reduction.full_modes import frequency_of, solve_full
 from jointbench.analysis.structures.reduction.predict_modes import (
     JointValues,
@@ -94,6 +99,7 @@ def identify_structure(
     known: JointValues | None = None,
     sought: Sequence[str] | None = None,
     shared: Sequence[str] = (),
+    priors: Mapping[str, Prior] | None = None,
     search: StructureSearch | None = None,
     structure: Structure | None = None,
 ) -> StructureIdentification:
@@ -105,6 +111,7 @@ def identify_structure(
         known: values of the other parameters.
         sought: names ``"<joint>.<direction>"``; default all.
         shared: names common to all states.
+        priors: of stiffnesses and of factors on moduli (`with_moduli`), by name.
         search: settings; None for the defaults.
         structure: for a check of the optimum by one full solve; None skips it.
 
@@ -122,7 +129,9 @@ def identify_structure(
     """
     search = search or StructureSearch()
     states(evidence)
-    problem = pose_problem(model, evidence, known=known, sought=sought, shared=shared)
+    problem = pose_problem(
+        model, evidence, known=known, sought=sought, shared=shared, priors=priors
+    )
     optima = find_optima(problem, starts=search.starts, seed=search.seed)
     best = optima[0]
     freedom = best.slopes.shape[0] - problem.size
@@ -159,7 +168,7 @@ def _parameter(
     best, name = standing[0], problem.names[at]
     scale = best.noise()
     value = float(np.exp(best.unknowns[at]))
-    unit = "N s/m" if problem.damping[at] else "N/m"
+    unit = "N s/m" if problem.damping[at] else "" if is_modulus(name) else "N/m"
     sd = float(np.sqrt(scale * best.covariance()[at, at]))
     reason = _open_reason(problem, standing, at, sd, unit)
     if reason:
@@ -281,7 +290,11 @@ def _full_checks(
     for row, evidence in enumerate(problem.evidence):
         stiffness = values_of(problem, best.unknowns, row).stiffness
         reduced, bound = frequency_bound(problem.model, stiffness)
-        full = solve_full(structure, stiffness, problem.model.modes)
+        named = dict(zip(problem.model.names, stiffness.tolist(), strict=True))
+        joints = np.array([v for name, v in named.items() if not is_modulus(name)])
+        factors = {n.rpartition(".")[0]: v for n, v in named.items() if is_modulus(n)}
+        whole_mesh = scaled_structure(structure, factors) if factors else structure
+        full = solve_full(whole_mesh, joints, problem.model.modes)
         elastic = (reduced > 0) & (full.natural_frequency > 0)
         reduced, bound = reduced[elastic], bound[elastic]
         whole = full.natural_frequency[elastic]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The identification problem: unknowns, their bounds, and residuals."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
     evidence_residual,
 )
+from jointbench.analysis.structures.reduction.body_moduli import is_modulus
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 
@@ -19,10 +20,33 @@ from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 _BEYOND = 3.0
 # Bounds of damping as fractions of stiffness over frequency.
 _DAMPING_RANGE = (1e-7, 10.0)
+# Bounds of a factor on a modulus.
+_MODULUS_RANGE = (0.5, 2.0)
 # A solution is out if its chi2 exceeds the best one's by three standard deviations.
 _SEPARATES = 9.0
 # Singular values below this mean a standard deviation of 1e6 in ln: not determined.
 _FLAT = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Prior:
+    """What is known of a parameter before the measurement.
+
+    Attributes:
+        value: expected [N/m], or factor on a modulus [-].
+        relative_sd: standard deviation of its logarithm [-].
+    """
+
+    value: float
+    relative_sd: float
+
+    def __post_init__(self) -> None:
+        """Check signs."""
+        if not (self.value > 0 and self.relative_sd > 0):
+            raise BadData(
+                f"a prior of {self.value:g} with a relative sd of "
+                f"{self.relative_sd:g}; both must be above zero"
+            )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,6 +66,8 @@ class StiffnessProblem:
         damping: whether an unknown is a damping, shape (n_unknowns,).
         low: bounds of the unknowns.
         high: bounds of the unknowns.
+        prior: logarithms expected before the measurement, shape (n_unknowns,).
+        prior_sd: their standard deviations, infinite without a prior.
     """
 
     model: ReducedModel
@@ -52,6 +78,8 @@ class StiffnessProblem:
     damping: FloatArray
     low: FloatArray
     high: FloatArray
+    prior: FloatArray
+    prior_sd: FloatArray
 
     @property
     def size(self) -> int:
@@ -102,6 +130,7 @@ def pose_problem(
     known: JointValues | None = None,
     sought: Sequence[str] | None = None,
     shared: Sequence[str] = (),
+    priors: Mapping[str, Prior] | None = None,
 ) -> StiffnessProblem:
     """Set up the unknowns.
 
@@ -111,7 +140,8 @@ def pose_problem(
         known: values of the other parameters.
         sought: names ``"<joint>.<direction>"``, whose stiffness and, if measured,
             damping are unknown; default all.
-        shared: names of those common to all states.
+        shared: names of those common to all states; factors on moduli always are.
+        priors: of stiffnesses and of factors on moduli, by name.
 
     Returns:
         The problem.
@@ -120,7 +150,8 @@ def pose_problem(
         BadData: a name does not exist.
     """
     names = model.names
-    for name in (*(sought or ()), *shared):
+    priors = priors or {}
+    for name in (*(sought or ()), *shared, *priors):
         if name not in names:
             raise BadData(f"no joint direction {name!r}; there are {list(names)}")
     count = len(names)
@@ -131,15 +162,21 @@ def pose_problem(
     for row, one in enumerate(evidence):
         for at in range(2 * count):
             is_damping = at >= count
-            if not wanted[at % count] or (is_damping and not one.damped):
+            name = names[at % count]
+            if not wanted[at % count] or (
+                is_damping and (is_modulus(name) or not one.damped)
+            ):
                 continue
-            label = f"{names[at % count]}_{'damping' if is_damping else 'stiffness'}"
-            if len(evidence) > 1 and names[at % count] not in shared:
+            label = _label(name, is_damping)
+            if len(evidence) > 1 and name not in shared and not is_modulus(name):
                 label = f"{one.label}:{label}"
             columns[row, at] = place.setdefault(label, len(place))
     labels = list(place)
     damping = np.array([label.endswith("_damping") for label in labels], float)
     low, high = _bounds(model, damping)
+    scales = np.array([is_modulus(label) for label in labels], bool)
+    low[scales], high[scales] = np.log(_MODULUS_RANGE)
+    expected, expected_sd = _prior_logs(labels, priors)
     return StiffnessProblem(
         model,
         tuple(evidence),
@@ -149,7 +186,28 @@ def pose_problem(
         damping,
         low,
         high,
+        expected,
+        expected_sd,
     )
+
+
+def _label(name: str, is_damping: bool) -> str:
+    if is_modulus(name):
+        return name
+    return f"{name}_{'damping' if is_damping else 'stiffness'}"
+
+
+def _prior_logs(
+    labels: Sequence[str], priors: Mapping[str, Prior]
+) -> tuple[FloatArray, FloatArray]:
+    """Return expected logarithms and standard deviations; infinite without a prior."""
+    expected, spread = np.zeros(len(labels)), np.full(len(labels), np.inf)
+    for name, prior in priors.items():
+        own = _label(name, False)
+        for at, label in enumerate(labels):
+            if label == own or label.endswith(f":{own}"):
+                expected[at], spread[at] = np.log(prior.value), prior.relative_sd
+    return expected, spread
 
 
 def _known_logs(known: JointValues | None, count: int) -> FloatArray:
@@ -191,6 +249,10 @@ def residuals(
         np.add.at(whole.T, problem.columns[at][sought], slope[:, sought].T)
         rows.append(left)
         slopes.append(whole)
+    given = np.isfinite(problem.prior_sd)
+    scale = 1.0 / problem.prior_sd[given]
+    rows.append((unknowns - problem.prior)[given] * scale)
+    slopes.append(np.eye(problem.size)[given] * scale[:, None])
     return np.concatenate(rows), np.concatenate(slopes)
 
 
@@ -222,6 +284,8 @@ def states_apart(
             problem.damping[own],
             problem.low[own],
             problem.high[own],
+            problem.prior[own],
+            problem.prior_sd[own],
         )
         parts.append((part, own))
     return tuple(parts)

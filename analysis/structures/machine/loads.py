@@ -6,7 +6,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from jointbench.acquisition.basics.array_checks import require_ascending, require_shape
+from jointbench.acquisition.basics.array_checks import (
+    require_ascending,
+    require_finite,
+    require_shape,
+)
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData
 
@@ -57,6 +61,8 @@ class TableLoad:
     def __post_init__(self) -> None:
         """Check the order of the times; make the arrays read-only."""
         require_ascending("time", self.time)
+        require_finite("time", self.time)
+        require_finite("force", self.force)
         require_shape("force", self.force, (self.time.size,))
         freeze(self, "time", "force")
 

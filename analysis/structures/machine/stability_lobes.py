@@ -14,6 +14,7 @@ from jointbench.acquisition.basics.array_checks import require_positive, require
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 
 _TURN = 2.0 * np.pi
+_MOST_LOBES = 300
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,7 +75,9 @@ def stability_lobes(
     # The wave lags by epsilon, where G (1 - exp(-j epsilon)) is real and negative.
     lag = np.mod(2.0 * np.angle(receptance) + 3.0 * np.pi, _TURN)
     top = int(np.ceil(frequency[-1] / (teeth * speed[0])))
-    for lobe in range(top + 1):
+    # So many lobes at low speed leave no room between them.
+    width[speed * teeth * _MOST_LOBES < frequency[-1]] = limit
+    for lobe in range(min(top, _MOST_LOBES) + 1):
         turns = teeth * (lag / _TURN + lobe)
         own = frequency / np.where(turns > 0.0, turns, np.inf)
         for run in _monotone_runs(np.where(np.isfinite(each), own, np.nan)):

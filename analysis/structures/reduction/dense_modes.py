@@ -20,7 +20,7 @@ _CONVERGED = 1e-6
 _SPARE = 4
 # From this share of all modes on, all of them are computed.
 _MOST_OF_ALL = 0.25
-_SMALL = 90
+_SMALL = 160
 # Blocks before the first check: fewer never suffice.
 _FIRST_CHECK = 4
 

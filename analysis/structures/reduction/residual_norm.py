@@ -8,8 +8,7 @@ are known exactly, and the rest, which the largest compliance of the faces bound
 the stiffness of the joint itself, since K(theta) >= k R'R.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -52,16 +51,19 @@ class ResidualNorm:
         places: coordinates of each component in the assembly.
         joints: with parameters, in their order.
         turn: from reduced coordinates to those of the assembly, shape (n, r).
+        factors: bodies whose stiffness has a factor, in the order of the parameters
+            that follow those of the joints.
     """
 
     components: tuple[Component, ...]
     places: tuple[IntArray, ...]
     joints: tuple[JointMotion, ...]
     turn: FloatArray
+    factors: tuple[int, ...] = ()
 
     def restricted(self, turn: FloatArray) -> "ResidualNorm":
         """Return the norm in fewer coordinates, `turn` from them to the present."""
-        return ResidualNorm(self.components, self.places, self.joints, self.turn @ turn)
+        return replace(self, turn=self.turn @ turn)
 
     def of_modes(
         self, shapes: FloatArray, level: FloatArray, stiffness: FloatArray
@@ -76,8 +78,13 @@ class ResidualNorm:
         Returns:
             Shape (m,).
         """
-        ties = np.repeat(np.asarray(stiffness, float)[:, None], level.size, axis=1)
-        return self.of_motion(self.turn @ shapes, -level, ties, stiffness)
+        values = np.asarray(stiffness, float)
+        joints = values[: values.size - len(self.factors)]
+        own = values[joints.size :]
+        ties = np.repeat(joints[:, None], level.size, axis=1)
+        norm = self.of_motion(self.turn @ shapes, -level, ties, joints, own)
+        # K of a softer body is at least its factor times the nominal one.
+        return np.asarray(norm / np.sqrt(min(1.0, *own, 1.0)))
 
     def of_motion(
         self,
@@ -85,21 +92,23 @@ class ResidualNorm:
         inertia: Motion,
         ties: Motion,
         stiffness: FloatArray,
-        loads: Sequence[Motion | None] | None = None,
+        factors: FloatArray,
     ) -> FloatArray:
-        """Return the norm of (K + inertia M + ties) motion - loads.
+        """Return the norm of (K + inertia M + ties) motion.
 
         Args:
             motion: coordinates of the assembly, shape (n, m).
             inertia: factor of M of each column [1/s^2], shape (m,).
             ties: factor of the joints, k + s c [N/m], shape (n_parameters, m).
             stiffness: real stiffness of the joints [N/m], shape (n_parameters,).
-            loads: on the patterns of each body, shape (n_patterns, m); None is no load.
+            factors: on the stiffness of bodies, in the order of `factors` [-].
 
         Returns:
             Shape (m,).
         """
-        tractions = self._tractions(motion, loads)
+        tractions = self._no_tractions(motion)
+        stretch = np.ones(len(self.components))
+        stretch[list(self.factors)] = factors
         rest = np.zeros(motion.shape[1])
         at = 0
         for joint in self.joints:
@@ -114,24 +123,25 @@ class ResidualNorm:
             rest += _rest_bound(left, ties[own], stiffness[own], joint.compliance)
             at += count
         whole = np.zeros(motion.shape[1])
-        for body, place, traction in zip(
-            self.components, self.places, tractions, strict=True
+        for number, (place, traction) in enumerate(
+            zip(self.places, tractions, strict=True)
         ):
-            whole += _body_square(body, motion[place], inertia, traction)
+            part = _body_square(
+                self.components[number],
+                stretch[number] * motion[place],
+                inertia * motion[place],
+                traction,
+            )
+            whole += part
         return np.asarray(np.sqrt(whole) + rest)
 
-    def _tractions(
-        self, motion: Motion, loads: Sequence[Motion | None] | None
-    ) -> list[Motion]:
-        """Return minus the loads on the patterns of each body."""
+    def _no_tractions(self, motion: Motion) -> list[Motion]:
+        """Return zero forces on the patterns of each body."""
         kind = np.result_type(motion, float)
-        found: list[Motion] = []
-        for at, body in enumerate(self.components):
-            load = None if loads is None else loads[at]
-            count = _pattern_count(body)
-            zero = np.zeros((count, motion.shape[1]), kind)
-            found.append(zero if load is None else zero - load)
-        return found
+        return [
+            np.zeros((_pattern_count(body), motion.shape[1]), kind)
+            for body in self.components
+        ]
 
 
 def _pattern_count(body: Component) -> int:
@@ -141,13 +151,12 @@ def _pattern_count(body: Component) -> int:
 
 
 def _body_square(
-    body: Component, motion: Motion, inertia: Motion, traction: Motion
+    body: Component, stretched: Motion, heavy: Motion, traction: Motion
 ) -> FloatArray:
     """Return the squared norm of one body's part."""
     if body.residual is None:
-        return np.zeros(motion.shape[1])
-    stretch = 1.0 + 1j * body.loss_factor if np.iscomplexobj(motion) else 1.0
-    stack = np.concatenate([stretch * motion, inertia * motion, traction])
+        return np.zeros(stretched.shape[1])
+    stack = np.concatenate([stretched, heavy, traction])
     return np.asarray(np.sum(np.abs(body.residual.root @ stack) ** 2, axis=0))
 
 

@@ -58,3 +58,10 @@ def test_a_receptance_without_a_negative_real_part_never_chatters() -> None:
     found = stability_lobes(LINES, 1 / (1e7 + 10j * OMEGA), CUT, np.array([50.0]))
     assert found.limit == np.inf
     assert found.width[0] == np.inf
+
+
+def test_at_low_speed_the_lobes_leave_no_room() -> None:
+    """From three hundred lobes on, the limit is that of every speed."""
+    found = stability_lobes(LINES, RECEPTANCE, CUT, np.array([0.01, 1.0, 400.0]))
+    assert found.width[:2] == pytest.approx(found.limit)
+    assert found.width[2] > 1.1 * found.limit
