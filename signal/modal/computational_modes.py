@@ -11,13 +11,18 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, IntArray
 from jointbench.signal.modal.frf_lines import FrfLines
-from jointbench.signal.modal.local_fit import Group, WholeFit, group_around
+from jointbench.signal.modal.local_fit import (
+    Group,
+    WholeFit,
+    group_around,
+    residue_scale,
+    try_poles,
+)
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
     unresolved,
 )
-from jointbench.signal.modal.trial_poles import residue_scale, try_poles
 
 # Lines at an edge whose residual is compared with the noise: share of the band.
 _EDGE = 0.1

@@ -94,7 +94,6 @@ def fit_modes(
     *,
     held: BoolArray | None = None,
     seen: Seen | None = None,
-    n_inputs: int = 1,
     force: ForceNoise | None = None,
     refine: bool = True,
     progress: Progress | None = None,
@@ -112,8 +111,8 @@ def fit_modes(
         held: True for candidates that are always kept, shape (n_candidates,), or None.
         seen: whether a pole that the residual shows is one of the FRF; None adds no
             modes, as where some were dropped by hand and their residual is wanted.
-        n_inputs: references; inputs vary fastest over the rows of the lines.
-        force: noise of the force, None where it is not known.
+        force: noise of the force at each reference; None for one reference whose
+            noise is not known. Inputs vary fastest over the rows of the lines.
         refine: False keeps the poles of LSCF.
         progress: called with the current step and its share; None for no reports.
 
@@ -166,7 +165,13 @@ def fit_modes(
         done.significance,
         start.error,
         residual_around(lines, done.poles.pole, done.poles.residual, start.noise),
-        shared_covariance(lines, done.poles, done.fit, start.variance, n_inputs),
+        shared_covariance(
+            lines,
+            done.poles,
+            done.fit,
+            start.variance,
+            1 if force is None else force.relative.shape[0],
+        ),
         _forced(lines, start, done, force),
         _doubts(lines, start, done, tried=refine and seen is not None),
     )
@@ -301,7 +306,7 @@ def _final(lines: FrfLines, start: _Start, done: _Settled) -> WholeFit:
 def _forced(
     lines: FrfLines, start: _Start, done: _Settled, force: ForceNoise | None
 ) -> FloatArray:
-    if force is None:
+    if force is None or force.width <= 0.0:
         return np.zeros((done.poles.pole.size, 2, 2))
     return force_covariance(lines, done.poles, done.fit, start.variance, force)
 

@@ -147,7 +147,6 @@ def identify_modes(
         _scatter(frf, keep),
         held=np.array([c.by_hand for c in found], bool),
         seen=None if settings.choices.drop else partial(recurs, table),
-        n_inputs=len(frf.inputs),
         force=_force_noise(frf, keep),
         refine=settings.refine,
         progress=progress,
@@ -293,10 +292,10 @@ def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:
     return kept.reshape(-1, kept.shape[2])
 
 
-def _force_noise(frf: Frf, keep: BoolArray) -> ForceNoise | None:
+def _force_noise(frf: Frf, keep: BoolArray) -> ForceNoise:
     """Return what the noise of the force changes in the FRFs of each input."""
     if frf.force_noise is None or frf.force_width <= 0.0:
-        return None
+        return ForceNoise(np.zeros((len(frf.inputs), np.count_nonzero(keep))), 0.0)
     power = np.abs(frf.response[:, :, keep]) ** 2
     share = frf.force_noise[:, :, keep] / np.where(power > 0.0, power, np.inf)
     return ForceNoise(np.max(share, axis=0), frf.force_width)

@@ -39,7 +39,8 @@ class ForceNoise:
 
     Attributes:
         relative: E|error|^2 of an FRF over its own |FRF|^2, shape (n_inputs, n_lines).
-        width: time after the trigger in which the force was kept [s].
+        width: time after the trigger in which the force was kept [s]; 0 where the
+            noise is not known.
     """
 
     relative: FloatArray
