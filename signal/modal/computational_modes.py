@@ -20,8 +20,9 @@ from jointbench.signal.modal.residual_search.local_fit import (
     Group,
     WholeFit,
     group_around,
+    residue_scale,
+    try_poles,
 )
-from jointbench.signal.modal.residual_search.trial_poles import residue_scale, try_poles
 
 # Lines at an edge whose residual is compared with the noise: share of the band.
 _EDGE = 0.1
@@ -40,6 +41,9 @@ _STARTS, _ONE_POLE = 3, 0.1
 # A pole is kept where chi-squared falls by this many times its unknowns, in units of
 # what it leaves.
 _GAIN = 3.0
+# Residual power over the noise up to which that suffices; else a pole must leave less
+# than this share of what exceeds the noise at the edges.
+_ADMISSIBLE, _LEFT = 4.0, 0.5
 # Poles added at once, at most.
 _MOST = 5
 _STEPS = 15
@@ -84,7 +88,7 @@ def _beyond_edges(
         if starts.size == 0:
             break
         fitted = fitted or _refined(group, pole, beyond)
-        better = _first_needed(whole, group, fitted, starts)
+        better = _first_needed(whole, group, fitted, starts, edges)
         if better is None:
             break
         fitted, pole, beyond = better, better.pole, better.beyond
@@ -92,13 +96,17 @@ def _beyond_edges(
 
 
 def _first_needed(
-    whole: WholeFit, group: Group, fitted: RefinedPoles, starts: ComplexArray
+    whole: WholeFit,
+    group: Group,
+    fitted: RefinedPoles,
+    starts: ComplexArray,
+    edges: tuple[bool, ...],
 ) -> RefinedPoles | None:
     """Return the fit with the first further pole that it needs, or None."""
     for start in starts:
         trial = _refined(group, fitted.pole, np.append(fitted.beyond, start))
         outside = unresolved(whole.lines, trial.beyond).all()
-        if outside and _apart(trial.beyond) and _gained(group, fitted, trial):
+        if outside and _apart(trial.beyond) and _gained(group, fitted, trial, edges):
             return trial
     return None
 
@@ -114,12 +122,34 @@ def _refined(group: Group, pole: ComplexArray, beyond: ComplexArray) -> RefinedP
     return refine_poles(group.lines, pole, group.variance, beyond=beyond, steps=_STEPS)
 
 
-def _gained(group: Group, before: RefinedPoles, after: RefinedPoles) -> bool:
+def _gained(
+    group: Group, before: RefinedPoles, after: RefinedPoles, edges: tuple[bool, ...]
+) -> bool:
     """Return whether chi-squared falls by more than the unknowns of a pole explain."""
-    left = [2.0 * np.abs(f.residual) ** 2 / group.variance for f in (before, after)]
-    unit = max(1.0, 0.5 * float(np.mean(left[1])))
-    gain = float(np.sum(left[0]) - np.sum(left[1])) / unit
-    return bool(gain > _GAIN * (2 * group.variance.shape[0] + 2))
+    first, left = (f.residual / np.sqrt(group.variance) for f in (before, after))
+    unit = max(1.0, float(np.mean(np.abs(left) ** 2)))
+    gain = 2.0 * float(np.sum(np.abs(first) ** 2 - np.abs(left) ** 2)) / unit
+    explained = gain > _GAIN * (2 * group.variance.shape[0] + 2)
+    return bool(explained) and _admissible(group, before, after, edges)
+
+
+def _admissible(
+    group: Group, before: RefinedPoles, after: RefinedPoles, edges: tuple[bool, ...]
+) -> bool:
+    """Return whether a fit leaves little, or at the edges half of what it left.
+
+    Leakage and nonlinear structures leave residuals that no pole beyond explains.
+    """
+    if float(np.mean(np.abs(after.residual) ** 2 / group.noise)) < _ADMISSIBLE:
+        return True
+    width = max(10, int(_EDGE * group.lines.laplace.size))
+    ends = [np.arange(-width, 0) if above else np.arange(width) for above in edges]
+    outer = np.concatenate(ends)
+    ratio = [
+        float(np.mean(np.abs(f.residual[:, outer]) ** 2 / group.noise[:, outer]))
+        for f in (before, after)
+    ]
+    return ratio[1] - 1.0 < _LEFT * (ratio[0] - 1.0)
 
 
 def _rows(whole: WholeFit, edges: tuple[bool, ...]) -> IntArray:

@@ -27,6 +27,8 @@ _LEVEL_LINES = 11
 _LOCAL_LINES = 41
 # Least sd of an FRF as a share of its own level: converters, cables.
 _BEST = 1e-7
+# Model error above which a structure is none of the model, and a small residual chance.
+_INEXACT = 0.02
 # Around a mode: this many half-power half-widths, and this many lines, each side.
 _REACH_WIDTHS = 4.0
 _REACH_LINES = 10.0
@@ -142,8 +144,11 @@ def line_variance(
         often does much better: where the residual shows that, it counts. Else poles
         would be taken from flanks, with an interval from peaks.
     """
+    usual = error**2 * local_level(response)
+    if error > _INEXACT:
+        return np.asarray(noise + usual)
     excess = np.maximum(local_residual(residual) - noise, 0.0)
-    return np.asarray(noise + np.minimum(error**2 * local_level(response), excess))
+    return np.asarray(noise + np.minimum(usual, excess))
 
 
 def residual_around(

@@ -41,7 +41,6 @@ from jointbench.signal.modal.residual_search.local_fit import WholeFit
 from jointbench.signal.modal.residual_search.missing_modes import Seen, find_missing
 from jointbench.signal.modal.shared_errors import (
     ForceNoise,
-    FrfErrors,
     force_covariance,
     shared_covariance,
 )
@@ -92,10 +91,11 @@ class FittedModes:
 def fit_modes(
     lines: FrfLines,
     candidates: ComplexArray,
-    errors: FrfErrors,
+    scatter: FloatArray | None,
     *,
     held: BoolArray | None = None,
     seen: Seen | None = None,
+    force: ForceNoise | None = None,
     refine: bool = True,
     progress: Progress | None = None,
 ) -> FittedModes:
@@ -108,17 +108,18 @@ def fit_modes(
     Args:
         lines: lines of the fit.
         candidates: poles [rad/s], shape (n_candidates,).
-        errors: known before the fit.
+        scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
         held: True for candidates that are always kept, shape (n_candidates,), or None.
         seen: whether a pole that the residual shows is one of the FRF; None adds no
             modes, as where some were dropped by hand and their residual is wanted.
+        force: noise of the force at each reference; None for one reference whose
+            noise is not known. Inputs vary fastest over the rows of the lines.
         refine: False keeps the poles of LSCF.
         progress: called with the current step and its share; None for no reports.
 
     Returns:
         The modes, possibly none.
     """
-    scatter = errors.scatter
     noise, level = line_noise(lines.response, scatter), local_level(lines.response)
     variance = noise + _FIRST_MODEL_ERROR**2 * level
     steps = _STEPS if refine else 0
@@ -165,8 +166,14 @@ def fit_modes(
         done.significance,
         start.error,
         residual_around(lines, done.poles.pole, done.poles.residual, start.noise),
-        shared_covariance(lines, done.poles, done.fit, start.variance, errors.n_inputs),
-        _forced(lines, start, done, errors.force),
+        shared_covariance(
+            lines,
+            done.poles,
+            done.fit,
+            start.variance,
+            1 if force is None else force.relative.shape[0],
+        ),
+        _forced(lines, start, done, force),
         _doubts(lines, start, done, tried=refine and seen is not None),
     )
 
@@ -300,7 +307,7 @@ def _final(lines: FrfLines, start: _Start, done: _Settled) -> WholeFit:
 def _forced(
     lines: FrfLines, start: _Start, done: _Settled, force: ForceNoise | None
 ) -> FloatArray:
-    if force is None:
+    if force is None or force.width <= 0.0:
         return np.zeros((done.poles.pole.size, 2, 2))
     return force_covariance(lines, done.poles, done.fit, start.variance, force)
 

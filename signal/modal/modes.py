@@ -27,7 +27,7 @@ from jointbench.signal.modal.modal_model import ModalModel, build_model
 from jointbench.signal.modal.mode_selection import FittedModes, fit_modes
 from jointbench.signal.modal.repeated_roots import separate_repeated
 from jointbench.signal.modal.residual_search.doubtful_neighbours import neighbour_words
-from jointbench.signal.modal.shared_errors import ForceNoise, FrfErrors
+from jointbench.signal.modal.shared_errors import ForceNoise
 from jointbench.signal.modal.stabilisation import (
     Stabilisation,
     StabilityLimits,
@@ -144,9 +144,10 @@ def identify_modes(
     fitted = fit_modes(
         lines,
         start,
-        FrfErrors(_scatter(frf, keep), len(frf.inputs), _force_noise(frf, keep)),
+        _scatter(frf, keep),
         held=np.array([c.by_hand for c in found], bool),
         seen=None if settings.choices.drop else partial(recurs, table),
+        force=_force_noise(frf, keep),
         refine=settings.refine,
         progress=progress,
     )
@@ -291,10 +292,10 @@ def _scatter(frf: Frf, keep: BoolArray) -> FloatArray | None:
     return kept.reshape(-1, kept.shape[2])
 
 
-def _force_noise(frf: Frf, keep: BoolArray) -> ForceNoise | None:
+def _force_noise(frf: Frf, keep: BoolArray) -> ForceNoise:
     """Return what the noise of the force changes in the FRFs of each input."""
     if frf.force_noise is None or frf.force_width <= 0.0:
-        return None
+        return ForceNoise(np.zeros((len(frf.inputs), np.count_nonzero(keep))), 0.0)
     power = np.abs(frf.response[:, :, keep]) ** 2
     share = frf.force_noise[:, :, keep] / np.where(power > 0.0, power, np.inf)
     return ForceNoise(np.max(share, axis=0), frf.force_width)

@@ -39,26 +39,12 @@ class ForceNoise:
 
     Attributes:
         relative: E|error|^2 of an FRF over its own |FRF|^2, shape (n_inputs, n_lines).
-        width: time after the trigger in which the force was kept [s].
+        width: time after the trigger in which the force was kept [s]; 0 where the
+            noise is not known.
     """
 
     relative: FloatArray
     width: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class FrfErrors:
-    """Errors of an FRF as they are known before a fit.
-
-    Attributes:
-        scatter: variance of the FRF from its hits, shape (n_frf, n_lines), or None.
-        n_inputs: references; inputs vary fastest over the rows of the lines.
-        force: noise of the force, None where it is not known.
-    """
-
-    scatter: FloatArray | None = None
-    n_inputs: int = 1
-    force: ForceNoise | None = None
 
 
 def shared_covariance(

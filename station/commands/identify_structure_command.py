@@ -37,6 +37,7 @@ from jointbench.station.joints.contact_comparison import (
     known_preloads,
     theory_json,
 )
+from jointbench.station.joints.identification_tables import IdentifyTable
 from jointbench.station.joints.structure_contact import joint_of, theory_surface
 from jointbench.station.joints.structure_model import (
     StructureModel,
@@ -49,7 +50,6 @@ from jointbench.station.joints.structure_states import (
     all_evidence,
     measured_states,
 )
-from jointbench.station.joints.structure_tables import IdentifyTable
 from jointbench.station.joints.theory_records import TheoryRow
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text

@@ -23,15 +23,13 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.signal.modal.frf_lines import measured_width
 from jointbench.signal.modal.residual_search.local_fit import (
     Group,
+    TrialPoles,
     WholeFit,
     group_around,
-)
-from jointbench.signal.modal.residual_search.missing_modes import refined_group
-from jointbench.signal.modal.residual_search.trial_poles import (
-    PoleTrials,
     residue_scale,
     try_poles,
 )
+from jointbench.signal.modal.residual_search.missing_modes import refined_group
 
 # Lines around a mode: half-power half-widths, and lines at least, each side.
 _REACH_WIDTHS, _REACH_LINES = 8.0, 40
@@ -118,7 +116,7 @@ def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeig
 
 def _tried(
     whole: WholeFit, group: Group, index: IntArray, trials: ComplexArray
-) -> PoleTrials | None:
+) -> TrialPoles | None:
     """Return what one more mode changes; None where none is admissible.
 
     What the likeliest leaves counts as noise: leakage, a nonlinear structure.
@@ -139,8 +137,8 @@ def _tried(
 
 
 def _refined(
-    whole: WholeFit, group: Group, found: PoleTrials, start: complex
-) -> PoleTrials | None:
+    whole: WholeFit, group: Group, found: TrialPoles, start: complex
+) -> TrialPoles | None:
     """Return the likeliest neighbour beyond first order; None if it is not admissible.
 
     Nothing else is left to weigh where its evidence is so strong.
@@ -203,7 +201,7 @@ def _weights(log_factor: FloatArray, prior: FloatArray) -> FloatArray:
 def _add(
     shift: FloatArray,
     covariance: FloatArray,
-    found: PoleTrials,
+    found: TrialPoles,
     weight: FloatArray,
     own: int,
 ) -> None:

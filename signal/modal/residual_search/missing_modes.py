@@ -39,7 +39,7 @@ Seen = Callable[[complex], bool]
 _DECAYS = (0.5, 1.0, 2.0)
 # Lines on each side of a trial: half-power half-widths, and lines at least.
 _REACH_WIDTHS, _REACH_LINES = 8.0, 40
-# PoleTrials in one pass over the residual.
+# Trials in one pass over the residual.
 _TRIALS = 12
 _STEPS = 12
 # A mode must explain this share of the residual power above the noise around it.
