@@ -11,11 +11,10 @@ from jointbench.analysis.structures.matrices.parts import (
 )
 from jointbench.analysis.structures.meshes.elements import ElementKind
 from jointbench.station.files.toml_file import StrictTable, with_unit
-from jointbench.station.joints.shape_table import ShapeTable
+from jointbench.station.joints.shape_table import PatchTable, ShapeTable
 
 _Length = Annotated[float, with_unit("length")]
 _Point = tuple[_Length, _Length, _Length]
-_Span = tuple[_Length, _Length]
 _Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
 _Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
 _Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
@@ -64,21 +63,6 @@ class SolidTable(StrictTable):
             raise ValueError("give both stiffness and mass files, or neither")
         if self.stiffness is None and self.material is None:
             raise ValueError("name its material, or give stiffness and mass files")
-        return self
-
-
-class PatchTable(StrictTable):
-    """A part of the joint's plane: a rectangle, or a bolt spot."""
-
-    rectangle: tuple[_Span, _Span] | None = None
-    centre: _Span | None = None
-    radius: _Length | None = None
-
-    @model_validator(mode="after")
-    def _one_form(self) -> "PatchTable":
-        spot = self.centre is not None and self.radius is not None
-        if spot == (self.rectangle is not None):
-            raise ValueError("give either rectangle, or centre and radius")
         return self
 
 
