@@ -186,7 +186,7 @@ def _reduced(
 
 def _priors(table: IdentifyTable) -> dict[str, Prior]:
     """Return the priors of joints and of moduli by the name of the parameter."""
-    joints = {n: Prior(one.stiffness, one.sd) for n, one in table.priors.items()}
+    joints = {name: Prior(*one) for name, one in table.priors.items()}
     moduli = {modulus_name(n): Prior(1.0, sd) for n, sd in table.modulus_sd.items()}
     return joints | moduli
 

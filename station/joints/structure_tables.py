@@ -100,19 +100,13 @@ class MeasuredTable(StrictTable):
     relative_sd: _Share = 0.002
 
 
-class PriorTable(StrictTable):
-    """What is known of a joint's stiffness: value [N/m] and relative sd."""
-
-    stiffness: Annotated[float, with_unit("stiffness"), Field(gt=0)]
-    sd: _Share
-
-
 class IdentifyTable(StrictTable):
     """What to identify from: frequencies, modes (with shapes) or the FRFs.
 
     The standard deviations, relative, are those of the model (mesh, material): they
     widen those of measured frequencies and damping ratios. `modulus_sd` makes the
-    modulus of a body unknown, with this relative standard deviation around its table.
+    modulus of a body unknown, with this relative standard deviation around its table;
+    `priors` hold stiffness and relative standard deviation of a joint's direction.
     """
 
     data: Literal["frequencies", "modes", "frf"] = "modes"
@@ -124,4 +118,4 @@ class IdentifyTable(StrictTable):
     frequency_sd: _Trust = 0.0
     damping_sd: _Trust = 0.0
     modulus_sd: dict[str, _Share] = Field(default_factory=dict)
-    priors: dict[str, PriorTable] = Field(default_factory=dict)
+    priors: dict[str, tuple[_Stiffness, _Share]] = Field(default_factory=dict)

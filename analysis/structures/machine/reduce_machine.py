@@ -36,9 +36,9 @@ from jointbench.analysis.structures.reduction.assembled import (
 )
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
+    BodyPort,
+    BodySource,
     Component,
-    Port,
-    Source,
     point_port,
 )
 from jointbench.analysis.structures.reduction.reduce_body import reduce_body
@@ -148,7 +148,7 @@ class _Raw:
     matrices: BodyMatrices
     motions: FloatArray
     surfaces: tuple[tuple[str, Surface], ...]
-    ports: list[Port]
+    ports: list[BodyPort]
 
 
 def reduce_machine(
@@ -251,7 +251,7 @@ def _beams(machine: Machine) -> dict[str, _Raw]:
             beam.mass,
             rigid=rigid,
             loss_factor=beam.loss_factor,
-            source=Source.MATRICES,
+            source=BodySource.MATRICES,
         )
         found[beam.name] = _Raw(
             matrices, motions, ((beam.name, beam_surface(beam)),), []
@@ -394,11 +394,11 @@ def _plain_sides(joint: PortJoint) -> list[Side]:
     return [(body, port.removesuffix(_COUPLED)) for body, port in sides]
 
 
-def _port(raw: dict[str, _Raw], side: Side) -> Port:
+def _port(raw: dict[str, _Raw], side: Side) -> BodyPort:
     return next(one for one in raw[side[0]].ports if one.name == side[1])
 
 
-def _commensurate(port: Port) -> FloatArray:
+def _commensurate(port: BodyPort) -> FloatArray:
     """Return patterns, with rotations of a piece times its arm [m]."""
     if port.rows.shape[0] != len(SPRING_DIRECTIONS):
         return port.patterns

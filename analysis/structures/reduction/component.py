@@ -12,7 +12,7 @@ from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 
 
-class Source(StrEnum):
+class BodySource(StrEnum):
     """Where the matrices of a body are from."""
 
     MESH = "mesh"
@@ -43,7 +43,7 @@ class BodyMatrices:
     rigid: FloatArray | None = None
     loss_factor: float = 0.0
     loss: Sparse | None = None
-    source: Source = Source.MATRICES
+    source: BodySource = BodySource.MATRICES
 
     def __post_init__(self) -> None:
         """Check shapes and symmetry."""
@@ -77,7 +77,7 @@ def require_symmetric(name: str, matrix: Sparse) -> None:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Port:
+class BodyPort:
     """Where a body is joined, loaded or measured.
 
     Attributes:
@@ -104,7 +104,7 @@ class Port:
         freeze(self, "patterns")
 
 
-def point_port(name: str, rows: Sparse | FloatArray) -> Port:
+def point_port(name: str, rows: Sparse | FloatArray) -> BodyPort:
     """Return a port of a few rows: a sensor, a load, the end of a spring.
 
     Args:
@@ -112,7 +112,7 @@ def point_port(name: str, rows: Sparse | FloatArray) -> Port:
         rows: shape (n_rows, n).
     """
     sparse = Sparse(np.atleast_2d(rows)) if isinstance(rows, np.ndarray) else rows
-    return Port(name, sparse, np.eye(sparse.shape[0]))
+    return BodyPort(name, sparse, np.eye(sparse.shape[0]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -174,7 +174,7 @@ class Component:
     damping: FloatArray
     rows: Mapping[str, FloatArray]
     rigid: int
-    source: Source
+    source: BodySource
     basis: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
     residual: Residual | None = None
     loss_factor: float = 0.0

@@ -13,7 +13,7 @@ from jointbench.analysis.structures.reduction.assembled import (
     PortJoint,
     pattern_blocks,
 )
-from jointbench.analysis.structures.reduction.component import Port
+from jointbench.analysis.structures.reduction.component import BodyPort
 from jointbench.analysis.structures.reduction.reduced_model import solve_reduced
 
 # Traction patterns of each joint and direction, and motions of each body, added at
@@ -98,10 +98,10 @@ def _tractions(
 
 
 def widened(
-    ports: Mapping[str, Sequence[Port]],
+    ports: Mapping[str, Sequence[BodyPort]],
     joints: Sequence[PortJoint],
     patterns: Mapping[str, FloatArray],
-) -> dict[str, list[Port]]:
+) -> dict[str, list[BodyPort]]:
     """Return the ports with the new patterns of their joints."""
     new = {}
     for joint in joints:
@@ -109,6 +109,8 @@ def widened(
             if side is not None:
                 new[side] = patterns[joint.name]
     return {
-        body: [Port(p.name, p.rows, new.get((body, p.name), p.patterns)) for p in own]
+        body: [
+            BodyPort(p.name, p.rows, new.get((body, p.name), p.patterns)) for p in own
+        ]
         for body, own in ports.items()
     }

@@ -20,7 +20,7 @@ from jointbench.analysis.structures.reduction.box_reduction import (
     trial_points,
     weak_points,
 )
-from jointbench.analysis.structures.reduction.component import Component, Port
+from jointbench.analysis.structures.reduction.component import BodyPort, Component
 from jointbench.analysis.structures.reduction.compressed import compressed
 from jointbench.analysis.structures.reduction.enrichment import enrichment, widened
 from jointbench.analysis.structures.reduction.full_modes import shift_of
@@ -108,7 +108,7 @@ def reduce_machine(
 def _one_body(
     structure: Structure,
     where: BodyRange,
-    ports: list[Port],
+    ports: list[BodyPort],
     band_hz: float,
     solver: Solver,
     cache: Path | None,

@@ -16,8 +16,8 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
+    BodyPort,
     Component,
-    Port,
     Residual,
 )
 from jointbench.analysis.structures.reduction.full_modes import lowest_modes
@@ -80,7 +80,7 @@ class FactoredBody:
     shift: float
 
     def reduce(
-        self, ports: Sequence[Port], inertia: FloatArray | None = None
+        self, ports: Sequence[BodyPort], inertia: FloatArray | None = None
     ) -> Component:
         """Reduce to given ports; see `reduce_body`.
 
@@ -142,7 +142,7 @@ def factor_body(
 
 def reduce_body(
     body: BodyMatrices,
-    ports: Sequence[Port],
+    ports: Sequence[BodyPort],
     band_hz: float,
     *,
     shift: float | None = None,
@@ -191,7 +191,7 @@ def _reduced_loss(
     return loss
 
 
-def _port_loads(port: Port) -> FloatArray:
+def _port_loads(port: BodyPort) -> FloatArray:
     """Return the loads of the patterns, shape (n, n_patterns).
 
     A pattern finer than the mesh loads no node: exactly zero, not rounding.
@@ -202,7 +202,7 @@ def _port_loads(port: Port) -> FloatArray:
     return load
 
 
-def _require_ports(body: BodyMatrices, ports: Sequence[Port]) -> None:
+def _require_ports(body: BodyMatrices, ports: Sequence[BodyPort]) -> None:
     names = [port.name for port in ports]
     if len(set(names)) != len(names):
         raise BadData(f"ports of body {body.name!r} share a name: {names}")
@@ -287,7 +287,7 @@ def root_of(gram: FloatArray) -> FloatArray:
     return np.asarray((np.sqrt(value[kept])[:, None] * vector[:, kept].T) * length)
 
 
-def _largest_compliance(port: Port, factor: Solve) -> float:
+def _largest_compliance(port: BodyPort, factor: Solve) -> float:
     """Return the largest eigenvalue of rows A^-1 rows' outside of the patterns [m/N].
 
     A block Krylov iteration; the residual of its largest vector is added.

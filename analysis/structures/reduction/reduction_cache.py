@@ -15,10 +15,10 @@ from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
+    BodyPort,
+    BodySource,
     Component,
-    Port,
     Residual,
-    Source,
 )
 from jointbench.analysis.structures.reduction.joint_spread import JointSpread
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
@@ -48,7 +48,7 @@ def content_key(structure: Structure, *options: object) -> str:
     return digest.hexdigest()
 
 
-def body_key(body: BodyMatrices, ports: list[Port], *options: object) -> str:
+def body_key(body: BodyMatrices, ports: list[BodyPort], *options: object) -> str:
     """Return the SHA-256 of a body, its ports and options of its reduction."""
     text = (_VERSION, body.name, body.loss_factor, body.source, options)
     digest = hashlib.sha256(repr(text).encode())
@@ -166,7 +166,7 @@ def _component(start: str, arrays: Arrays) -> Component:
         name=facts["name"],
         rows={p: arrays[f"{start}rows{at}"] for at, p in enumerate(facts["rows"])},
         rigid=facts["rigid"],
-        source=Source(facts["source"]),
+        source=BodySource(facts["source"]),
         residual=residual,
         loss_factor=facts["loss_factor"],
         error_bound=facts["error_bound"],

@@ -16,15 +16,15 @@ from jointbench.analysis.structures.matrices.structure import (
 from jointbench.analysis.structures.reduction.assembled import PortJoint, Side
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
-    Port,
-    Source,
+    BodyPort,
+    BodySource,
     point_port,
 )
 from jointbench.analysis.structures.reduction.reduce_body import joint_patterns
 from jointbench.analysis.structures.reduction.rigid_motions import unstrained_block
 
 LOADS = "loads"
-"""Port of each body for the sensors and hits on it."""
+"""BodyPort of each body for the sensors and hits on it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,13 +82,13 @@ def body_matrices(structure: Structure, where: BodyRange) -> BodyMatrices:
         unstrained_block(structure, where.low, where.high),
         max(factors),
         None if plain else Sparse(structure.loss[rows, rows]),
-        Source.MESH,
+        BodySource.MESH,
     )
 
 
 def structure_ports(
     structure: Structure, order: int, loads: FloatArray | None = None
-) -> tuple[dict[str, list[Port]], tuple[PortJoint, ...]]:
+) -> tuple[dict[str, list[BodyPort]], tuple[PortJoint, ...]]:
     """Return the ports of every body, and the joints between them.
 
     Args:
@@ -100,7 +100,7 @@ def structure_ports(
         Ports by the names of `body_ranges`, and joints with parameters.
     """
     ranges = body_ranges(structure)
-    ports: dict[str, list[Port]] = {one.name: [] for one in ranges}
+    ports: dict[str, list[BodyPort]] = {one.name: [] for one in ranges}
     joints = []
     for name, face in zip(structure.joints, structure.faces, strict=True):
         rows = Sparse(face.rows()[:, structure.free])
@@ -111,7 +111,7 @@ def structure_ports(
         for body, part in _sides(structure, ranges, rows):
             port = f"{name}/{len(sides) + 1}"
             sign = 1.0 if not sides else -1.0
-            ports[body].append(Port(port, Sparse(sign * part), patterns))
+            ports[body].append(BodyPort(port, Sparse(sign * part), patterns))
             sides.append((body, port))
         second = sides[1] if len(sides) > 1 else None
         joints.append(PortJoint(name, sides[0], second, DIRECTIONS))
