@@ -37,7 +37,6 @@ from jointbench.station.joints.contact_comparison import (
     known_preloads,
     theory_json,
 )
-from jointbench.station.joints.identification_tables import IdentifyTable
 from jointbench.station.joints.structure_contact import joint_of, theory_surface
 from jointbench.station.joints.structure_model import (
     StructureModel,
@@ -50,6 +49,7 @@ from jointbench.station.joints.structure_states import (
     all_evidence,
     measured_states,
 )
+from jointbench.station.joints.structure_tables import IdentifyTable
 from jointbench.station.joints.theory_records import TheoryRow
 from jointbench.station.report.theory_section import show_theory, theory_section
 from jointbench.station.screen.joint_text import VALUE_LEGEND, parameter_text
@@ -186,7 +186,7 @@ def _reduced(
 
 def _priors(table: IdentifyTable) -> dict[str, Prior]:
     """Return the priors of joints and of moduli by the name of the parameter."""
-    joints = {n: Prior(one.stiffness, one.sd) for n, one in table.priors.items()}
+    joints = {name: Prior(*one) for name, one in table.priors.items()}
     moduli = {modulus_name(n): Prior(1.0, sd) for n, sd in table.modulus_sd.items()}
     return joints | moduli
 

@@ -32,16 +32,13 @@ from jointbench.analysis.structures.meshes.polygons import Patch, disc, rectangl
 from jointbench.analysis.structures.meshes.solid_shapes import SolidShape, mesh_shapes
 from jointbench.analysis.structures.reduction.mounted_sensors import MountedSensor
 from jointbench.station.files.toml_file import StrictTable
-from jointbench.station.joints.identification_tables import (
-    IdentifyTable,
-    MeasuredTable,
-)
-from jointbench.station.joints.shape_table import ShapeTable
+from jointbench.station.joints.shape_table import PatchTable, ShapeTable
 from jointbench.station.joints.structure_contact import TheoryTable, joint_of
 from jointbench.station.joints.structure_tables import (
+    IdentifyTable,
     JointTable,
     MaterialTable,
-    PatchTable,
+    MeasuredTable,
     SensorTable,
     SolidTable,
     SupportTable,

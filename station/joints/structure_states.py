@@ -23,8 +23,8 @@ from jointbench.signal.frf.frf import Frf
 from jointbench.signal.modal.modal_model import ModalModel
 from jointbench.signal.modal.modes import ModalSettings
 from jointbench.station.files.input_files import read_recordings
-from jointbench.station.joints.identification_tables import IdentifyTable
 from jointbench.station.joints.structure_model import StructureModel, sensors_of
+from jointbench.station.joints.structure_tables import IdentifyTable
 from jointbench.station.pipeline.chain import (
     ChainSettings,
     ModalChain,

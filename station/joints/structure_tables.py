@@ -2,7 +2,7 @@
 """The tables of a structure model file: what each holds, in which units."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -11,12 +11,14 @@ from jointbench.analysis.structures.matrices.parts import (
 )
 from jointbench.analysis.structures.meshes.elements import ElementKind
 from jointbench.station.files.toml_file import StrictTable, with_unit
-from jointbench.station.joints.shape_table import ShapeTable
+from jointbench.station.joints.shape_table import PatchTable, ShapeTable
 
 _Length = Annotated[float, with_unit("length")]
 _Point = tuple[_Length, _Length, _Length]
-_Span = tuple[_Length, _Length]
+_Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
 _Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
+_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
+_Trust = Annotated[float, with_unit("ratio"), Field(ge=0, lt=1)]
 
 
 class MaterialTable(StrictTable):
@@ -64,21 +66,6 @@ class SolidTable(StrictTable):
         return self
 
 
-class PatchTable(StrictTable):
-    """A part of the joint's plane: a rectangle, or a bolt spot."""
-
-    rectangle: tuple[_Span, _Span] | None = None
-    centre: _Span | None = None
-    radius: _Length | None = None
-
-    @model_validator(mode="after")
-    def _one_form(self) -> "PatchTable":
-        spot = self.centre is not None and self.radius is not None
-        if spot == (self.rectangle is not None):
-            raise ValueError("give either rectangle, or centre and radius")
-        return self
-
-
 class JointTable(StrictTable):
     """Where two bodies, or a body and ``ground``, touch."""
 
@@ -104,3 +91,31 @@ class SensorTable(StrictTable):
     position: _Point
     direction: tuple[float, float, float]
     mass: Annotated[float, with_unit("mass"), Field(ge=0)] = 0.0
+
+
+class MeasuredTable(StrictTable):
+    """Frequencies as a paper prints them, where there is no session."""
+
+    frequencies: tuple[_Frequency, ...] = Field(min_length=1)
+    relative_sd: _Share = 0.002
+
+
+class IdentifyTable(StrictTable):
+    """What to identify from: frequencies, modes (with shapes) or the FRFs.
+
+    The standard deviations, relative, are those of the model (mesh, material): they
+    widen those of measured frequencies and damping ratios. `modulus_sd` makes the
+    modulus of a body unknown, with this relative standard deviation around its table;
+    `priors` hold stiffness and relative standard deviation of a joint's direction.
+    """
+
+    data: Literal["frequencies", "modes", "frf"] = "modes"
+    modes: Annotated[int, Field(gt=0, le=200)] | None = None
+    sought: tuple[str, ...] | None = None
+    shared: tuple[str, ...] = ()
+    stiffness_box: tuple[_Stiffness, _Stiffness] = (1e6, 1e11)
+    lines: Annotated[int, Field(gt=3)] = 200
+    frequency_sd: _Trust = 0.0
+    damping_sd: _Trust = 0.0
+    modulus_sd: dict[str, _Share] = Field(default_factory=dict)
+    priors: dict[str, tuple[_Stiffness, _Share]] = Field(default_factory=dict)

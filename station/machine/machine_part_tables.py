@@ -8,7 +8,8 @@ from pydantic import BeforeValidator, Field, model_validator
 from jointbench.acquisition.basics.errors import UnitError
 from jointbench.acquisition.basics.units import parse_value
 from jointbench.station.files.toml_file import StrictTable, with_unit
-from jointbench.station.joints.structure_tables import JointTable, PatchTable
+from jointbench.station.joints.shape_table import PatchTable
+from jointbench.station.joints.structure_tables import JointTable
 
 _Length = Annotated[float, with_unit("length")]
 _Size = Annotated[float, with_unit("length"), Field(gt=0)]

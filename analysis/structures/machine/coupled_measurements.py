@@ -12,7 +12,7 @@ from jointbench.analysis.structures.reduction.assembled import (
     PortJoint,
     assemble_components,
 )
-from jointbench.analysis.structures.reduction.component import MatrixSource
+from jointbench.analysis.structures.reduction.component import BodySource
 from jointbench.analysis.structures.reduction.frf_coupling import FrfBlock, FrfLink
 from jointbench.analysis.structures.reduction.measured_body import (
     ModalTable,
@@ -139,7 +139,7 @@ def _modes_of(
         modal_body(
             one,
             {str(at): [at] for at in range(one.shapes.shape[1])},
-            MatrixSource.FRF_BLOCK,
+            BodySource.FRF_BLOCK,
         )
         for one in tables
     ]

@@ -37,8 +37,8 @@ from jointbench.analysis.structures.reduction.assembled import (
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
     BodyPort,
+    BodySource,
     Component,
-    MatrixSource,
     point_port,
 )
 from jointbench.analysis.structures.reduction.reduce_body import reduce_body
@@ -251,7 +251,7 @@ def _beams(machine: Machine) -> dict[str, _Raw]:
             beam.mass,
             rigid=rigid,
             loss_factor=beam.loss_factor,
-            source=MatrixSource.MATRICES,
+            source=BodySource.MATRICES,
         )
         found[beam.name] = _Raw(
             matrices, motions, ((beam.name, beam_surface(beam)),), []

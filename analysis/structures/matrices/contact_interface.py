@@ -89,7 +89,7 @@ class JointFace:
 
     def springs(self) -> tuple[Sparse, ...]:
         """Return G of the three directions over all degrees of freedom."""
-        return spread_springs(self.motion, self.points, self.frame)
+        return _spread_springs(self.motion, self.points, self.frame)
 
     def rows(self) -> Sparse:
         """Return the weighted relative motion, direction by direction.
@@ -299,7 +299,7 @@ def relative_motion(
     return own, interpolation(second, points.second, points.position)
 
 
-def spread_springs(
+def _spread_springs(
     motion: Sparse, points: ContactPoints, directions: FloatArray
 ) -> tuple[Sparse, ...]:
     """Spread a total stiffness of 1 N/m over a joint, for each direction.

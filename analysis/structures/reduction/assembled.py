@@ -14,7 +14,7 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.reduction.assembled_response import (
-    AssembledModes,
+    DampedModes,
     complex_modes,
     receptance,
 )
@@ -145,7 +145,7 @@ class Assembled:
         """Return the largest error of these frequencies [Hz], see `frequency_bound`."""
         return frequency_bound(self.model, values.stiffness, count)[1]
 
-    def complex_modes(self, values: JointValues) -> AssembledModes:
+    def complex_modes(self, values: JointValues) -> DampedModes:
         """Return modes with the dampers of the joints, see `complex_modes`."""
         return complex_modes(self.model, values)
 

@@ -34,7 +34,7 @@ _SWINGS = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class AssembledModes:
+class DampedModes:
     """Modes of a damped assembly, the lowest first.
 
     Attributes:
@@ -144,7 +144,7 @@ def _joined(space: FloatArray, new: FloatArray) -> FloatArray:
     return np.concatenate([space, new], axis=1)
 
 
-def complex_modes(model: ReducedModel, values: JointValues) -> AssembledModes:
+def complex_modes(model: ReducedModel, values: JointValues) -> DampedModes:
     """Find the modes of a damped assembly.
 
     Args:
@@ -169,7 +169,7 @@ def complex_modes(model: ReducedModel, values: JointValues) -> AssembledModes:
     order = np.flatnonzero(kept)[np.argsort(size[kept])][: 2 * model.modes]
     shapes = small.space @ vector[:count, order]
     largest = shapes[np.abs(shapes).argmax(axis=0), np.arange(order.size)]
-    return AssembledModes(pole[order], shapes / largest)
+    return DampedModes(pole[order], shapes / largest)
 
 
 def _state_matrix(small: _Projected) -> ComplexArray:

@@ -12,7 +12,7 @@ from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 
 
-class MatrixSource(StrEnum):
+class BodySource(StrEnum):
     """Where the matrices of a body are from."""
 
     MESH = "mesh"
@@ -43,7 +43,7 @@ class BodyMatrices:
     rigid: FloatArray | None = None
     loss_factor: float = 0.0
     loss: Sparse | None = None
-    source: MatrixSource = MatrixSource.MATRICES
+    source: BodySource = BodySource.MATRICES
 
     def __post_init__(self) -> None:
         """Check shapes and symmetry."""
@@ -174,7 +174,7 @@ class Component:
     damping: FloatArray
     rows: Mapping[str, FloatArray]
     rigid: int
-    source: MatrixSource
+    source: BodySource
     basis: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
     residual: Residual | None = None
     loss_factor: float = 0.0

@@ -9,7 +9,7 @@ import numpy as np
 from jointbench.acquisition.basics.array_checks import require_positive, require_shape
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.analysis.structures.reduction.component import Component, MatrixSource
+from jointbench.analysis.structures.reduction.component import BodySource, Component
 
 # Residual flexibility acts as modes at this multiple of the band: high enough to be
 # static in it, low enough to keep digits.
@@ -81,7 +81,7 @@ class ModalTable:
 def modal_body(
     table: ModalTable,
     ports: Mapping[str, Sequence[int]],
-    source: MatrixSource = MatrixSource.MODAL_TABLE,
+    source: BodySource = BodySource.MODAL_TABLE,
 ) -> Component:
     """Return a body in the coordinates of its measured modes.
 

@@ -16,8 +16,8 @@ from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
     BodyPort,
+    BodySource,
     Component,
-    MatrixSource,
     Residual,
 )
 from jointbench.analysis.structures.reduction.joint_spread import JointSpread
@@ -166,7 +166,7 @@ def _component(start: str, arrays: Arrays) -> Component:
         name=facts["name"],
         rows={p: arrays[f"{start}rows{at}"] for at, p in enumerate(facts["rows"])},
         rigid=facts["rigid"],
-        source=MatrixSource(facts["source"]),
+        source=BodySource(facts["source"]),
         residual=residual,
         loss_factor=facts["loss_factor"],
         error_bound=facts["error_bound"],

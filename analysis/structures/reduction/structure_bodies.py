@@ -17,14 +17,14 @@ from jointbench.analysis.structures.reduction.assembled import PortJoint, Side
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
     BodyPort,
-    MatrixSource,
+    BodySource,
     point_port,
 )
 from jointbench.analysis.structures.reduction.reduce_body import joint_patterns
 from jointbench.analysis.structures.reduction.rigid_motions import unstrained_block
 
 LOADS = "loads"
-"""Ports of each body for the sensors and hits on it."""
+"""BodyPort of each body for the sensors and hits on it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +82,7 @@ def body_matrices(structure: Structure, where: BodyRange) -> BodyMatrices:
         unstrained_block(structure, where.low, where.high),
         max(factors),
         None if plain else Sparse(structure.loss[rows, rows]),
-        MatrixSource.MESH,
+        BodySource.MESH,
     )
 
 

@@ -16,7 +16,7 @@ from jointbench.analysis.structures.reduction.assembled import (
     PortJoint,
     assemble_components,
 )
-from jointbench.analysis.structures.reduction.component import MatrixSource
+from jointbench.analysis.structures.reduction.component import BodySource
 from jointbench.analysis.structures.reduction.frf_coupling import (
     FrfBlock,
     FrfLink,
@@ -159,5 +159,5 @@ def test_a_modal_table_with_rigid_modes_among_the_elastic_is_refused() -> None:
         9.0,
     )
     body = modal_body(table, {"p": [0]})
-    assert body.source is MatrixSource.MODAL_TABLE
+    assert body.source is BodySource.MODAL_TABLE
     assert body.error_bound == pytest.approx(0.04)
