@@ -50,7 +50,7 @@ def content_key(structure: Structure, *options: object) -> str:
 
 def body_key(body: BodyMatrices, ports: list[BodyPort], *options: object) -> str:
     """Return the SHA-256 of a body, its ports and options of its reduction."""
-    text = (_VERSION, body.name, body.loss_factor, body.source, options)
+    text = (_VERSION, body.name, body.loss_factor, str(body.source), options)
     digest = hashlib.sha256(repr(text).encode())
     for matrix in (body.stiffness, body.mass, body.loss):
         if matrix is not None:
