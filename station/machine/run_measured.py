@@ -10,12 +10,12 @@ import numpy as np
 from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.acquisition.formats.frfs.frf_format import FrfOptions
 from jointbench.acquisition.records.session import software_version
-from jointbench.analysis.structures.machine.coupled_measurements import (
+from jointbench.analysis.structures.measured.coupled_measurements import (
     CoupledModes,
     coupled_modes,
     frf_block,
 )
-from jointbench.analysis.structures.reduction.frf_coupling import (
+from jointbench.analysis.structures.measured.frf_coupling import (
     FrfBlock,
     FrfLink,
     couple_frfs,

@@ -13,7 +13,7 @@ import numpy as np
 import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.structures.reduction.frf_coupling import FrfBlock
+from jointbench.analysis.structures.measured.frf_coupling import FrfBlock
 
 _PULSE = 0.8e-3
 

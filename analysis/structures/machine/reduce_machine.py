@@ -30,8 +30,6 @@ from jointbench.analysis.structures.matrices.surface_motion import (
 )
 from jointbench.analysis.structures.reduction.assembled import (
     Assembled,
-    PortJoint,
-    Side,
     assemble_components,
 )
 from jointbench.analysis.structures.reduction.component import (
@@ -41,6 +39,7 @@ from jointbench.analysis.structures.reduction.component import (
     Component,
     point_port,
 )
+from jointbench.analysis.structures.reduction.port_joints import PortJoint, Side
 from jointbench.analysis.structures.reduction.reduce_body import reduce_body
 from jointbench.analysis.structures.reduction.reduction_cache import (
     body_key,

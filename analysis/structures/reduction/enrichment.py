@@ -8,13 +8,11 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.structures.reduction.assembled import (
-    Assembled,
-    PortJoint,
-    pattern_blocks,
-)
+from jointbench.analysis.structures.reduction.assembled import Assembled
 from jointbench.analysis.structures.reduction.component import BodyPort
+from jointbench.analysis.structures.reduction.port_joints import PortJoint
 from jointbench.analysis.structures.reduction.reduced_model import solve_reduced
+from jointbench.analysis.structures.reduction.relative_motion import pattern_blocks
 
 # Traction patterns of each joint and direction, and motions of each body, added at
 # once.

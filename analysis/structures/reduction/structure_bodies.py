@@ -13,13 +13,13 @@ from jointbench.analysis.structures.matrices.structure import (
     Structure,
     glued_blocks,
 )
-from jointbench.analysis.structures.reduction.assembled import PortJoint, Side
 from jointbench.analysis.structures.reduction.component import (
     BodyMatrices,
     BodyPort,
     BodySource,
     point_port,
 )
+from jointbench.analysis.structures.reduction.port_joints import PortJoint, Side
 from jointbench.analysis.structures.reduction.reduce_body import joint_patterns
 from jointbench.analysis.structures.reduction.rigid_motions import unstrained_block
 

@@ -18,8 +18,6 @@ from jointbench.analysis.structures.matrices.structure import (
 from jointbench.analysis.structures.meshes.mesh import box_mesh
 from jointbench.analysis.structures.reduction.assembled import (
     Assembled,
-    PortJoint,
-    PortSpring,
     assemble_components,
 )
 from jointbench.analysis.structures.reduction.component import (
@@ -27,6 +25,7 @@ from jointbench.analysis.structures.reduction.component import (
     point_port,
 )
 from jointbench.analysis.structures.reduction.full_modes import solve_full
+from jointbench.analysis.structures.reduction.port_joints import PortJoint, PortSpring
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduce import reduce_machine
 from jointbench.analysis.structures.reduction.reduce_body import reduce_body

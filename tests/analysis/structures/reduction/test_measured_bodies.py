@@ -11,22 +11,20 @@ from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.structures.matrices.element_assembly import Material
 from jointbench.analysis.structures.matrices.parts import solid_body
 from jointbench.analysis.structures.matrices.structure import build_structure, pick
-from jointbench.analysis.structures.meshes.mesh import box_mesh
-from jointbench.analysis.structures.reduction.assembled import (
-    PortJoint,
-    assemble_components,
-)
-from jointbench.analysis.structures.reduction.component import BodySource
-from jointbench.analysis.structures.reduction.frf_coupling import (
+from jointbench.analysis.structures.measured.frf_coupling import (
     FrfBlock,
     FrfLink,
     couple_frfs,
 )
-from jointbench.analysis.structures.reduction.measured_body import (
+from jointbench.analysis.structures.measured.measured_body import (
     ModalTable,
     modal_body,
 )
-from jointbench.analysis.structures.reduction.measured_frfs import with_uncertainty
+from jointbench.analysis.structures.measured.measured_frfs import with_uncertainty
+from jointbench.analysis.structures.meshes.mesh import box_mesh
+from jointbench.analysis.structures.reduction.assembled import assemble_components
+from jointbench.analysis.structures.reduction.component import BodySource
+from jointbench.analysis.structures.reduction.port_joints import PortJoint
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from tests.judges.struck_bodies import Hammering, dense_modes, struck
 

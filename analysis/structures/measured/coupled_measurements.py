@@ -8,17 +8,15 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData, ChannelMissing
-from jointbench.analysis.structures.reduction.assembled import (
-    PortJoint,
-    assemble_components,
-)
-from jointbench.analysis.structures.reduction.component import BodySource
-from jointbench.analysis.structures.reduction.frf_coupling import FrfBlock, FrfLink
-from jointbench.analysis.structures.reduction.measured_body import (
+from jointbench.analysis.structures.measured.frf_coupling import FrfBlock, FrfLink
+from jointbench.analysis.structures.measured.measured_body import (
     ModalTable,
     modal_body,
 )
-from jointbench.analysis.structures.reduction.measured_frfs import with_uncertainty
+from jointbench.analysis.structures.measured.measured_frfs import with_uncertainty
+from jointbench.analysis.structures.reduction.assembled import assemble_components
+from jointbench.analysis.structures.reduction.component import BodySource
+from jointbench.analysis.structures.reduction.port_joints import PortJoint
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.signal.frf.frf import Frf
 

@@ -9,8 +9,8 @@ from scipy.linalg import qr
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import BadData, NoModeFound
-from jointbench.analysis.structures.reduction.frf_coupling import FrfBlock
-from jointbench.analysis.structures.reduction.measured_body import ModalTable
+from jointbench.analysis.structures.measured.frf_coupling import FrfBlock
+from jointbench.analysis.structures.measured.measured_body import ModalTable
 from jointbench.signal.frf.frf import Frf, FrfKind
 from jointbench.signal.modal.modes import ModalSettings, identify_modes
 
