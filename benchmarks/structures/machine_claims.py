@@ -14,11 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.analysis.structures.machine.analyse_machine import (
-    MachineRequest,
-    analyse_machine,
-)
+from jointbench.analysis.structures.machine.analyse_machine import analyse_machine
 from jointbench.analysis.structures.machine.machine_parts import JointSetting, Machine
+from jointbench.analysis.structures.machine.machine_request import MachineRequest
 from jointbench.analysis.structures.machine.machine_result import (
     AXES,
     MachineResult,

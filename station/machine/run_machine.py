@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.analysis.structures.machine.analyse_machine import (
+from jointbench.analysis.structures.machine.analyse_machine import analyse_machine
+from jointbench.analysis.structures.machine.machine_request import (
     Cut,
     MachineRequest,
     TimeSpan,
-    analyse_machine,
 )
 from jointbench.analysis.structures.machine.machine_result import AXES, MachineResult
 from jointbench.analysis.structures.machine.reduce_machine import (

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Modes, energies, tool receptance, costs of joints, chatter, motion of a machine."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
@@ -10,6 +9,10 @@ from scipy.optimize import linear_sum_assignment
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.analysis.structures.machine.complex_modes import PoleSet
+from jointbench.analysis.structures.machine.joint_samples import (
+    COUPLED_SAMPLE,
+    sample_joints,
+)
 from jointbench.analysis.structures.machine.lean_machine import (
     LeanMachine,
     Variant,
@@ -17,9 +20,8 @@ from jointbench.analysis.structures.machine.lean_machine import (
     glued,
     jointed,
     lean_machine,
-    log_deviation,
 )
-from jointbench.analysis.structures.machine.loads import Begin, Load
+from jointbench.analysis.structures.machine.machine_request import MachineRequest
 from jointbench.analysis.structures.machine.machine_result import (
     JointCost,
     MachineResult,
@@ -36,8 +38,11 @@ from jointbench.analysis.structures.machine.shape_shares import (
 )
 from jointbench.analysis.structures.machine.stability_lobes import (
     StabilityLobes,
-    stability_limit,
     stability_lobes,
+)
+from jointbench.analysis.structures.machine.tool_response import (
+    oriented_response,
+    rows_at,
 )
 from jointbench.analysis.structures.machine.transient import transient
 from jointbench.analysis.structures.reduction.full_modes import frequency_of
@@ -46,76 +51,9 @@ from jointbench.analysis.structures.reduction.reduced_model import frequency_bou
 # A complex mode is that of an undamped one if their shapes agree this much,
 # and their frequencies differ by no more than this factor.
 _SAME_SHAPE, _SAME_FREQUENCY = 0.5, 1.4
-# Undamped modes that damping couples in variants and random samples; the results
-# couple all.
-_COUPLED_SAMPLE = 60
-_QUANTILES = (0.025, 0.975)
 _SPEEDS = 600
 # Lines are spaced evenly in the logarithm from this share of the band.
 _LOWEST_LINE = 0.002
-
-
-@dataclass(frozen=True, slots=True)
-class Cut:
-    """The cut at the tool.
-
-    Attributes:
-        coefficient: cutting force over chip area [N/m^2].
-        chip: direction of the chip thickness.
-        force: direction of the cutting force.
-        speed: lowest and highest of the spindle [1/s].
-        teeth: that follow each other in one turn.
-    """
-
-    coefficient: float
-    chip: tuple[float, float, float]
-    force: tuple[float, float, float]
-    speed: tuple[float, float]
-    teeth: int = 1
-
-
-@dataclass(frozen=True, slots=True)
-class TimeSpan:
-    """Of a transient.
-
-    Attributes:
-        duration: [s].
-        step: between samples [s].
-        begin: from rest or steady.
-        poles: that move; the others respond statically.
-    """
-
-    duration: float
-    step: float
-    begin: Begin = Begin.REST
-    poles: int = 80
-
-
-@dataclass(frozen=True, slots=True)
-class MachineRequest:
-    """What is computed of a machine.
-
-    Attributes:
-        band_hz: highest frequency of interest [Hz].
-        modes: number of modes.
-        lines: number of lines of receptances.
-        samples: of the uncertain joint values.
-        seed: of these.
-        tool: name of the point.
-        loads: on x, y, z of the points, numbered point by point.
-        span: of the transient; None leaves it out.
-        cut: at the tool; None leaves the stability limit out.
-    """
-
-    band_hz: float
-    modes: int = 10
-    lines: int = 800
-    samples: int = 100
-    seed: int = 1
-    tool: str = "tool"
-    loads: tuple[Load, ...] = ()
-    span: TimeSpan | None = None
-    cut: Cut | None = None
 
 
 def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> MachineResult:
@@ -142,7 +80,7 @@ def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> Machine
     soft_one = _variant_result(lean, nominal, request)
     spread = None
     if machine.deviations.any():
-        spread = _sampled(lean, request, soft_one.tool.frequency)
+        spread = sample_joints(lean, request, soft_one.tool.frequency)
     if spread is not None:
         tool = replace(
             soft_one.tool,
@@ -184,7 +122,7 @@ def _variant_result(
             step=span.step,
             begin=span.begin,
         )
-        motion = ToolMotion(time, moved[_rows(lean, request.tool)])
+        motion = ToolMotion(time, moved[rows_at(lean, request.tool)])
     return VariantResult(
         _modes(lean, variant, state, poles, request.modes),
         poles,
@@ -192,11 +130,6 @@ def _variant_result(
         _chatter(tool.frequency, tool.response, request),
         motion,
     )
-
-
-def _rows(lean: LeanMachine, point: str) -> slice:
-    at = list(lean.points).index(point)
-    return slice(3 * at, 3 * at + 3)
 
 
 def _modes(
@@ -262,7 +195,7 @@ def _lines(request: MachineRequest, poles: PoleSet) -> FloatArray:
 def _receptance(
     lean: LeanMachine, poles: PoleSet, request: MachineRequest
 ) -> ToolReceptance:
-    rows = _rows(lean, request.tool)
+    rows = rows_at(lean, request.tool)
     frequency = _lines(request, poles)
     response = poles.receptance(frequency)[rows, rows]
     static = poles.receptance(np.zeros(1))[rows, rows, 0].real
@@ -282,19 +215,11 @@ def _chatter(
     cut = request.cut
     if cut is None:
         return None
-    oriented = _oriented(response, cut)
+    oriented = oriented_response(response, cut)
     speeds = np.linspace(*cut.speed, _SPEEDS)
     return stability_lobes(
         frequency, oriented, cut.coefficient, speeds, teeth=cut.teeth
     )
-
-
-def _oriented(response: ComplexArray, cut: Cut) -> ComplexArray:
-    """Return the receptance along the chip thickness from the cutting force."""
-    chip, force = (
-        np.asarray(one) / np.linalg.norm(one) for one in (cut.chip, cut.force)
-    )
-    return np.asarray(np.einsum("a,abl,b->l", chip, response, force))
 
 
 def _pairs(soft: VariantModes, rigid: VariantModes) -> FloatArray:
@@ -316,7 +241,7 @@ def _costs(
     found = []
     for at, joint in enumerate(lean.machine.joints):
         held = replace(nominal, rigid=(at,), damping=_without(lean, nominal, at))
-        stiff = lean.state(held, _COUPLED_SAMPLE)
+        stiff = lean.state(held, COUPLED_SAMPLE)
         better = _receptance(lean, stiff.poles, request)
         found.append(
             JointCost(
@@ -332,50 +257,3 @@ def _costs(
 def _without(lean: LeanMachine, variant: Variant, joint: int) -> FloatArray:
     """Return the damping without that of a joint, which does not move any more."""
     return np.where(lean.machine.joint_of == joint, 0.0, variant.damping)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Spread:
-    """95 % intervals over the uncertain joint values."""
-
-    frequency: FloatArray
-    receptance: FloatArray
-    static: FloatArray
-    limit: tuple[float, float] | None
-
-
-def _sampled(lean: LeanMachine, request: MachineRequest, lines: FloatArray) -> _Spread:
-    """Propagate the deviations of the joints by random samples, log-normal."""
-    machine, nominal = lean.machine, jointed(lean.machine)
-    deviation = log_deviation(machine.deviations)
-    random = np.random.default_rng(request.seed)
-    steps = random.standard_normal((request.samples, *deviation.shape))
-    rows = _rows(lean, request.tool)
-    levels, sizes, statics, limits = [], [], [], []
-    for step in steps:
-        factor = np.exp(deviation * step)
-        one = Variant(nominal.stiffness * factor[0], nominal.damping * factor[1])
-        state = lean.state(one, _COUPLED_SAMPLE)
-        poles = state.poles
-        response = poles.receptance(lines)[rows, rows]
-        levels.append(frequency_of(state.eigenvalue[: request.modes]))
-        sizes.append(np.abs(np.einsum("aal->al", response)))
-        statics.append(np.diag(poles.receptance(np.zeros(1))[rows, rows, 0].real))
-        if request.cut is not None:
-            oriented = _oriented(response, request.cut)
-            limits.append(stability_limit(lines, oriented, request.cut.coefficient)[0])
-    limit = _interval(limits)
-    return _Spread(
-        _interval(levels),
-        _interval(sizes),
-        _interval(statics),
-        (float(limit[0]), float(limit[1])) if limits else None,
-    )
-
-
-def _interval(samples: Sequence[FloatArray] | Sequence[float]) -> FloatArray:
-    if not len(samples):
-        return np.zeros(2)
-    return np.asarray(
-        np.quantile(np.array(samples), _QUANTILES, axis=0, method="nearest")
-    )

@@ -6,11 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from jointbench.analysis.structures.machine.analyse_machine import (
-    MachineRequest,
-    analyse_machine,
-)
+from jointbench.analysis.structures.machine.analyse_machine import analyse_machine
 from jointbench.analysis.structures.machine.loads import HarmonicLoad, TableLoad
+from jointbench.analysis.structures.machine.machine_request import MachineRequest
 from jointbench.analysis.structures.machine.reduce_machine import reduce_machine
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.machine.machine_file import MachineModel, loads_of, machine_of

@@ -7,18 +7,18 @@ import pytest
 from scipy.linalg import block_diag, eigh
 
 from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.analysis.structures.machine.analyse_machine import (
-    Cut,
-    MachineRequest,
-    TimeSpan,
-    analyse_machine,
-)
+from jointbench.analysis.structures.machine.analyse_machine import analyse_machine
 from jointbench.analysis.structures.machine.lean_machine import (
     jointed,
     lean_machine,
 )
 from jointbench.analysis.structures.machine.loads import Begin, HarmonicLoad
 from jointbench.analysis.structures.machine.machine_parts import Machine
+from jointbench.analysis.structures.machine.machine_request import (
+    Cut,
+    MachineRequest,
+    TimeSpan,
+)
 from jointbench.analysis.structures.machine.machine_result import MachineResult
 from jointbench.analysis.structures.machine.reduce_machine import (
     ReducedMachine,
