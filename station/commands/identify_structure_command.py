@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.acquisition.basics.errors import UsageError
+from jointbench.acquisition.basics.errors import BadData, UsageError
 from jointbench.analysis.contact.surface import ContactSurface
 from jointbench.analysis.lumped.identified import IdentificationVerdict
 from jointbench.analysis.structures.identification.identify_structure import (
@@ -19,6 +19,7 @@ from jointbench.analysis.structures.identification.joint_result import (
 from jointbench.analysis.structures.identification.stiffness_problem import Prior
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.body_moduli import (
+    is_modulus,
     modulus_name,
     with_moduli,
 )
@@ -26,6 +27,7 @@ from jointbench.analysis.structures.reduction.mounted_sensors import (
     MountedSensor,
     sensor_rows,
 )
+from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduce import reduce_structure
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.analysis.structures.reduction.reduction_cache import cached, content_key
@@ -90,6 +92,7 @@ def run_identify_structure(
         result = identify_structure(
             reduced,
             evidence,
+            known=_known(settings.identify, reduced.names),
             sought=settings.identify.sought,
             shared=settings.identify.shared,
             priors=_priors(settings.identify),
@@ -182,6 +185,31 @@ def _reduced(
         lambda: reduce_structure(structure, modes=modes, box=box, loads=loads),
     )
     return with_moduli(model, list(settings.identify.modulus_sd))
+
+
+def _known(table: IdentifyTable, names: tuple[str, ...]) -> JointValues | None:
+    """Return the stiffness of the directions that are not sought, undamped.
+
+    Raises:
+        BadData: one of them is not given, or a name does not exist.
+    """
+    if table.sought is None and not table.known:
+        return None
+    for name in table.known:
+        if name not in names or name in (table.sought or names):
+            raise BadData(
+                f"identify.known: {name!r} is no joint direction that is left out of "
+                f"identify.sought; there are {list(names)}"
+            )
+    open_ = {*(table.sought or names), *table.known}
+    left = [n for n in names if n not in open_ and not is_modulus(n)]
+    if left:
+        raise BadData(
+            f"{left} are neither sought nor known; give their stiffness in "
+            f'identify.known, for example known = {{ "{left[0]}" = "500 MN/m" }}'
+        )
+    stiffness = np.array([table.known.get(name, 1.0) for name in names])
+    return JointValues(stiffness, np.zeros(len(names)))
 
 
 def _priors(table: IdentifyTable) -> dict[str, Prior]:

@@ -106,12 +106,16 @@ class IdentifyTable(StrictTable):
     The standard deviations, relative, are those of the model (mesh, material): they
     widen those of measured frequencies and damping ratios. `modulus_sd` makes the
     modulus of a body unknown, with this relative standard deviation around its table;
-    `priors` hold stiffness and relative standard deviation of a joint's direction.
+    `priors` hold stiffness and relative standard deviation of a joint's direction;
+    `known` holds the stiffness of the directions that are not `sought`.
     """
 
     data: Literal["frequencies", "modes", "frf"] = "modes"
     modes: Annotated[int, Field(gt=0, le=200)] | None = None
     sought: tuple[str, ...] | None = None
+    known: dict[str, Annotated[float, with_unit("stiffness"), Field(gt=0)]] = Field(
+        default_factory=dict
+    )
     shared: tuple[str, ...] = ()
     stiffness_box: tuple[_Stiffness, _Stiffness] = (1e6, 1e11)
     lines: Annotated[int, Field(gt=3)] = 200

@@ -15,7 +15,6 @@ from jointbench.analysis.structures.identification.joint_result import (
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.meshes.elements import ELEMENTS
 from jointbench.analysis.structures.meshes.mesh import outer_faces
-from jointbench.analysis.structures.reduction.body_moduli import is_modulus
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     motion_of,
@@ -166,7 +165,7 @@ def _shapes(
     structure: Structure, model: ReducedModel, result: StructureIdentification
 ) -> list[Item]:
     """Return the lowest elastic shapes of the best solution as 3-D plots."""
-    found = solve_reduced(model, _stiffness(model, result))
+    found = solve_reduced(model, result.states[0].stiffness)
     elastic = np.flatnonzero(found.natural_frequency > 0)[:SHAPES_SHOWN]
     items: list[Item] = []
     for at in elastic:
@@ -178,17 +177,6 @@ def _shapes(
             Plot(f"shape-{at}", f"{frequency:.1f} Hz; drag to rotate", plot, 420)
         )
     return items
-
-
-def _stiffness(model: ReducedModel, result: StructureIdentification) -> FloatArray:
-    """Return the best stiffnesses of the first state; others keep unit stiffness."""
-    best = result.solutions[0].parameters
-    values = []
-    for name in model.names:
-        own = name if is_modulus(name) else f"{name}_stiffness"
-        hits = [v for k, v in best.items() if k.endswith(own)]
-        values.append(hits[0] if hits else 1.0)
-    return np.array(values)
 
 
 def shape_figure(structure: Structure, motion: FloatArray) -> Figure:

@@ -108,7 +108,7 @@ def identify_structure(
     Args:
         model: the reduced structure.
         evidence: modes or FRFs of one or several states (torques).
-        known: values of the other parameters.
+        known: values of the directions that are not sought.
         sought: names ``"<joint>.<direction>"``; default all.
         shared: names common to all states.
         priors: of stiffnesses and of factors on moduli (`with_moduli`), by name.
@@ -277,6 +277,7 @@ def _state_fit(problem: StiffnessProblem, best: Optimum, row: int) -> StateFit:
         damping_ratios(state, values.damping)[chosen],
         likeness,
         energy_shares(state, values.stiffness)[chosen],
+        values.stiffness,
     )
 
 

@@ -60,6 +60,8 @@ class StateFit:
         damping_ratio: predicted [-].
         mac: between measured and predicted shapes [-], or empty.
         energy_share: in every joint and direction [-], shape (n_modes, n_parameters).
+        stiffness: of every joint and direction, known ones included [N/m]; factors of
+            moduli [-]; shape (n_parameters,).
     """
 
     label: str
@@ -68,10 +70,12 @@ class StateFit:
     damping_ratio: FloatArray
     mac: FloatArray
     energy_share: FloatArray
+    stiffness: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "measured", "predicted", "damping_ratio", "mac", "energy_share")
+        freeze(self, "stiffness")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -147,7 +147,7 @@ def pose_problem(
         The problem.
 
     Raises:
-        BadData: a name does not exist.
+        BadData: a name does not exist, or a direction is neither sought nor known.
     """
     names = model.names
     priors = priors or {}
@@ -155,7 +155,12 @@ def pose_problem(
         if name not in names:
             raise BadData(f"no joint direction {name!r}; there are {list(names)}")
     count = len(names)
-    wanted = np.array([sought is None or name in sought for name in names])
+    wanted = np.array(
+        [sought is None or name in sought or is_modulus(name) for name in names]
+    )
+    if known is None and not wanted.all():
+        left = [name for name, own in zip(names, wanted, strict=True) if not own]
+        raise BadData(f"{left} are neither sought nor known; give their stiffness")
     columns = np.full((len(evidence), 2 * count), -1, np.int64)
     labels: list[str] = []
     place: dict[str, int] = {}

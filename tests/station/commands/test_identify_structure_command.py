@@ -126,3 +126,24 @@ def test_a_lumped_bench_without_a_session_is_a_usage_error(
     model = tmp_path / "bench.toml"
     model.write_text("[bodies.m1]\nmass = '1 kg'\n", encoding="utf-8")
     assert run(monkeypatch, "identify", str(model)) == EXIT_USAGE
+
+
+def test_directions_that_are_not_sought_need_a_known_stiffness(
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """One line without it; with it, the one that is sought is found alone."""
+    model, target = tmp_path / "block.toml", tmp_path / "joints.json"
+    alone = BLOCKS + 'sought = ["bed.normal"]\n'
+    model.write_text(alone, encoding="utf-8")
+    assert run(monkeypatch, "identify", str(model)) == EXIT_BAD_DATA
+    assert "'bed.tangential_2'] are neither sought nor known" in capsys.readouterr().err
+    tangents = '"bed.tangential_1" = "102 MN/m", "bed.tangential_2" = "4.3 MN/m"'
+    model.write_text(f"{alone}known = {{ {tangents} }}\n", encoding="utf-8")
+    run(monkeypatch, "identify", str(model), "--json", str(target))
+    reported = json.loads(target.read_text(encoding="utf-8"))["parameters"]
+    assert set(reported) == {"bed.normal_stiffness"}
+    model.write_text(f"{BLOCKS}known = {{ {tangents} }}\n", encoding="utf-8")
+    assert run(monkeypatch, "identify", str(model)) == EXIT_BAD_DATA
+    assert "left out of identify.sought" in capsys.readouterr().err
