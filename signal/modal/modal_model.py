@@ -173,7 +173,10 @@ def split_residues(residues: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     shapes, participation = left[:, :, 0], scale[:, :1] * right[:, 0, :]
     largest = np.argmax(np.abs(shapes), axis=1)[:, None]
     unit = np.take_along_axis(shapes, largest, axis=1)
-    return np.asarray(shapes / unit), np.asarray(participation * unit)
+    scaled = np.asarray(shapes / unit)
+    # A complex number over itself may differ from 1 by its rounding.
+    np.put_along_axis(scaled, largest, 1.0, axis=1)
+    return scaled, np.asarray(participation * unit)
 
 
 def _uncertainty(

@@ -48,14 +48,15 @@ def hit(
 
 
 def at_once(accepted: list[Accepted]) -> Frf:
-    """Return the FRF of the hits joined to one recording, all transformed again."""
+    """Return the FRF of the hits, each a recording, all transformed again."""
     length = min(each.cut.samples.shape[1] for each in accepted)
-    hits = tuple(
-        Hit(i * length, i * length + TRIGGER, (i + 1) * length, "1", 50.0, *judged)
-        for i, judged in enumerate([(Verdict.OK, 0.0, "")] * len(accepted))
+    judged = (Hit(0, TRIGGER, length, "1", 50.0, Verdict.OK, 0.0, ""),)
+    return estimate_frf(
+        [
+            Recording(f"{n}", each.cut.samples[:, :length], RATE, CHANNELS, hits=judged)
+            for n, each in enumerate(accepted)
+        ]
     )
-    joined = np.hstack([each.cut.samples[:, :length] for each in accepted])
-    return estimate_frf(Recording("joined", joined, RATE, CHANNELS, hits=hits))
 
 
 @pytest.mark.parametrize("damping", [0.05, 0.004])

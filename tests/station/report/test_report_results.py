@@ -104,7 +104,8 @@ def test_results_of_another_state_of_the_session_are_not_shown(make_session) -> 
 def test_results_of_a_recipe_are_shown_where_modal_left_none(make_session) -> None:
     """And named, with --results, beside those of `modal`."""
     session = make_session("s.h5")
-    recipe = Recipe(name="banded", modes={"band": ("300 Hz", "600 Hz")})
+    # The force of these hits has no power at 500 Hz.
+    recipe = Recipe(name="banded", modes={"band": ("300 Hz", "470 Hz")})
     result = session.with_suffix(".banded.results.h5")
     process_task(Task(session, result), recipe)
     text, content = page_of(session)

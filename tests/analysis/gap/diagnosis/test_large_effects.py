@@ -36,7 +36,7 @@ def fits_of_a_stop(stiffness: float) -> tuple[FitProblem, Fit, Fit]:
 
 def test_a_large_stop_is_integrated_as_finely_as_it_needs() -> None:
     """Four steps per sample leave more than noise, the chosen number does not."""
-    problem, four, needed = fits_of_a_stop(4e7)
+    problem, four, needed = fits_of_a_stop(4e8)
     dof = problem.bench.blocks.dof
     allowed = STANDARD.chi2_limit * noise_sd(problem.bench)
     assert four.chi2 / dof - 1.0 > allowed
