@@ -152,6 +152,8 @@ def shapes_of(residues: ComplexArray) -> ComplexArray:
     for number, residue in enumerate(residues):
         row, column = np.unravel_index(np.argmax(np.abs(residue)), residue.shape)
         found[number] = residue[:, column] / residue[row, column]
+        # A complex number over itself may differ from 1 by its rounding.
+        found[number, row] = 1.0
     return found
 
 
