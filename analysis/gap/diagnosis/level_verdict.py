@@ -2,12 +2,13 @@
 """The verdict on records at several levels, its reason, and what to do next."""
 
 from jointbench.analysis.gap.diagnosis.loop import SearchOutcome
-from jointbench.analysis.gap.diagnosis.verdict_and_advice import DiagnosisVerdict
-from jointbench.analysis.gap.judgement.rivals import rival_within
+from jointbench.analysis.gap.diagnosis.verdict_and_advice import (
+    DiagnosisVerdict,
+    no_rival,
+)
 from jointbench.analysis.gap.modal_bench.modal_bench import ModalBench
 from jointbench.analysis.gap.model.diagnosis_record import Finding
-from jointbench.analysis.gap.model.effect import labels_of, words_of
-from jointbench.analysis.gap.search.selection_round import score
+from jointbench.analysis.gap.model.effect import words_of
 
 MORE_LEVELS = (
     "measure another level, or a slow sine sweep through the first mode: it separates "
@@ -41,27 +42,10 @@ def level_verdict(outcome: SearchOutcome, bench: ModalBench) -> DiagnosisVerdict
         )
     if len(outcome.level) == 1:
         reason = f"explains the records to chi2/dof {1 + outcome.acceptance.excess:.3f}"
-        return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
+        return DiagnosisVerdict(Finding.NAMED, reason, no_rival(outcome, bench))
     names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) > bench.policy.most_rivals:
         reason = f"too many explanations fit equally well: {names}"
         return DiagnosisVerdict(Finding.UNKNOWN, reason, MORE_LEVELS)
     reason = f"{names}: the difference of their scores is not significant"
     return DiagnosisVerdict(Finding.AMBIGUOUS, reason, MORE_LEVELS)
-
-
-def _no_rival(outcome: SearchOutcome, bench: ModalBench) -> str:
-    own = labels_of(outcome.best.candidates)
-    others = [
-        score(bench, f)
-        for f in outcome.ranked
-        if not (labels_of(f.candidates) <= own or own <= labels_of(f.candidates))
-    ]
-    if not others:
-        return "no further experiment required: no other explanation comes close"
-    delta_score = min(others) - score(bench, outcome.best)
-    limit = rival_within(outcome.best, bench.policy)
-    return (
-        "no further experiment required: the nearest rival has a delta score of "
-        f"{delta_score:.0f} (limit {limit:.0f})"
-    )

@@ -16,6 +16,7 @@ from jointbench.analysis.gap.judgement.rivals import rival_within
 from jointbench.analysis.gap.model.diagnosis_record import Finding
 from jointbench.analysis.gap.model.effect import labels_of, words_of
 from jointbench.analysis.gap.model.scatter_found import HitFound, hit_words
+from jointbench.analysis.gap.residuals.bench_protocol import Bench
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.residuals.lumped_bench import LumpedBench
 from jointbench.analysis.gap.search.selection_round import score
@@ -63,7 +64,7 @@ def verdict_on(
     names = " or ".join(words_of(f.candidates) for f in outcome.level)
     if len(outcome.level) == 1:
         reason = f"explains the records to chi2/dof {1 + outcome.acceptance.excess:.3f}"
-        return DiagnosisVerdict(Finding.NAMED, reason, _no_rival(outcome, bench))
+        return DiagnosisVerdict(Finding.NAMED, reason, no_rival(outcome, bench))
     step = _separates(outcome.level[0], outcome.level[1])
     if len(outcome.level) > bench.policy.most_rivals:
         reason = f"too many explanations fit equally well: {names}"
@@ -130,7 +131,7 @@ def _odd_record(outcome: SearchOutcome, bench: LumpedBench) -> str:
     )
 
 
-def _no_rival(outcome: SearchOutcome, bench: LumpedBench) -> str:
+def no_rival(outcome: SearchOutcome, bench: Bench) -> str:
     """Give the delta score of the nearest rival: no experiment is required."""
     own = labels_of(outcome.best.candidates)
     others = [

@@ -104,7 +104,7 @@ def test_levels_that_disagree_are_reported(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Frequencies fall by 0.5 % for each doubling of the force."""
-    levels = (100.0, 280.0, 110.0)
+    levels = (100.0, 200.0, 140.0, 280.0, 110.0)
     found = modal(files(tmp_path, shift=-0.005, levels=levels), tmp_path)
     assert found["linearity"]["nonlinear"]
     assert "levels disagree" in found["notes"][0]

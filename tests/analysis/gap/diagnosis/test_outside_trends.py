@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.analysis.gap.catalogue.linear_effects import LINEAR
 from jointbench.analysis.gap.diagnosis.diagnose import diagnose
 from jointbench.analysis.gap.model.campaign import Campaign
 from jointbench.analysis.gap.model.diagnosis_record import Finding
@@ -34,13 +33,9 @@ def softening_campaign(seed: int) -> Campaign:
 def test_a_trend_outside_the_catalogue_is_not_credited_to_another_effect(
     seed: int,
 ) -> None:
-    """Without loosening in the catalogue nothing is named, with it loosening is.
-
-    Of the linear effects; benchmarks/gap takes loosening out of the whole catalogue.
-    """
+    """Without loosening in the catalogue nothing is named, with it loosening is."""
     campaign = softening_campaign(seed)
-    without = frozenset({"loosening"})
-    assert diagnose(campaign, entries=LINEAR, without=without).effects == ()
-    found = diagnose(campaign, entries=LINEAR)
+    assert diagnose(campaign, without=frozenset({"loosening"})).effects == ()
+    found = diagnose(campaign)
     assert found.verdict is Finding.NAMED
     assert [e.name for e in found.effects] == ["loosening"]
