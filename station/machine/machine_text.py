@@ -203,7 +203,26 @@ def sentences(result: MachineResult) -> list[str]:
         f"{result.freedoms} degrees of freedom, reduced to {result.size[0]}; jointed "
         f"frequencies are at most {result.bound:.1e} (relative) above those of the mesh"
     )
-    return found
+    return found + _bound_sentence(result)
+
+
+def _bound_sentence(result: MachineResult) -> list[str]:
+    """Return the bound of the error of the receptance at the tool."""
+    bound = result.jointed.tool.bound
+    if bound is None:
+        return []
+    text = (
+        "The jointed receptance at the tool differs from that of the mesh by at most "
+    )
+    if np.isfinite(bound.largest):
+        return [
+            f"{text}{bound.largest:.1e} of that of the mesh, away from antiresonances"
+        ]
+    return [
+        "The error of the receptance at the tool has no bound at "
+        f"{np.isinf(bound.error).any(axis=0).sum()} of {bound.frequency.size} lines: "
+        "choose a wider band"
+    ]
 
 
 def _damping_sentence(modes: VariantModes) -> str:

@@ -40,6 +40,7 @@ from jointbench.analysis.structures.machine.stability_lobes import (
     StabilityLobes,
     stability_lobes,
 )
+from jointbench.analysis.structures.machine.tool_bound import direct_bound
 from jointbench.analysis.structures.machine.tool_response import (
     oriented_response,
     rows_at,
@@ -111,6 +112,7 @@ def _variant_result(
     state = lean.state(variant)
     poles = state.poles
     tool = _receptance(lean, poles, request)
+    tool = replace(tool, bound=direct_bound(lean, variant, state, request.tool, tool))
     motion = None
     if request.span is not None:
         few = poles.lowest(request.span.poles)

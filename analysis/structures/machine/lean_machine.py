@@ -61,6 +61,8 @@ class VariantState:
         eigenvalue: [1/s^2], shape (n,).
         shapes: columns, orthonormal, shape (r, n).
         damping: phi' C phi, loss of the bodies included [1/s], shape (n, n).
+        loss_damping: the part of each mode that is loss of the bodies [1/s], shape
+            (n,).
         rows: motion x, y, z of all points in each mode, shape (n_rows, n).
         static: flexibility from and to all points [m/N], shape (n_rows, n_rows).
     """
@@ -68,12 +70,14 @@ class VariantState:
     eigenvalue: FloatArray
     shapes: FloatArray
     damping: FloatArray
+    loss_damping: FloatArray
     rows: FloatArray
     static: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "eigenvalue", "shapes", "damping", "rows", "static")
+        freeze(self, "eigenvalue", "shapes", "damping", "loss_damping", "rows")
+        freeze(self, "static")
 
     @property
     def poles(self) -> PoleSet:
@@ -118,11 +122,13 @@ class LeanMachine:
         flex = self.model.spread.between(shapes)[: variant.damping.size]
         damping = np.tensordot(variant.damping, flex, 1)
         damping += shapes.T @ self.model.damping @ shapes
-        loss = shapes.T @ self.model.loss @ shapes
-        damping += np.diag(viscous_loss(found.eigenvalue, loss))
+        loss = viscous_loss(found.eigenvalue, shapes.T @ self.model.loss @ shapes)
+        damping += np.diag(loss)
         rows = np.concatenate(list(self.points.values()))
         static = rows @ np.linalg.solve(self.model.with_joints(values), rows.T)
-        return VariantState(found.eigenvalue, shapes, damping, rows @ shapes, static)
+        return VariantState(
+            found.eigenvalue, shapes, damping, loss, rows @ shapes, static
+        )
 
     def _floating(self, motions: FloatArray) -> str:
         """Return the message on bodies that motions without strain move."""

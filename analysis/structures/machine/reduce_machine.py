@@ -36,7 +36,7 @@ from jointbench.analysis.structures.reduction.component import (
     Component,
     point_port,
 )
-from jointbench.analysis.structures.reduction.port_joints import PortJoint
+from jointbench.analysis.structures.reduction.port_joints import PortJoint, Side
 from jointbench.analysis.structures.reduction.reduce_body import reduce_body
 from jointbench.analysis.structures.reduction.reduction_cache import (
     body_key,
@@ -87,6 +87,7 @@ class ReducedMachine:
         rigid: stiffness that makes each joint rigid, zero otherwise; these parameters
             of the assembly follow the nominal ones, shape (n_joints,) [N/m].
         points: motion x, y, z of each point, shape (3, r), by name.
+        sides: body and port of each point, by name.
         freedoms: of the meshes and beams before the reduction.
     """
 
@@ -98,6 +99,7 @@ class ReducedMachine:
     joints: tuple[PortJoint, ...]
     rigid: FloatArray
     points: Mapping[str, FloatArray]
+    sides: Mapping[str, Side]
     freedoms: int
 
     def __post_init__(self) -> None:
@@ -144,7 +146,7 @@ def reduce_machine(
     raw, joints = solid_bodies(machine)
     raw |= beam_bodies(machine) | rigid_bodies(machine)
     extra = [spring_joint(machine, raw, one) for one in machine.springs]
-    point_of = {}
+    point_of: dict[str, Side] = {}
     for name in machine.points:
         body, rows = rows_of_point(machine, name)
         raw[body].ports.append(point_port(f"point {name}", Sparse(rows[:3])))
@@ -170,6 +172,7 @@ def reduce_machine(
         joints=tuple(every),
         rigid=np.array([rigid_stiffness(raw, one) for one in every]),
         points={name: assembled.rows(side) for name, side in point_of.items()},
+        sides=point_of,
         freedoms=sum(one.matrices.mass.shape[0] for one in raw.values()),
     )
 

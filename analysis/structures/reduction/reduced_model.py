@@ -232,14 +232,14 @@ def frequency_bound(
     norm = model.residual.of_modes(found.shapes, found.eigenvalue, stiffness)
     error = norm / np.sqrt(level)
     inverse = 1.0 / level
-    slack = _inverse_slack(inverse, error)
+    slack = inverse_slack(inverse, error)
     lowest = 1.0 / (inverse + slack) - model.shift
     frequency = found.natural_frequency
     bound = np.where(frequency > 0, frequency - frequency_of(lowest), 0.0)
     return frequency[:wanted], bound[:wanted]
 
 
-def _inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:
+def inverse_slack(inverse: FloatArray, error: FloatArray) -> FloatArray:
     """Return how much each eigenvalue of A^-1 M may exceed its Ritz value.
 
     Among all groups of neighbours of a mode, the one with the smallest sum of squares
