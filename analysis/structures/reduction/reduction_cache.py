@@ -28,7 +28,8 @@ from jointbench.analysis.structures.reduction.residual_norm import (
 )
 
 # Incremented when the reduction changes, so that old files are not used.
-_VERSION = 4
+CACHE_VERSION = 5
+"""Of the files: part of every key."""
 _COMPONENT = ("stiffness", "loss", "damping", "basis")
 _MODEL = ("stiffness", "loss", "damping", "strains")
 Arrays = dict[str, NDArray[Any]]
@@ -36,7 +37,7 @@ Arrays = dict[str, NDArray[Any]]
 
 def content_key(structure: Structure, *options: object) -> str:
     """Return the SHA-256 of the matrices of a structure and of options."""
-    digest = hashlib.sha256(repr((_VERSION, structure.joints, options)).encode())
+    digest = hashlib.sha256(repr((CACHE_VERSION, structure.joints, options)).encode())
     for matrix in (
         structure.stiffness,
         structure.mass,
@@ -50,7 +51,7 @@ def content_key(structure: Structure, *options: object) -> str:
 
 def body_key(body: BodyMatrices, ports: list[BodyPort], *options: object) -> str:
     """Return the SHA-256 of a body, its ports and options of its reduction."""
-    text = (_VERSION, body.name, body.loss_factor, str(body.source), options)
+    text = (CACHE_VERSION, body.name, body.loss_factor, str(body.source), options)
     digest = hashlib.sha256(repr(text).encode())
     for matrix in (body.stiffness, body.mass, body.loss):
         if matrix is not None:
@@ -77,11 +78,11 @@ def cached_component(
         key: of `body_key`.
         make: creates the body if it is not stored.
     """
-    found = _read(folder, key)
+    found = read_arrays(folder, key)
     if found is not None:
-        return _component("", found)
+        return component_of("", found)
     body = make()
-    _write(folder, key, _component_arrays("", body))
+    write_arrays(folder, key, component_arrays("", body))
     return body
 
 
@@ -98,15 +99,18 @@ def cached(
     Returns:
         The reduced model.
     """
-    found = _read(folder, key)
+    found = read_arrays(folder, key)
     if found is not None:
         return _model(found)
     model = make()
-    _write(folder, key, _model_arrays(model))
+    write_arrays(folder, key, _model_arrays(model))
     return model
 
 
-def _write(folder: Path | None, key: str, arrays: Mapping[str, NDArray[Any]]) -> None:
+def write_arrays(
+    folder: Path | None, key: str, arrays: Mapping[str, NDArray[Any]]
+) -> None:
+    """Write the arrays of a key; without a folder nothing is written."""
     if folder is None:
         return
     folder.mkdir(parents=True, exist_ok=True)
@@ -115,7 +119,7 @@ def _write(folder: Path | None, key: str, arrays: Mapping[str, NDArray[Any]]) ->
     os.replace(part, folder / f"{key}.npz")  # noqa: PTH105 - replaces on Windows too
 
 
-def _read(folder: Path | None, key: str) -> Arrays | None:
+def read_arrays(folder: Path | None, key: str) -> Arrays | None:
     """Return the arrays of a file; None if there is none, or it is truncated."""
     if folder is None or not (folder / f"{key}.npz").is_file():
         return None
@@ -126,7 +130,7 @@ def _read(folder: Path | None, key: str) -> Arrays | None:
         return None
 
 
-def _component_arrays(start: str, body: Component) -> Arrays:
+def component_arrays(start: str, body: Component) -> Arrays:
     """Return the arrays of a body; names begin with `start`."""
     found = {start + name: getattr(body, name) for name in _COMPONENT}
     facts = {
@@ -150,7 +154,8 @@ def _component_arrays(start: str, body: Component) -> Arrays:
     return found
 
 
-def _component(start: str, arrays: Arrays) -> Component:
+def component_of(start: str, arrays: Arrays) -> Component:
+    """Return the body whose arrays have names that begin with `start`."""
     facts = json.loads(str(arrays[start + "facts"]))
     residual = None
     if facts["shift"] is not None:
@@ -193,7 +198,7 @@ def _model_arrays(model: ReducedModel) -> Arrays:
     for at, (body, place) in enumerate(
         zip(residual.components, residual.places, strict=True)
     ):
-        found |= _component_arrays(f"body{at}.", body)
+        found |= component_arrays(f"body{at}.", body)
         found[f"place{at}"] = place
     for at, joint in enumerate(residual.joints):
         found |= {
@@ -225,7 +230,7 @@ def _model(arrays: Arrays) -> ReducedModel:
     ]
     bodies, groups = range(facts["bodies"]), range(facts["groups"])
     residual = ResidualNorm(
-        tuple(_component(f"body{at}.", arrays) for at in bodies),
+        tuple(component_of(f"body{at}.", arrays) for at in bodies),
         tuple(arrays[f"place{at}"] for at in bodies),
         tuple(joints),
         arrays["turn"],
