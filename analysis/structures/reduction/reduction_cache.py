@@ -4,7 +4,7 @@
 import hashlib
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -37,7 +37,11 @@ Arrays = dict[str, NDArray[Any]]
 
 def content_key(structure: Structure, *options: object) -> str:
     """Return the SHA-256 of the matrices of a structure and of options."""
-    digest = hashlib.sha256(repr((CACHE_VERSION, structure.joints, options)).encode())
+    digest = hashlib.sha256(repr((CACHE_VERSION, structure.joints)).encode())
+    for one in options:
+        digest.update(
+            one.tobytes() if isinstance(one, np.ndarray) else repr(one).encode()
+        )
     for matrix in (
         structure.stiffness,
         structure.mass,
@@ -64,8 +68,31 @@ def body_key(body: BodyMatrices, ports: list[BodyPort], *options: object) -> str
 
 
 def _add(digest: Any, matrix: Sparse) -> None:
-    for part in (matrix.indptr, matrix.indices, matrix.data):
-        digest.update(np.ascontiguousarray(part).tobytes())
+    """Add a matrix by its product with a random vector, which any change changes."""
+    probe = np.random.default_rng(0).standard_normal(matrix.shape[1])
+    digest.update(repr(matrix.shape).encode())
+    digest.update(np.asarray(matrix @ probe).tobytes())
+
+
+def cached_bodies(
+    folder: Path | None, key: str, make: Callable[[], Sequence[Component]]
+) -> list[Component]:
+    """Return the reduced bodies of a key from disk, or create and store them.
+
+    Args:
+        folder: of the cache; None stores nothing.
+        key: of `content_key`.
+        make: creates the bodies if they are not stored.
+    """
+    found = read_arrays(folder, key)
+    if found is not None:
+        return [component_of(f"body{at}.", found) for at in range(int(found["count"]))]
+    bodies = make()
+    arrays: Arrays = {"count": np.array(len(bodies))}
+    for at, body in enumerate(bodies):
+        arrays |= component_arrays(f"body{at}.", body)
+    write_arrays(folder, key, arrays)
+    return list(bodies)
 
 
 def cached_component(
