@@ -96,4 +96,4 @@ def _content(folder: Path, file: str | None) -> str | None:
     try:
         return hashlib.sha256((folder / file).read_bytes()).hexdigest()
     except OSError:
-        return file  # the reader of the file says what is wrong
+        return file  # the reader of the file refuses it
