@@ -138,19 +138,27 @@ def machine_of(model: MachineModel, folder: Path) -> Machine:
             RigidPart(name, one.position, one.mass, one.inertia)
             for name, one in model.rigid.items()
         ),
-        settings={
-            name: JointSetting(
-                one.stiffness, one.damping, one.stiffness_sd, one.damping_sd
-            )
-            for name, one in model.joints.items()
-            if one.stiffness is not None
-        },
-        springs=tuple(_spring(name, one) for name, one in model.springs.items()),
+        settings=settings_of(model),
+        springs=springs_of(model),
         points={
             name: MachinePoint(one.body, one.position)
             for name, one in model.points.items()
         },
     )
+
+
+def settings_of(model: MachineModel) -> dict[str, JointSetting]:
+    """Return the values of the joints over areas, by name."""
+    return {
+        name: JointSetting(one.stiffness, one.damping, one.stiffness_sd, one.damping_sd)
+        for name, one in model.joints.items()
+        if one.stiffness is not None
+    }
+
+
+def springs_of(model: MachineModel) -> tuple[MachineSpring, ...]:
+    """Return the springs between pieces of bodies."""
+    return tuple(_spring(name, one) for name, one in model.springs.items())
 
 
 def loads_of(model: MachineModel, folder: Path) -> tuple[Load, ...]:

@@ -15,16 +15,15 @@ from jointbench.analysis.structures.machine.machine_request import (
 from jointbench.analysis.structures.machine.machine_result import AXES, MachineResult
 from jointbench.analysis.structures.machine.reduce_machine import (
     ReducedMachine,
-    reduce_machine,
 )
 from jointbench.station.files.output_paths import check_outputs, write_text
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.files.toml_text import load_toml
+from jointbench.station.machine.machine_cache import reduced_machine_of
 from jointbench.station.machine.machine_file import (
     TOOL,
     MachineModel,
     loads_of,
-    machine_of,
 )
 from jointbench.station.machine.machine_json import machine_json
 from jointbench.station.machine.machine_text import (
@@ -67,8 +66,7 @@ def run_machine(
     if motion is not None and settings.transient is None:
         raise UsageError("--motion needs a table [transient] in the model")
     with working("meshing, reducing bodies"):
-        machine = machine_of(settings, model.parent)
-        reduced = reduce_machine(machine, settings.analysis.band, cache=cache)
+        reduced = reduced_machine_of(settings, model.parent, cache)
     with working("solving glued and jointed"):
         result = analyse_machine(reduced, request_of(settings, model.parent))
     show_machine(result, json_target)

@@ -21,7 +21,9 @@ from jointbench.analysis.structures.machine.machine_bodies import (
     spring_joint,
 )
 from jointbench.analysis.structures.machine.machine_parts import (
+    JointSetting,
     Machine,
+    MachineSpring,
 )
 from jointbench.analysis.structures.machine.rigid_joints import (
     rigid_joint,
@@ -43,8 +45,11 @@ from jointbench.analysis.structures.reduction.reduction_cache import (
     cached_component,
 )
 
-_MODES = 30
-_BOX = (1e5, 1e11)
+MACHINE_MODES = 30
+"""Modes that the assembly of a machine is asked for."""
+
+MACHINE_BOX = (1e5, 1e11)
+"""Stiffness of its joints [N/m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -155,9 +160,9 @@ def reduce_machine(
     rigid = [rigid_joint(raw, one) for one in every]
     components = [_reduced(one, band_hz, cache) for one in raw.values()]
     assembled = assemble_components(
-        components, [*every, *rigid], box=_BOX, modes=_MODES
+        components, [*every, *rigid], box=MACHINE_BOX, modes=MACHINE_MODES
     )
-    values = [_values(machine, one.name) for one in every]
+    values = nominal_values(machine.settings, machine.springs, every)
     return ReducedMachine(
         assembled=assembled,
         bodies=tuple(
@@ -166,9 +171,9 @@ def reduce_machine(
                 raw.values(), components, assembled.places, strict=True
             )
         ),
-        stiffness=np.concatenate([one[0] for one in values]),
-        damping=np.concatenate([one[1] for one in values]),
-        deviations=np.concatenate([one[2] for one in values], axis=1),
+        stiffness=values[0],
+        damping=values[1],
+        deviations=values[2:],
         joints=tuple(every),
         rigid=np.array([rigid_stiffness(raw, one) for one in every]),
         points={name: assembled.rows(side) for name, side in point_of.items()},
@@ -184,22 +189,39 @@ def _reduced(raw: RawBody, band_hz: float, cache: Path | None) -> Component:
     )
 
 
-def _values(machine: Machine, name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return stiffness, damping and both deviations of a joint or spring.
+def nominal_values(
+    settings: Mapping[str, JointSetting],
+    springs: Sequence[MachineSpring],
+    joints: Sequence[PortJoint],
+) -> FloatArray:
+    """Return stiffness, damping and their relative deviations of all joints.
 
     Coupled matrices are multiplied by one.
+
+    Args:
+        settings: of the joints over areas, by name.
+        springs: between pieces.
+        joints: in the order of the parameters.
+
+    Returns:
+        Shape (4, n_parameters).
     """
-    if name in machine.settings:
-        one = machine.settings[name]
-        stiffness, damping = np.array(one.stiffness), np.array(one.damping)
-        deviations = (one.stiffness_sd, one.damping_sd)
-    else:
-        spring = next(s for s in machine.springs if s.name == name)
-        stiffness, damping = np.array(spring.stiffness), np.array(spring.damping)
-        if spring.matrices is not None:
-            stiffness, damping = np.array([1.0, 0.0]), np.array([0.0, 1.0])
-        deviations = spring.deviations
-    return stiffness, damping, np.outer(deviations, np.ones(stiffness.size))
+    named = {one.name: one for one in springs}
+    found = [np.zeros((4, 0))]
+    for joint in joints:
+        if joint.name in settings:
+            one = settings[joint.name]
+            values = [one.stiffness, one.damping]
+            deviations = (one.stiffness_sd, one.damping_sd)
+        else:
+            spring = named[joint.name]
+            values = [spring.stiffness, spring.damping]
+            if spring.matrices is not None:
+                values = [(1.0, 0.0), (0.0, 1.0)]
+            deviations = spring.deviations
+        spread = np.outer(deviations, np.ones(len(joint.directions)))
+        found.append(np.concatenate([np.array(values), spread]))
+    return np.concatenate(found, axis=1)
 
 
 def _machine_body(raw: RawBody, component: Component, place: IntArray) -> MachineBody:
