@@ -2,12 +2,17 @@
 """Choose the band in which an FRF is fitted."""
 
 import numpy as np
-from scipy.ndimage import median_filter
+from scipy.ndimage import median_filter, uniform_filter1d
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.signal.frf.frf import Frf
 
+# Power of the force over its low end below which a line is not excited, as in
+# `excited_band`, and over the lower of both sides below which that is a null.
+_NOT_EXCITED, _NULL = 1e-2, 0.1
+# The power of a force is averaged over this many lines in search of nulls.
+_POWER_LINES = 5
 # Lines at and next to DC hold offsets and drift, not the structure.
 _DC_LINES = 2
 _FLANK_LINES = 5
@@ -56,6 +61,70 @@ def choose_band(
             f"{_LEAST_LINES} are needed; {_more_lines(frequency, low, high, band)}"
         )
     return keep, f"{low:g} to {high:g} Hz: {reason}"
+
+
+def force_nulls(frf: Frf, keep: BoolArray) -> BoolArray:
+    """Return the lines at which the force has a null within a band.
+
+    There the FRF is the ratio of two small numbers: leakage, an offset and the window
+    make a peak of it that no mode has, and that hits may share, so that neither their
+    scatter nor the noise of the channels shows it.
+
+    Args:
+        frf: any; the power of its force follows from the noise that it divides.
+        keep: lines of the band, shape (n_lines,).
+
+    Returns:
+        True for the kept lines where the force of any input is 20 dB below its low end
+        and 10 dB below its level within the band on either side, shape (n_lines,); none
+        where the noise of force and response is not known.
+    """
+    null = np.zeros(keep.size, bool)
+    for power in _force_power(frf):
+        level = uniform_filter1d(power, _POWER_LINES, mode="nearest")
+        lowest = _NOT_EXCITED * level[: level.size // 4 + 1].max()
+        inside = level[keep]
+        left = np.maximum.accumulate(inside)
+        right = np.maximum.accumulate(inside[::-1])[::-1]
+        dip = inside < np.minimum(lowest, _NULL * np.minimum(left, right))
+        null[np.flatnonzero(keep)[dip]] = True
+    return null
+
+
+def null_words(frequency: FloatArray, null: BoolArray) -> tuple[str, ...]:
+    """State which lines a null of the force cost, none where there is none.
+
+    Args:
+        frequency: of the lines [Hz].
+        null: from `force_nulls`, same shape.
+    """
+    at = np.flatnonzero(null)
+    if at.size == 0:
+        return ()
+    spans = np.split(at, np.flatnonzero(np.diff(at) > 1) + 1)
+    listed = ", ".join(
+        f"{frequency[span[0]]:.4g} to {frequency[span[-1]]:.4g} Hz" for span in spans
+    )
+    return (
+        f"the force has next to no power at {listed}: these lines are left out, and a "
+        "mode there cannot be found; hit with a harder or softer tip",
+    )
+
+
+def _force_power(frf: Frf) -> FloatArray:
+    """Return the power of the force of each input in any unit, (n_inputs, n_lines).
+
+    The noise of a channel in an FRF is white noise over that power.
+    """
+    if frf.innovation_noise is not None:
+        noise = np.max(frf.innovation_noise, axis=0)
+    elif frf.force_noise is not None:
+        square = np.abs(frf.response) ** 2
+        share = frf.force_noise / np.where(square > 0.0, square, np.inf)
+        noise = np.max(share, axis=0)
+    else:
+        return np.empty((0, frf.frequency.size))
+    return np.asarray(1.0 / np.where(noise > 0.0, noise, np.inf))
 
 
 def _more_lines(

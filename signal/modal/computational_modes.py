@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Computational modes: poles beyond the band, fitted but not reported.
 
+Lines that were left out within the band, as at a null of the force, leave a gap; what
+is in it is beyond the band as well.
+
 The residual terms are polynomials; they represent distant modes but not the flank of a
 mode just beyond the edge, and that error biases the modes within. So one more pole is
 tried at many places beyond each edge. The likeliest is refined together with the modes
@@ -10,7 +13,7 @@ and kept where the fit needs it, and then the next is tried.
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, IntArray
-from jointbench.signal.modal.frf_lines import FrfLines
+from jointbench.signal.modal.frf_lines import FrfLines, gaps_of
 from jointbench.signal.modal.refined_pole_covariance import (
     RefinedPoles,
     refine_poles,
@@ -33,6 +36,8 @@ _FEW_FRFS = 4
 # Places: distance from the edge and decay rate, as shares of the band.
 _DISTANCES = (0.004, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3)
 _DECAYS = (0.004, 0.012, 0.03)
+# Places in a gap of the lines and their decay rates, as shares of the gap.
+_WITHIN, _DECAYS_WITHIN = (0.2, 0.35, 0.5, 0.65, 0.8), (0.01, 0.05, 0.15)
 # Log Bayes factor from which a place is refined.
 _LEAST_EVIDENCE = 2.0
 # Places refined, until one is needed; distance of two poles over the sum of their decay
@@ -142,9 +147,7 @@ def _admissible(
     """
     if float(np.mean(np.abs(after.residual) ** 2 / group.noise)) < _ADMISSIBLE:
         return True
-    width = max(10, int(_EDGE * group.lines.laplace.size))
-    ends = [np.arange(-width, 0) if above else np.arange(width) for above in edges]
-    outer = np.concatenate(ends)
+    outer = _outer(group.lines, edges)
     ratio = [
         float(np.mean(np.abs(f.residual[:, outer]) ** 2 / group.noise[:, outer]))
         for f in (before, after)
@@ -154,11 +157,20 @@ def _admissible(
 
 def _rows(whole: WholeFit, edges: tuple[bool, ...]) -> IntArray:
     """Return the FRFs whose residual at the edges is largest."""
-    width = max(10, int(_EDGE * whole.lines.laplace.size))
     ratio = np.abs(whole.residual) ** 2 / whole.noise
-    ends = [ratio[:, -width:] if above else ratio[:, :width] for above in edges]
-    worst = np.argsort(-np.mean(np.hstack(ends), axis=1))
+    worst = np.argsort(-np.mean(ratio[:, _outer(whole.lines, edges)], axis=1))
     return np.asarray(worst[:_FEW_FRFS])
+
+
+def _outer(lines: FrfLines, edges: tuple[bool, ...]) -> IntArray:
+    """Return the lines next to edges and gaps of the band."""
+    omega = lines.laplace.imag
+    width = max(10, int(_EDGE * omega.size))
+    all_lines = np.arange(omega.size)
+    ends = [all_lines[-width:] if above else all_lines[:width] for above in edges]
+    for middle in np.searchsorted(omega, gaps_of(lines).mean(axis=1)):
+        ends.append(all_lines[max(0, middle - width) : middle + width])
+    return np.unique(np.concatenate(ends))
 
 
 def _starts(
@@ -177,6 +189,10 @@ def _starts(
     place = np.unique(np.concatenate(beyond))
     decay = (high - low) * np.array(_DECAYS)
     trials = (1j * place[:, None] - decay).ravel()
+    for begin, end in gaps_of(group.lines):
+        place = begin + (end - begin) * np.array(_WITHIN)
+        decay = (end - begin) * np.array(_DECAYS_WITHIN)
+        trials = np.append(trials, (1j * place[:, None] - decay).ravel())
     lines = FrfLines(
         group.lines.laplace, group.lines.response[rows], group.lines.derivatives
     )

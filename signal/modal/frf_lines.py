@@ -8,6 +8,9 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
 from jointbench.signal.frf.frf import Frf
 
+# Lines farther apart than this many of the usual distances have a gap between them.
+_GAP_LINES = 3.0
+
 
 @dataclass(frozen=True, slots=True, weakref_slot=True, eq=False)
 class FrfLines:
@@ -23,6 +26,17 @@ class FrfLines:
     laplace: ComplexArray
     response: ComplexArray
     derivatives: int
+
+
+def gaps_of(lines: FrfLines) -> FloatArray:
+    """Return the ends of the gaps between lines that were left out [rad/s].
+
+    Shape (n_gaps, 2), none where the lines are evenly spaced.
+    """
+    omega = lines.laplace.imag
+    pitch = np.diff(omega)
+    last = np.flatnonzero(pitch > _GAP_LINES * np.median(pitch))
+    return np.asarray(np.stack((omega[last], omega[last + 1]), axis=1))
 
 
 def measured_width(lines: FrfLines, pole: ComplexArray) -> FloatArray:

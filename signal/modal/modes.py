@@ -15,7 +15,7 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.acquisition.basics.errors import NoModeFound, UsageError
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.provenance import Step, step
-from jointbench.signal.frf.band import choose_band
+from jointbench.signal.frf.band import choose_band, force_nulls, null_words
 from jointbench.signal.frf.frf import Frf
 from jointbench.signal.frf.line_weights import weights_of
 from jointbench.signal.kalman.process_models import StageGain
@@ -136,6 +136,8 @@ def identify_modes(
     settings = settings or ModalSettings()
     _require_alive(frf)
     keep, reason = choose_band(frf, settings.band)
+    null = force_nulls(frf, keep)
+    nulls, keep = null_words(frf.frequency, null), keep & ~null
     table, weighed = _stabilisation(frf, keep, settings, progress)
     found = candidates(table, settings.stability)
     found = overrule(found, table, settings.choices)
@@ -154,8 +156,8 @@ def identify_modes(
     if fitted.chosen.size == 0:
         raise NoModeFound(
             f"none of {start.size} stable poles rises above the noise, orders "
-            f"{table.orders[0]} to {table.orders[-1]}, {reason}; give another band or "
-            "more hits"
+            f"{table.orders[0]} to {table.orders[-1]}, {reason}; "
+            + "; ".join((*nulls, "give another band or more hits"))
         )
     more = fitted.candidates[start.size :]
     found = (*found, *(from_residual(table, complex(pole)) for pole in more))
@@ -170,7 +172,7 @@ def identify_modes(
         settings=settings,
         band=(float(frf.frequency[keep][0]), float(frf.frequency[keep][-1])),
         stage_gain=stage_gain_of(frf.provenance, model.natural_frequency),
-        remarks=(*remarks, *neighbour_words(fitted.doubts)),
+        remarks=(*remarks, *nulls, *neighbour_words(fitted.doubts)),
     )
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
-from jointbench.signal.modal.frf_lines import FrfLines, measured_width
+from jointbench.signal.modal.frf_lines import FrfLines, gaps_of, measured_width
 from jointbench.signal.modal.line_noise import residual_around
 from jointbench.signal.modal.lsfd import (
     LinearFit,
@@ -301,7 +301,7 @@ def _kept_beyond(
     """Return trial poles beyond the band, kept there and damped.
 
     Only a flank of them is seen: a step from a poor start often leaves the stable
-    half-plane, or enters the band.
+    half-plane, or enters the band. One in a gap of the lines is kept in it.
     """
     n = prior.n_modes
     low, high = lines.laplace.imag[[0, -1]]
@@ -309,8 +309,13 @@ def _kept_beyond(
     above = start > 0.5 * (low + high)
     least = np.where(above, np.minimum(start, high), _LEAST_PLACE * low)
     most = np.where(above, high + span, np.maximum(start, low))
+    width = np.full(start.size, span)
+    for begin, end in gaps_of(lines):
+        within = (start > begin) & (start < end)
+        least, most = np.where(within, begin, least), np.where(within, end, most)
+        width = np.where(within, end - begin, width)
     decay = np.maximum(-trial[n:].real, -pole[n:].real / 3.0)
-    decay = np.clip(decay, _LEAST_DECAY * span, _MOST_DECAY * span)
+    decay = np.clip(decay, _LEAST_DECAY * width, _MOST_DECAY * width)
     return np.asarray(1j * np.clip(trial[n:].imag, least, most) - decay)
 
 
@@ -332,7 +337,8 @@ def unresolved(lines: FrfLines, pole: ComplexArray) -> BoolArray:
     """Return which poles do not have their peak within the band.
 
     These are poles beyond it, or less than a half-power half-width from its edge: with
-    only one flank measured they cannot be distinguished from modes outside.
+    only one flank measured they cannot be distinguished from modes outside. So are
+    those between lines that were left out of the band, a half-width from either side.
 
     Args:
         lines: lines of the fit.
@@ -345,7 +351,16 @@ def unresolved(lines: FrfLines, pole: ComplexArray) -> BoolArray:
     width = measured_width(lines, pole)
     # There are no modes below a band that begins next to zero.
     floor = low + width if low > _NEXT_TO_ZERO * high else 0.0 * width
-    return np.asarray((pole.imag < floor) | (pole.imag > high - width))
+    outside = (pole.imag < floor) | (pole.imag > high - width)
+    return np.asarray(outside | _between(lines, pole, width))
+
+
+def _between(lines: FrfLines, pole: ComplexArray, width: FloatArray) -> BoolArray:
+    """Return which poles are in a gap of the lines, a half-width from either end."""
+    low, high = gaps_of(lines).T
+    place = pole.imag[:, None]
+    away = np.minimum(place - low, high - place)
+    return np.asarray(np.any(away > width[:, None], axis=1))
 
 
 def _joint_covariance(here: _Point, prior: _Prior) -> FloatArray:

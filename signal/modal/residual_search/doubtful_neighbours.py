@@ -4,9 +4,9 @@
 Between "the residual is white" and "the FRF needs one more mode" lies the case in which
 a neighbour may be missing: its own pole would be too uncertain to report, yet it moves
 the modes around it. So one more mode is tried at places all around each mode. Every
-place has a probability, from its Bayes factor and from how many modes a band of that
-width holds, and a shift. The interval of the mode is that of the mixture: the value is
-kept, and 95 % of the probability lie within.
+place has a probability, from its Bayes factor, from how many modes a band of that width
+holds and from how many of these are so small, and a shift. The interval of the mode is
+that of the mixture: the value is kept, and 95 % of the probability lie within.
 """
 
 from dataclasses import dataclass, replace
@@ -27,6 +27,7 @@ from jointbench.signal.modal.residual_search.local_fit import (
     WholeFit,
     group_around,
     residue_scale,
+    residue_shares,
     try_poles,
 )
 from jointbench.signal.modal.residual_search.missing_modes import refined_group
@@ -43,6 +44,8 @@ _FEW_FRFS = 16
 _SHARES = (1.0, 0.3, 0.1, 0.03)
 # Density of modes that may be missing over that of the modes found.
 _DENSITY = 2.0
+# Modes of each size that are counted before any is found (Jeffreys' prior of shares).
+_COUNTED = 0.5
 # Residual power over noise up to which a model with one more mode is admissible: else
 # leakage or a nonlinear structure is left, which no neighbour explains.
 _ADMISSIBLE = 4.0
@@ -54,8 +57,9 @@ _CLEAN = 1.1
 _CERTAIN = 700.0
 # Places named in the remark.
 _LISTED = 6
-# Share of the probability in an interval, and its half-width in sd of a normal law.
-_HELD, _NORMAL = 0.95, 1.959964
+# Share of the probability in an interval, and its half-width in sd of a normal law; an
+# interval that holds this much without neighbours is left as it is.
+_HELD, _NORMAL, _ENOUGH = 0.95, 1.959964, 0.945
 _HALVINGS = 40
 
 
@@ -94,6 +98,7 @@ def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeig
     places: list[float] = []
     modes = whole.pole[: whole.n_modes]
     width = measured_width(whole.lines, modes)
+    share = _share_prior(whole)
     for number in range(whole.n_modes):
         group = _group(whole, number, width)
         trials, cell = _places(whole, modes[number], float(width[number]))
@@ -104,7 +109,7 @@ def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeig
         if found is None:
             continue
         density = _DENSITY * whole.n_modes / float(np.ptp(whole.lines.laplace.imag))
-        prior = density / len(_SHARES) * np.tile(cell, len(_SHARES))
+        prior = density * np.outer(share, cell).ravel()
         weight = _weights(found.log_factor, prior)
         own = int(np.flatnonzero(index == number)[0])
         _add(shift[number], covariance[number], found, weight, own)
@@ -192,6 +197,19 @@ def _places(
     return np.asarray(trials[damped]), np.asarray(cells)
 
 
+def _share_prior(whole: WholeFit) -> FloatArray:
+    """Return the probability of each size of a missing mode, from those of the found.
+
+    What is far below the noise cannot be excluded, but where all modes that are found
+    stand far above it, few are to be expected there.
+    """
+    count = np.full(len(_SHARES), _COUNTED)
+    if whole.n_modes:
+        away = np.log(residue_shares(whole))[:, None] - np.log(_SHARES)
+        np.add.at(count, np.argmin(np.abs(away), axis=1), 1.0)
+    return np.asarray(count / count.sum())
+
+
 def _weights(log_factor: FloatArray, prior: FloatArray) -> FloatArray:
     """Return probabilities: of no further mode, then of one at each place."""
     log_odds = np.append(0.0, log_factor + np.log(prior))
@@ -210,15 +228,24 @@ def _add(
     moved = np.vstack((np.zeros(2), found.shift[:, own]))
     grown = np.maximum(found.variance[:, own] - found.before[own], 0.0)
     sd = np.sqrt(base + np.vstack((np.zeros(2), grown)))
+    held = _held(_NORMAL * sd[0], weight, moved, sd)
     low, high = np.zeros(2), np.max(np.abs(moved) + 6.0 * sd, axis=0)
     for _ in range(_HALVINGS):
         half = 0.5 * (low + high)
-        held = scipy.special.ndtr((half - moved) / sd)
-        held = held - scipy.special.ndtr((-half - moved) / sd)
-        more = weight @ held < _HELD
+        more = _held(half, weight, moved, sd) < _HELD
         low, high = np.where(more, half, low), np.where(more, high, half)
     both = np.arange(2)
-    shift[both, both] = np.maximum((high / _NORMAL) ** 2 - base, 0.0)
+    wider = np.maximum((high / _NORMAL) ** 2 - base, 0.0)
+    shift[both, both] = np.where(held < _ENOUGH, wider, 0.0)
+
+
+def _held(
+    half: FloatArray, weight: FloatArray, moved: FloatArray, sd: FloatArray
+) -> FloatArray:
+    """Return the probability within intervals of a half-width, of Re p and of Im p."""
+    upper, lower = (half - moved) / sd, (-half - moved) / sd
+    within = scipy.special.ndtr(upper) - scipy.special.ndtr(lower)
+    return np.asarray(weight @ within)
 
 
 def _distinct(places: list[float], width: FloatArray) -> FloatArray:

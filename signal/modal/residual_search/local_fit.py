@@ -181,9 +181,21 @@ def residue_scale(whole: WholeFit) -> FloatArray:
 
     The receptance residue of a mode is the product of two shapes over 2 j omega.
     """
+    return np.asarray(np.sqrt(np.mean(_residue_sizes(whole) ** 2, axis=1)))
+
+
+def residue_shares(whole: WholeFit) -> FloatArray:
+    """Return the size of each mode over the usual one [-], shape (n_modes,)."""
+    scale = np.maximum(residue_scale(whole), 1e-300)[:, None]
+    share = np.sqrt(np.mean((_residue_sizes(whole) / scale) ** 2, axis=0))
+    return np.asarray(np.maximum(share, 1e-300))
+
+
+def _residue_sizes(whole: WholeFit) -> FloatArray:
+    """Return residue times frequency of each mode, shape (n_frf, n_modes)."""
     own = whole.fit.coefficients[:, : 2 * whole.n_modes]
-    size = np.hypot(own[:, ::2], own[:, 1::2]) * np.abs(whole.pole[: whole.n_modes])
-    return np.asarray(np.sqrt(np.mean(size**2, axis=1)))
+    size = np.hypot(own[:, ::2], own[:, 1::2])
+    return np.asarray(size * np.abs(whole.pole[: whole.n_modes]))
 
 
 def try_poles(

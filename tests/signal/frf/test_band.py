@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from jointbench.acquisition.basics.errors import BadData
-from jointbench.signal.frf.band import choose_band
+from jointbench.signal.frf.band import choose_band, force_nulls, null_words
 from jointbench.signal.frf.frf import Frf, FrfKind
 
 LINES = np.arange(0.0, 2000.0)
@@ -71,3 +71,15 @@ def test_a_band_without_lines_is_refused() -> None:
     """With the frequencies that there are."""
     with pytest.raises(BadData, match="1999"):
         choose_band(made(np.ones(2000, complex)), (3000.0, 4000.0))
+
+
+def test_a_null_of_the_force_within_the_band_is_left_out() -> None:
+    """A half sine of 3 ms has none at 500 Hz for a band that ends at 480 Hz."""
+    turns = 0.003 * LINES
+    power = (np.cos(np.pi * turns) / (1.0 - 4.0 * turns**2)) ** 2 + 1e-12
+    frf = made(np.ones(2000, complex), innovation_noise=1.0 / power[None, None])
+    null = force_nulls(frf, choose_band(frf, (300.0, 600.0))[0])
+    assert LINES[null].tolist() == [float(f) for f in range(484, 520)]
+    assert "484 to 519 Hz" in null_words(LINES, null)[0]
+    assert not force_nulls(frf, choose_band(frf, (300.0, 480.0))[0]).any()
+    assert not force_nulls(made(frf.response[0, 0]), LINES > 0.0).any()
