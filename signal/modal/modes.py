@@ -143,10 +143,11 @@ def identify_modes(
     found = overrule(found, table, settings.choices)
     lines = lines_of(frf, keep)
     start = np.array([c.pole for c in found], complex)
+    scatter = _scatter(frf, keep)
     fitted = fit_modes(
         lines,
         start,
-        _scatter(frf, keep),
+        scatter,
         held=np.array([c.by_hand for c in found], bool),
         seen=None if settings.choices.drop else partial(recurs, table),
         force=_force_noise(frf, keep),
@@ -163,7 +164,7 @@ def identify_modes(
     found = (*found, *(from_residual(table, complex(pole)) for pole in more))
     done = _record(reason, weighed, table, start.size, fitted, settings.choices)
     model = build_model(frf, fitted, found, (*frf.provenance, done))
-    model, remarks = separate_repeated(model, lines, fitted)
+    model, remarks = separate_repeated(model, lines, fitted, scatter)
     return ModalResult(
         model=model,
         stabilisation=table,

@@ -59,6 +59,21 @@ def test_shapes_of_a_pair_span_those_of_the_modes() -> None:
     assert inside == pytest.approx(np.linalg.norm(model.shapes, axis=1), rel=1e-3)
 
 
+def test_two_pairs_within_a_width_are_four_modes() -> None:
+    """At 100 and at 100.8 Hz, half-power width 2 Hz: within 4 sd and 0.1 Hz."""
+    rng = np.random.default_rng(8)
+    shapes, references = rng.normal(size=(4, 6)), rng.normal(size=(4, 2))
+    poles = np.repeat([POLE, 1.008 * POLE], 2)
+    s = 2j * np.pi * LINES
+    own = 1.0 / (s - poles[:, None]) - 1.0 / (s - poles.conj()[:, None])
+    exact = np.einsum("mo,mi,ml->oil", shapes, references, own * s**2 / 2j)
+    error = rng.normal(size=(2, *exact.shape))
+    noisy = exact + 1e-3 * np.abs(exact).max() * (error[0] + 1j * error[1])
+    model = identify_modes(Frf(LINES, noisy, FrfKind.ACCELERANCE), SETTINGS).model
+    error = model.natural_frequency - np.abs(poles) / (2.0 * np.pi)
+    assert np.all(np.abs(error) < np.minimum(4.0 * model.frequency_sd, 0.1))
+
+
 def test_a_single_mode_stays_one_without_a_remark() -> None:
     """Rank one within noise: nothing is added, nothing is remarked on."""
     result = identify_modes(pair_of(0.0), SETTINGS)
