@@ -53,6 +53,7 @@ class _OpenFile:
         default_factory=OrderedDict
     )
     kept: int = 0
+    last: h5py.Dataset | None = None
 
     def chunk(self, name: str, rows: slice, columns: slice) -> NDArray[Any]:
         """Return a chunk as stored, by the name of its dataset and its place in it."""
@@ -61,14 +62,19 @@ class _OpenFile:
             self.chunks.move_to_end(key)
             return self.chunks[key]
         with damage_named(self.path):
-            # Opened each time: HDF5 keeps a megabyte for each open dataset.
-            values = self.file[name][rows, columns]
+            values = self._dataset(name)[rows, columns]
             require_finite("samples", values)
         self.chunks[key] = values
         self.kept += values.nbytes
         while self.kept > _MOST_KEPT and len(self.chunks) > 1:
             self.kept -= self.chunks.popitem(last=False)[1].nbytes
         return np.asarray(values)
+
+    def _dataset(self, name: str) -> h5py.Dataset:
+        """Return a dataset; one alone stays open, as HDF5 keeps a megabyte for each."""
+        if self.last is None or self.last.name != name:
+            self.last = self.file[name]
+        return self.last
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,12 +2,13 @@
 """How good the modes over amplitude are: coverage, errors, false findings.
 
 Usage: OMP_NUM_THREADS=1 python benchmarks/modal/amplitude.py --log LOG.jsonl
-    [--minutes 20] [--first 0] [--parts linear ...]
+    [--minutes 20] [--first 0] [--base 900000] [--parts linear ...]
     [--page docs/modal-amplitude-coverage.md]
 
-The parts (or those named) take turns until the time is up; each draw is one line
-of the log, and a later run continues where the log ends. Part and seed define a draw.
-A part ends early once the Wilson interval of its share is past the bar.
+The parts (or those named, one as often as it is named) take turns until the time is up;
+each draw is one line of the log, and a later run continues where the log ends. Part and
+seed, counted from a base, define a draw. A part ends early once the Wilson interval of
+its share is past the bar.
 """
 
 import argparse
@@ -297,17 +298,24 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=20.0)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--page", type=Path)
+    parser.add_argument("--base", type=int, default=0)
     parser.add_argument("--parts", nargs="*", default=list(PARTS), choices=list(PARTS))
     given = parser.parse_args()
     done = _read(given.log)
     ends = time.monotonic() + 60 * given.minutes
-    seed = given.first
-    while time.monotonic() < ends and seed < max(n for _, n in PARTS.values()):
-        for part, (run, most) in PARTS.items():
-            wanted = part in given.parts and seed < most and not _clear(part, done)
-            if wanted and (part, seed) not in done:
-                done[part, seed] = _drawn(run, part, seed, given.log)
-        seed += 1
+    left = {
+        part: [given.base + seed for seed in range(given.first, most)][::-1]
+        for part, (_, most) in PARTS.items()
+    }
+    while time.monotonic() < ends and any(left[part] for part in given.parts):
+        for part in given.parts:
+            while left[part] and (part, left[part][-1]) in done:
+                left[part].pop()
+            if left[part] and not _clear(part, done) and time.monotonic() < ends:
+                seed = left[part].pop()
+                done[part, seed] = _drawn(PARTS[part][0], part, seed, given.log)
+            elif _clear(part, done):
+                left[part].clear()
     if given.page is not None:
         from amplitude_page import page
 

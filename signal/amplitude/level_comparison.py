@@ -9,11 +9,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.basics.tail_probabilities import f_above
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.linearity import check_linearity, level_range
-from jointbench.signal.hits.hit_spectra import ForcesOfHits, hit_forces
+from jointbench.signal.hits.hit_spectra import (
+    ForcesOfHits,
+    hit_forces,
+    plan_spectra,
+)
 from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.modal_model import ModalModel
 
@@ -37,26 +42,27 @@ def spectra_near_modes(
         model: of the modes.
 
     Returns:
-        The forces, and the responses at the lines around the modes where the levels of
+        The forces at the lines around the modes, and the responses where the levels of
         the hits differ enough for a comparison.
     """
     window = join_windows([choose_window(r) for r in recordings])
-    forces = hit_forces(recordings, window)
-    near = np.zeros(forces.frequency.size, bool)
+    plan = plan_spectra(recordings)
     pairs = zip(model.natural_frequency, model.damping_ratio, strict=True)
-    for low, high in (_band(forces, float(f), float(z)) for f, z in pairs):
-        inside = (forces.frequency >= low) & (forces.frequency <= high)
-        if _factor(forces, (low, high)) >= _LEAST_FACTOR:
-            near |= inside
-    size = len(forces.points) * len(forces.labels[0]) * np.count_nonzero(near)
-    return forces.at(near) if 0 < size <= _MOST_VALUES else forces
+    bands = [_band(plan.frequency, float(f), float(z)) for f, z in pairs]
+    near = np.zeros(plan.frequency.size, bool)
+    for low, high in bands:
+        near |= (plan.frequency >= low) & (plan.frequency <= high)
+    forces = hit_forces(plan, window, near)
+    apart = any(_factor(forces, band) >= _LEAST_FACTOR for band in bands)
+    size = len(forces.points) * len(forces.labels[0]) * forces.frequency.size
+    return forces.whole() if apart and size <= _MOST_VALUES else forces
 
 
 def _band(
-    spectra: ForcesOfHits, frequency: float, damping_ratio: float
+    lines: FloatArray, frequency: float, damping_ratio: float
 ) -> tuple[float, float]:
     """Return the band around a mode in which hits are compared [Hz]."""
-    step = float(np.diff(spectra.frequency).min())
+    step = float(np.diff(lines).min())
     half = max(_HALF_WIDTHS * damping_ratio * frequency, _LEAST_LINES * step)
     return frequency - half, frequency + half
 
@@ -88,7 +94,7 @@ def compare_levels(
         The chance that a linear structure shows as much, and an empty text; or None
         and why it could not be asked.
     """
-    band = _band(spectra, frequency, damping_ratio)
+    band = _band(spectra.frequency, frequency, damping_ratio)
     factor = _factor(spectra, band)
     if factor == 0.0:
         return None, _why_not("")

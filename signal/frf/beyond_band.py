@@ -13,7 +13,6 @@ from scipy.ndimage import median_filter, uniform_filter1d
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.signal.frf.frf import Frf
-from jointbench.signal.hits.hit_spectra import ForcesOfHits
 
 _ALIAS_FREE = 2.0 / 2.56
 """Share of the lines that anti-alias filters of usual converters leave [-]."""
@@ -89,15 +88,15 @@ class Beyond:
 
 
 def look_beyond(
-    frf: Frf, band: tuple[float, float], spectra: ForcesOfHits | None
+    frf: Frf, band: tuple[float, float], force_power: FloatArray | None
 ) -> Beyond:
     """Find peaks above a band.
 
     Args:
         frf: of all lines.
         band: lowest and highest line that was fitted [Hz].
-        spectra: of the accepted hits, as recorded; None for FRFs from files, which
-            may be fitted up to their last line.
+        force_power: mean of |F|^2 over the accepted hits [N^2 s^2], shape (n_lines,);
+            None for FRFs from files, which may be fitted up to their last line.
 
     Returns:
         Up to five peaks, those three times as high as the adjacent minima, with a
@@ -105,11 +104,9 @@ def look_beyond(
     """
     frequency = frf.frequency
     level = np.sqrt(np.mean(np.abs(frf.response) ** 2, axis=(0, 1)))
-    reach = float(frequency[-1]) * (1.0 if spectra is None else _ALIAS_FREE)
+    reach = float(frequency[-1]) * (1.0 if force_power is None else _ALIAS_FREE)
     inside = (frequency >= band[0]) & (frequency <= band[1])
-    drop = None
-    if spectra is not None:
-        drop = np.interp(frequency, spectra.frequency, _force_drop(spectra))
+    drop = None if force_power is None else _force_drop(force_power)
     coherence = None if frf.coherence is None else frf.coherence.mean(axis=(0, 1))
     highest = float(level[inside].max())
     peaks = [
@@ -136,9 +133,8 @@ def look_beyond(
     )
 
 
-def _force_drop(spectra: ForcesOfHits) -> FloatArray:
+def _force_drop(power: FloatArray) -> FloatArray:
     """Return the force spectrum over its highest [dB], smoothed, shape (n_lines,)."""
-    power = np.mean(np.abs(spectra.force) ** 2, axis=0)
     smooth = uniform_filter1d(power, max(3, power.size // _AROUND), mode="nearest")
     floor = np.finfo(float).tiny
     return np.asarray(

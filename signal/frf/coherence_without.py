@@ -12,7 +12,7 @@ Source:
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.signal.frf.frf import excited_band_of
+from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.hits.hit_spectra import HitSpectra
 
 _LEAST = 1e-24  # share of the largest power; lines below it count as empty

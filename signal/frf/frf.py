@@ -4,9 +4,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Any
 
 import numpy as np
-from scipy.ndimage import uniform_filter1d
 
 from jointbench.acquisition.basics.array_checks import (
     require_ascending,
@@ -18,6 +18,7 @@ from jointbench.acquisition.basics.errors import ShapeError
 from jointbench.acquisition.records.provenance import Provenance, Step, step
 from jointbench.acquisition.records.recordings import Quantity, Recording
 from jointbench.signal.frf.estimators import Estimator, bias_bound, pair_of_sums
+from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.innovation_noise import force_noise, innovation_noise
 from jointbench.signal.frf.spectral_sums import (
     SpectralSums,
@@ -26,14 +27,9 @@ from jointbench.signal.frf.spectral_sums import (
 )
 from jointbench.signal.hits.campaign_level import compare_levels
 from jointbench.signal.hits.find_hits import accepted_hits, find_hits
-from jointbench.signal.hits.hit_spectra import ForcesOfHits, HitSpectra, require_alive
+from jointbench.signal.hits.hit_spectra import HitSpectra, require_alive
 from jointbench.signal.hits.hit_verdicts import HitLimits
 from jointbench.signal.hits.windows import HammerWindow, choose_window, join_windows
-
-# Fall of the force spectrum at the upper end of the excited band.
-_FORCE_DROP_DB = 20.0
-# Anti-alias filters of the usual converters leave this share of the sample rate.
-_ALIAS_FREE = 1.0 / 2.56
 
 
 class FrfKind(StrEnum):
@@ -162,6 +158,37 @@ def estimate_frf(
     """
     if isinstance(recordings, Recording):
         recordings = (recordings,)
+    return frf_of_sums(sum_recordings(recordings, window), estimator)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SummedHits:
+    """Sums over the accepted hits of recordings.
+
+    Attributes:
+        sums: of all pairs.
+        window: applied to each hit.
+        provenance: steps that the recordings went through.
+    """
+
+    sums: SpectralSums
+    window: HammerWindow
+    provenance: Provenance = ()
+
+
+def sum_recordings(
+    recordings: Sequence[Recording],
+    window: HammerWindow | None,
+    *,
+    levels: bool = False,
+) -> SummedHits:
+    """Judge hits where that was not done, and add their spectra up.
+
+    Args:
+        recordings: as for `estimate_frf`, which names the errors.
+        window: for all hits, or None to choose it.
+        levels: regress on the level of the hits as well.
+    """
     judged = compare_levels(
         [r if r.hits else find_hits(r) for r in recordings],
         HitLimits(),
@@ -172,7 +199,8 @@ def estimate_frf(
             require_alive(recording, hit)
     if window is None:
         window = join_windows([choose_window(r) for r in judged if accepted_hits(r)])
-    return _average(sum_hits(judged, window), window, estimator, _inherited(judged))
+    sums = sum_hits(judged, window, levels=levels)
+    return SummedHits(sums, window, _inherited(judged))
 
 
 def average_spectra(
@@ -193,86 +221,67 @@ def average_spectra(
     Raises:
         ChannelMissing: a pair of output and input that was never measured together.
     """
-    return _average(sums_of_spectra(spectra), window, estimator, inherited)
+    return frf_of_sums(
+        SummedHits(sums_of_spectra(spectra), window, inherited), estimator
+    )
 
 
-def _average(
-    sums: SpectralSums,
-    window: HammerWindow,
-    estimator: Estimator,
-    inherited: Provenance,
-) -> Frf:
-    """Return the FRF that sums over hits give."""
-    averaged = [
-        pair_of_sums(
-            row.h1,
-            (row.force_power, row.response_power, row.scatter),
-            row.hits,
-            estimator,
-        )
-        for row in sums.pairs
-    ]
+def frf_of_sums(summed: SummedHits, estimator: Estimator = Estimator.H1) -> Frf:
+    """Return the FRF that sums over hits give.
+
+    Args:
+        summed: over the accepted hits.
+        estimator: H1, H2 or Hv.
+    """
+    sums, window = summed.sums, summed.window
     shape = (len(sums.outputs), len(sums.inputs), sums.frequency.size)
     averages = min(row.hits for row in sums.pairs)
-    coherence = _stack([a.coherence for a in averaged], shape, averages)
-    done = _record(sums, window, averages, estimator, coherence)
+    response, coherence, variance = _averaged(sums, estimator)
+    seen = coherence if averages > 1 else None
+    done = _record(sums, window, averages, estimator, seen)
     decay = window.decay_rate or 0.0
-    noise = innovation_noise(sums, inherited, decay)
+    noise = innovation_noise(sums, summed.provenance, decay)
     forced = force_noise(sums, window)
     return Frf(
         frequency=sums.frequency,
-        response=np.array([a.response for a in averaged]).reshape(shape),
+        response=_whole(response, shape),
         kind=KIND_OF_RESPONSE[sums.quantity],
-        coherence=coherence,
-        variance=_stack([a.variance for a in averaged], shape, averages),
+        coherence=_whole(seen, shape),
+        variance=_whole(variance if averages > 1 else None, shape),
         added_decay_rate=decay,
         outputs=sums.outputs,
         inputs=sums.inputs,
         averages=averages,
-        provenance=(*inherited, done),
+        provenance=(*summed.provenance, done),
         usable_band=excited_band_of(sums.power, sums.frequency),
-        innovation_noise=None if noise is None else noise.reshape(shape),
-        force_noise=None if forced is None else forced.reshape(shape),
+        innovation_noise=_whole(noise, shape),
+        force_noise=_whole(forced, shape),
         force_width=window.force_width or 0.0,
     )
 
 
-def excited_band(spectra: ForcesOfHits) -> tuple[float, float]:
-    """Return the band of the force spectrum within 20 dB of its low end, unaliased.
-
-    Args:
-        spectra: of the accepted hits.
-
-    Returns:
-        First line above DC and the last line before the force stays low over a fiftieth
-        of the band [Hz].
-    """
-    power = np.mean(np.abs(spectra.force) ** 2, axis=0)
-    return excited_band_of(power, spectra.frequency)
-
-
-def excited_band_of(power: FloatArray, frequency: FloatArray) -> tuple[float, float]:
-    """Return the band in which a force has power; see `excited_band`.
-
-    Args:
-        power: of the force, in any unit, shape (n_lines,).
-        frequency: of the lines [Hz].
-    """
-    lines = max(3, power.size // 50)
-    smooth = uniform_filter1d(power, lines, mode="nearest")
-    strong = smooth > smooth[: power.size // 4 + 1].max() * 10 ** (-_FORCE_DROP_DB / 10)
-    first = int(np.argmax(strong))
-    fallen = np.flatnonzero(~strong[first:])
-    last = first + int(fallen[0]) - 1 if fallen.size else power.size - 1
-    highest = min(frequency[last], 2.0 * frequency[-1] * _ALIAS_FREE)
-    return float(frequency[max(first, 1)]), float(highest)
+def _averaged(
+    sums: SpectralSums, estimator: Estimator
+) -> tuple[ComplexArray, FloatArray, FloatArray]:
+    """Return response, coherence and variance, shape (n_pairs, n_lines) each."""
+    size = len(sums.pairs), sums.frequency.size
+    response = np.empty(size, complex)
+    coherence, variance = np.empty(size), np.empty(size)
+    for place, row in enumerate(sums.pairs):
+        powers = row.force_power, row.response_power, row.scatter
+        one = pair_of_sums(row.h1, powers, row.hits, estimator)
+        response[place], coherence[place] = one.response, one.coherence
+        variance[place] = one.variance
+    return response, coherence, variance
 
 
-def _stack(
-    rows: Sequence[FloatArray], shape: tuple[int, int, int], averages: int
-) -> FloatArray | None:
-    """Return the rows as one array, or None where a single hit shows no scatter."""
-    return np.array(rows).reshape(shape) if averages > 1 else None
+def _whole(rows: Any, shape: tuple[int, int, int]) -> Any:
+    """Return rows of pairs in the shape of an FRF, read-only so as not to be copied."""
+    if rows is None:
+        return None
+    whole = rows.reshape(shape)
+    whole.flags.writeable = False
+    return whole
 
 
 def _inherited(recordings: Sequence[Recording]) -> Provenance:
@@ -291,7 +300,7 @@ def _record(
     if coherence is not None:
         low, high = excited_band_of(sums.power, sums.frequency)
         inside = (sums.frequency >= low) & (sums.frequency <= high)
-        apart = bias_bound(coherence[:, :, inside], averages)
+        apart = bias_bound(coherence[:, inside], averages)
         bound["h1_below_h2_median"] = float(np.median(apart))
     return step(
         "estimate_frf",

@@ -13,15 +13,22 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from jointbench.acquisition.basics.arrays import (
-    BoolArray,
-    ComplexArray,
     FloatArray,
+    IntArray,
     freeze,
+    squared_size,
 )
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.basics.tail_probabilities import f_above
-from jointbench.signal.frf.frf import excited_band
-from jointbench.signal.hits.hit_pairs import Pair, pair_up
+from jointbench.signal.frf.excited_band import excited_band
+from jointbench.signal.frf.spectral_sums import (
+    HitAdder,
+    LevelLines,
+    PairSums,
+    SpectralSums,
+    sums_of_pair,
+)
+from jointbench.signal.hits.hit_pairs import pair_up
 from jointbench.signal.hits.hit_spectra import ForcesOfHits
 
 _LEAST_HITS = 3
@@ -30,7 +37,8 @@ _LEAST_SPAN = 1.2
 _CHANCE = 0.01
 # The scatter of a few hits is itself noisy; it is averaged over this many lines.
 _SMOOTH_LINES = 41
-_BLOCK_LINES = 512
+# As many lines show no correlation.
+_FEW_LINES = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,25 +112,66 @@ def check_linearity(
         Seber and Lee, Linear Regression Analysis (2003), sec. 4.3 (F test); ISO
         7626-5:2019 requires the check.
     """
-    low, high = band or excited_band(spectra)
-    inside = (spectra.frequency >= low) & (spectra.frequency <= high)
-    impulse = _levels(spectra, inside)
-    groups = _comparable(spectra, impulse)
-    fits = [_regress(spectra, pair, impulse[pair.hits], inside) for pair in groups]
+    lines = LevelLines.between(spectra.frequency, band or excited_band(spectra))
+    pairs = pair_up(spectra)[2]
+    _require_comparable(_levels(spectra, lines), [pair.hits for pair in pairs])
+    part, count = lines.part, lines.past - lines.first
+    adder = HitAdder.of(count, LevelLines(0, count))
+    hits = zip(spectra.force, spectra.labels, spectra.points, strict=True)
+    for number, (force, labels, point) in enumerate(hits):
+        rows = (row[part] for row in spectra.responses(number))
+        adder.add(force[part], rows, labels, point)
+    sums = [(sums_of_pair(adder, spectra, pair), pair.hits) for pair in pairs]
+    impulse = np.array(adder.level)
+    return _linearity(spectra.frequency[part], impulse, sums, slice(None))
+
+
+def linearity_of_sums(sums: SpectralSums) -> Linearity:
+    """Test what `sum_hits` gathered over the excited band; see `check_linearity`.
+
+    Args:
+        sums: with the regression on level.
+
+    Raises:
+        BadData: as `check_linearity`.
+    """
+    assert sums.level_lines is not None
+    part = sums.level_lines.part
+    pairs = list(zip(sums.pairs, sums.hits, strict=True))
+    return _linearity(sums.frequency[part], sums.level, pairs, part)
+
+
+def _linearity(
+    frequency: FloatArray,
+    impulse: FloatArray,
+    sums: Sequence[tuple[PairSums, IntArray]],
+    part: slice,
+) -> Linearity:
+    """Pool the regressions of the pairs that have enough hits at different levels.
+
+    Args:
+        frequency: of the lines of the regressions [Hz].
+        impulse: level of each hit [N s].
+        sums: of each pair, and its hits.
+        part: lines of H1 that are those of the regressions.
+    """
+    _require_comparable(impulse, [hits for _, hits in sums])
+    used = [(one, hits) for one, hits in sums if _is_comparable(impulse[hits])]
+    fits = [_fit(one, part) for one, _ in used]
     slope_power = np.sum([f.slope_power for f in fits], axis=0)
     noise_power = np.sum([f.noise_power for f in fits], axis=0)
     level = np.sum([f.level for f in fits], axis=0)
     f_value, significance = _test(fits)
-    used = np.concatenate([impulse[p.hits] for p in groups])
+    struck = np.unique(np.concatenate([hits for _, hits in used]))
     excess = float(np.sum(slope_power - noise_power) / np.sum(level))
     return Linearity(
         change=np.sqrt(slope_power / level),
-        frequency=spectra.frequency[inside],
+        frequency=frequency,
         change_per_doubling=float(np.sqrt(max(0.0, excess))),
         f_value=f_value,
         significance=significance,
-        levels=(float(used.min()), float(used.max())),
-        hits=int(np.unique(np.concatenate([p.hits for p in groups])).size),
+        levels=(float(impulse[struck].min()), float(impulse[struck].max())),
+        hits=int(struck.size),
     )
 
 
@@ -138,25 +187,26 @@ def level_range(
     Raises:
         BadData: as `check_linearity`.
     """
-    inside = (spectra.frequency >= band[0]) & (spectra.frequency <= band[1])
-    impulse = _levels(spectra, inside)
-    used = np.concatenate([impulse[p.hits] for p in _comparable(spectra, impulse)])
-    return float(used.min()), float(used.max())
+    impulse = _levels(spectra, LevelLines.between(spectra.frequency, band))
+    hits = [pair.hits for pair in pair_up(spectra)[2]]
+    _require_comparable(impulse, hits)
+    used = [impulse[own] for own in hits if _is_comparable(impulse[own])]
+    return float(min(map(np.min, used))), float(max(map(np.max, used)))
 
 
-def _comparable(spectra: ForcesOfHits, impulse: FloatArray) -> list[Pair]:
-    """Return the pairs with enough hits at different levels."""
-    outputs, inputs, pairs = pair_up(spectra)
-    groups = [
-        p for p in pairs if _spread(impulse[p.hits]) and p.hits.size >= _LEAST_HITS
-    ]
-    if not groups:
+def _require_comparable(impulse: FloatArray, hits: Sequence[IntArray]) -> None:
+    """Raise `BadData` where no pair has enough hits at different levels."""
+    if not any(_is_comparable(impulse[own]) for own in hits):
         raise BadData(
             f"linearity needs {_LEAST_HITS} accepted hits at one point whose levels "
-            f"differ by a factor of {_LEAST_SPAN} or more; none of {len(outputs)} x "
-            f"{len(inputs)} pairs has them: alternate soft and hard hits"
+            f"differ by a factor of {_LEAST_SPAN} or more; none of {len(hits)} pairs "
+            "of output and input has them: alternate soft and hard hits"
         )
-    return groups
+
+
+def _is_comparable(levels: FloatArray) -> bool:
+    apart = levels.max() >= _LEAST_SPAN * levels.min()
+    return bool(apart and levels.size >= _LEAST_HITS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -178,36 +228,17 @@ class _Fit:
     correlation: float
 
 
-def _regress(
-    spectra: ForcesOfHits, pair: Pair, impulse: FloatArray, inside: BoolArray
-) -> _Fit:
-    """Regress the hits of a pair, some lines at a time: they fit into the cache."""
-    response = spectra.responses(pair, inside)
-    lines = np.flatnonzero(inside)
-    slope_power, noise_power, level_power = np.empty((3, lines.size))
-    level = np.log2(impulse)[:, None]
-    last: ComplexArray | None = None
-    shared = power = 0.0
-    for first in range(0, lines.size, _BLOCK_LINES):
-        here = slice(first, first + _BLOCK_LINES)
-        force = spectra.force[pair.hits[:, None], lines[here]]
-        frf, weight = response[:, here] / force, _power(force)
-        # Weighted by |F|^2: the noise of a hit's FRF is response noise over force.
-        total = weight.sum(axis=0)
-        centred = level - (weight * level).sum(axis=0) / total
-        mean = (weight * frf).sum(axis=0) / total
-        lever = (weight * centred**2).sum(axis=0)
-        slope = (weight * centred * frf).sum(axis=0) / lever
-        residual = (frf - mean - centred * slope) * np.sqrt(weight)
-        left = _power(residual).sum(axis=0)
-        slope_power[here], level_power[here] = _power(slope), _power(mean)
-        noise_power[here] = left / (pair.hits.size - 2) / lever
-        power += float(left.sum())
-        joined = residual if last is None else np.hstack((last, residual))
-        shared += float(np.vdot(joined[:, :-1], joined[:, 1:]).real)
-        last = residual[:, -1:]
-    length = _correlation_length(shared, power) if lines.size > 2 else 1.0
-    return _Fit(slope_power, noise_power, level_power, pair.hits.size, length)
+def _fit(sums: PairSums, part: slice) -> _Fit:
+    """Return the regression of a pair; `part` of the lines of H1 are its lines."""
+    slope = sums.slope
+    assert slope is not None
+    return _Fit(
+        slope_power=squared_size(slope.slope),
+        noise_power=slope.scatter / (sums.hits - 2) / slope.total,
+        level=squared_size(sums.h1[part]),
+        hits=sums.hits,
+        correlation=_correlation_length(slope.shared, slope.scatter),
+    )
 
 
 def _test(fits: Sequence[_Fit]) -> tuple[float, float]:
@@ -227,27 +258,20 @@ def _pooled(fit: _Fit) -> FloatArray:
     return np.asarray(np.where(smooth > 0.0, smooth, np.inf))
 
 
-def _power(values: ComplexArray) -> FloatArray:
-    return np.asarray(values.real**2 + values.imag**2)
-
-
-def _correlation_length(shared: float, power: float) -> float:
+def _correlation_length(shared: float, scatter: FloatArray) -> float:
     """Return how many neighbouring lines carry one independent error, 1 or more.
 
     Args:
         shared: sum over neighbouring lines of the product of their residuals.
-        power: sum of the squared residuals.
+        scatter: sum of the squared residuals of each line.
     """
-    if power == 0.0:
+    power = float(scatter.sum())
+    if power == 0.0 or scatter.size <= _FEW_LINES:
         return 1.0
     share = min(max(shared / power, 0.0), 0.99)
     return (1.0 + share) / (1.0 - share)
 
 
-def _levels(spectra: ForcesOfHits, inside: BoolArray) -> FloatArray:
-    """Return the rms force spectrum of each hit over the band [N s]."""
-    return np.asarray(np.sqrt(np.mean(np.abs(spectra.force[:, inside]) ** 2, axis=1)))
-
-
-def _spread(levels: FloatArray) -> bool:
-    return bool(levels.max() >= _LEAST_SPAN * levels.min())
+def _levels(spectra: ForcesOfHits, lines: LevelLines) -> FloatArray:
+    """Return the rms force spectrum of each hit [N s]."""
+    return np.array([lines.level(force) for force in spectra.force])

@@ -15,9 +15,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    IntArray,
+    squared_size,
+)
 from jointbench.acquisition.records.recordings import Quantity, Recording
-from jointbench.signal.hits.hit_pairs import pair_up
+from jointbench.signal.frf.excited_band import excited_band_of
+from jointbench.signal.frf.level_slope import LevelSlope, LevelUpdate
+from jointbench.signal.hits.hit_pairs import LabelledHits, Pair, pair_up
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
     SpectraPlan,
@@ -26,6 +34,9 @@ from jointbench.signal.hits.hit_spectra import (
     response_spectra,
 )
 from jointbench.signal.hits.windows import HammerWindow, force_variance
+
+# In place of a level of zero, which has no logarithm.
+_SILENT = np.finfo(float).tiny
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +65,7 @@ def force_update(force: ComplexArray, before: FloatArray) -> ForceUpdate:
         force: its spectrum [N s], shape (n_lines,).
         before: sum of |F|^2 of the earlier hits, same shape.
     """
-    total = before + _power(force)
+    total = before + squared_size(force)
     silent = total <= 0.0
     safe = np.where(silent, 1.0, total)
     return ForceUpdate(
@@ -73,40 +84,76 @@ class PairSums:
     Attributes:
         h1: response over force [response unit/N], shape (n_lines,).
         force_power: sum of |F|^2 [N^2 s^2], same shape.
-        response_power: sum of |X|^2, same shape.
         scatter: sum of |X - H1 F|^2, same shape.
         hits: number of hits.
+        slope: regression on the level of the hits, None where it is not asked for.
     """
 
     h1: ComplexArray
     force_power: FloatArray
-    response_power: FloatArray
     scatter: FloatArray
     hits: int = 0
+    slope: LevelSlope | None = None
 
     @classmethod
     def empty(cls, nothing: FloatArray) -> "PairSums":
         """Return the sums of no hit; `nothing` is zeros, shape (n_lines,)."""
-        response, scatter = np.zeros((2, nothing.size))
-        return cls(np.zeros(nothing.size, complex), nothing, response, scatter)
+        h1, scatter = np.zeros(nothing.size, complex), np.zeros(nothing.size)
+        return cls(h1, nothing, scatter)
 
-    def add(self, hit: ForceUpdate, response: ComplexArray) -> None:
+    @property
+    def response_power(self) -> FloatArray:
+        """Sum of |X|^2: what H1 explains and what it leaves are orthogonal."""
+        return squared_size(self.h1) * self.force_power + self.scatter
+
+    def add(self, hit: ForceUpdate, response: ComplexArray) -> ComplexArray:
         """Add one hit.
 
         Args:
             hit: from its force and `force_power`.
             response: its spectrum, shape (n_lines,).
+
+        Returns:
+            What H1 of the earlier hits leaves of the response, same shape.
         """
-        power = _power(response)
-        error = response - self.h1 * hit.force
-        self.scatter += _power(error) * hit.share
+        error = self.h1 * hit.force
+        np.subtract(response, error, out=error)
+        self.scatter += squared_size(error) * hit.share
         self.h1 += error * hit.gain
         if hit.silent is not None:
             # A line without force holds nothing but noise of the response.
-            self.scatter += np.where(hit.silent, power, 0.0)
-        self.response_power += power
+            self.scatter += np.where(hit.silent, squared_size(response), 0.0)
         self.force_power = hit.total
         self.hits += 1
+        return error
+
+
+@dataclass(frozen=True, slots=True)
+class LevelLines:
+    """Lines of the level of a hit, and of the regression on it.
+
+    Attributes:
+        first: of them.
+        past: one past the last.
+    """
+
+    first: int
+    past: int
+
+    @property
+    def part(self) -> slice:
+        """The lines as an index."""
+        return slice(self.first, self.past)
+
+    @classmethod
+    def between(cls, frequency: FloatArray, band: tuple[float, float]) -> "LevelLines":
+        """Return the lines from the lowest to the highest frequency of a band."""
+        first = int(np.searchsorted(frequency, band[0]))
+        return cls(first, int(np.searchsorted(frequency, band[1], side="right")))
+
+    def level(self, force: ComplexArray) -> float:
+        """Return the rms of a force spectrum on these lines [N s]."""
+        return float(np.sqrt(np.mean(squared_size(force[self.part]))))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,6 +172,9 @@ class SpectralSums:
         block_reason: how it was chosen.
         force_variance: of the noise of the force at the hits of each pair [N^2], 0
             where it is not known, shape (n_pairs,).
+        level_lines: of the regression on level, None where it is not asked for.
+        level: of each hit on these lines [N s]; empty without them.
+        hits: indices of the hits of each pair.
     """
 
     frequency: FloatArray
@@ -136,20 +186,33 @@ class SpectralSums:
     block: int
     block_reason: str
     force_variance: FloatArray
+    level_lines: LevelLines | None
+    level: FloatArray
+    hits: tuple[IntArray, ...]
 
 
 @dataclass(slots=True, eq=False)
-class _Adder:
-    """Adds hits to the sums of their pairs."""
+class HitAdder:
+    """Adds hits to the sums of their pairs.
 
-    power: FloatArray
+    Attributes:
+        nothing: zeros, shape (n_lines,).
+        levels: lines of the regression on level, None for no regression.
+        power: sum of |F|^2 over all hits [N^2 s^2], shape (n_lines,).
+        level: of each hit [N s].
+        pairs: sums of each output and input.
+    """
+
     nothing: FloatArray
+    levels: LevelLines | None
+    power: FloatArray
+    level: list[float] = field(default_factory=list)
     pairs: dict[tuple[str, str], PairSums] = field(default_factory=dict)
-    hits: int = 0
 
     @classmethod
-    def of(cls, lines: int) -> "_Adder":
-        return cls(np.zeros(lines), np.zeros(lines))
+    def of(cls, lines: int, levels: LevelLines | None = None) -> "HitAdder":
+        """Return sums of no hit on a number of lines."""
+        return cls(np.zeros(lines), levels, np.zeros(lines))
 
     def add(
         self,
@@ -158,26 +221,57 @@ class _Adder:
         labels: Sequence[str],
         point: str,
     ) -> None:
-        self.power += _power(force)
-        self.hits += 1
+        """Add one hit.
+
+        Args:
+            force: its spectrum [N s], shape (n_lines,).
+            response: spectra, shape (n_lines,) each.
+            labels: of the responses.
+            point: where the hammer struck.
+        """
+        self.power += squared_size(force)
+        if self.levels is not None:
+            self.level.append(self.levels.level(force))
         # Pairs with the same earlier hits hold one array of their power.
-        updates: dict[int, ForceUpdate] = {}
+        updates: dict[int, tuple[ForceUpdate, LevelUpdate | None]] = {}
         for label, row in zip(labels, response, strict=True):
-            if (label, point) not in self.pairs:
-                self.pairs[label, point] = PairSums.empty(self.nothing)
-            sums = self.pairs[label, point]
+            sums = self._pair(label, point)
             before = sums.force_power
             if id(before) not in updates:
-                updates[id(before)] = force_update(force, before)
-            sums.add(updates[id(before)], row)
+                updates[id(before)] = self._update(force, sums)
+            hit, moved = updates[id(before)]
+            error = sums.add(hit, row)
+            if self.levels is not None and sums.slope and moved:
+                sums.slope.add(moved, error[self.levels.part])
+
+    def _pair(self, label: str, point: str) -> PairSums:
+        if (label, point) not in self.pairs:
+            sums = self.pairs[label, point] = PairSums.empty(self.nothing)
+            if self.levels is not None:
+                sums.slope = LevelSlope.empty(self.nothing[self.levels.part])
+        return self.pairs[label, point]
+
+    def _update(
+        self, force: ComplexArray, sums: PairSums
+    ) -> tuple[ForceUpdate, LevelUpdate | None]:
+        hit = force_update(force, sums.force_power)
+        if self.levels is None or sums.slope is None:
+            return hit, None
+        part, level = self.levels.part, max(self.level[-1], _SILENT)
+        moved = sums.slope.update(force[part], hit.share[part], np.log2(level))
+        return hit, moved
 
 
-def sum_hits(recordings: Sequence[Recording], window: HammerWindow) -> SpectralSums:
+def sum_hits(
+    recordings: Sequence[Recording], window: HammerWindow, *, levels: bool = False
+) -> SpectralSums:
     """Window, transform and add up the accepted hits, one at a time.
 
     Args:
         recordings: with hits found.
         window: applied to every hit alike.
+        levels: regress on the level of the hits as well, over the excited band; forces
+            are transformed once more for that.
 
     Returns:
         Sums of all pairs; the memory is that of one hit beside the sums.
@@ -189,12 +283,21 @@ def sum_hits(recordings: Sequence[Recording], window: HammerWindow) -> SpectralS
             a pair that was never measured together.
     """
     plan = plan_spectra(recordings)
-    adder = _Adder.of(plan.frequency.size)
+    lines = _level_lines(plan, window) if levels else None
+    adder = HitAdder.of(plan.frequency.size, lines)
     for (recording, hit), labels in zip(plan.chosen, plan.labels, strict=True):
         force = force_spectrum(recording, hit, window, plan.block)
         responses = response_spectra(recording, hit, window, plan.block)
         adder.add(force, responses, labels, hit.point)
     return _sums(adder, plan, [force_variance(*one) for one in plan.chosen])
+
+
+def _level_lines(plan: SpectraPlan, window: HammerWindow) -> LevelLines:
+    """Return the lines of the excited band; no spectrum is kept."""
+    power = np.zeros(plan.frequency.size)
+    for recording, hit in plan.chosen:
+        power += squared_size(force_spectrum(recording, hit, window, plan.block))
+    return LevelLines.between(plan.frequency, excited_band_of(power, plan.frequency))
 
 
 def sums_of_spectra(spectra: HitSpectra) -> SpectralSums:
@@ -203,7 +306,7 @@ def sums_of_spectra(spectra: HitSpectra) -> SpectralSums:
     Raises:
         ChannelMissing: a pair of output and input that was never measured together.
     """
-    adder = _Adder.of(spectra.frequency.size)
+    adder = HitAdder.of(spectra.frequency.size)
     rows = zip(
         spectra.force, spectra.response, spectra.labels, spectra.points, strict=True
     )
@@ -213,27 +316,32 @@ def sums_of_spectra(spectra: HitSpectra) -> SpectralSums:
 
 
 def _sums(
-    adder: _Adder, common: HitSpectra | SpectraPlan, variance: Sequence[float]
+    adder: HitAdder, common: HitSpectra | SpectraPlan, variance: Sequence[float]
 ) -> SpectralSums:
     outputs, inputs, pairs = pair_up(common)
-    # All hits of a pair measured one output from one input: the first names both.
-    first = [(int(pair.hits[0]), int(pair.rows[0])) for pair in pairs]
     return SpectralSums(
         frequency=common.frequency,
         outputs=outputs,
         inputs=inputs,
-        pairs=tuple(
-            adder.pairs[common.labels[hit][row], common.points[hit]]
-            for hit, row in first
-        ),
-        power=adder.power / adder.hits,
+        pairs=tuple(sums_of_pair(adder, common, pair) for pair in pairs),
+        power=adder.power / len(common.points),
         quantity=common.quantity,
         block=common.block,
         block_reason=common.block_reason,
         force_variance=np.array([np.mean(np.take(variance, p.hits)) for p in pairs]),
+        level_lines=adder.levels,
+        level=np.array(adder.level),
+        hits=tuple(pair.hits for pair in pairs),
     )
 
 
-def _power(values: ComplexArray) -> FloatArray:
-    """Return |values|^2 without the square root that abs takes."""
-    return np.asarray(values.real**2 + values.imag**2)
+def sums_of_pair(adder: HitAdder, common: LabelledHits, pair: Pair) -> PairSums:
+    """Return the sums of a pair that `pair_up` found; see `PairSums`.
+
+    Args:
+        adder: of all hits.
+        common: the hits.
+        pair: all of its hits measured one output from one input.
+    """
+    hit, row = int(pair.hits[0]), int(pair.rows[0])
+    return adder.pairs[common.labels[hit][row], common.points[hit]]

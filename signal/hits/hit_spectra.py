@@ -25,7 +25,7 @@ from jointbench.acquisition.records.recordings import (
 from jointbench.acquisition.records.stored_samples import remembered
 from jointbench.signal.hits.block_length import choose_block
 from jointbench.signal.hits.find_hits import accepted_hits
-from jointbench.signal.hits.hit_pairs import LabelledHits, Pair
+from jointbench.signal.hits.hit_pairs import LabelledHits
 from jointbench.signal.hits.windows import (
     HammerWindow,
     apply_window,
@@ -61,9 +61,9 @@ class HitSpectra:
     block: int
     block_reason: str
 
-    def responses(self, pair: Pair, inside: BoolArray) -> ComplexArray:
-        """Return the response spectra of a pair, shape (n_hits of it, n_inside)."""
-        return np.asarray(self.response[pair.hits, pair.rows][:, inside])
+    def responses(self, hit: int) -> Iterator[ComplexArray]:
+        """Yield the response spectra of a hit, shape (n_lines,) each."""
+        yield from self.response[hit]
 
 
 def hit_spectra(recordings: Sequence[Recording], window: HammerWindow) -> HitSpectra:
@@ -163,12 +163,13 @@ class HitForces:
     """Force spectra of all accepted hits; responses are transformed when asked for.
 
     Attributes:
-        frequency: [Hz], shape (n_lines,).
+        frequency: of the lines that were asked for [Hz], shape (n_lines,).
         force: [N s], shape (n_hits, n_lines).
         labels: for each hit, the label of each of its responses.
         points: for each hit, where the hammer struck.
         plan: hits and block.
         window: applied to every hit alike.
+        lines: which of those of the block.
     """
 
     frequency: FloatArray
@@ -177,35 +178,25 @@ class HitForces:
     points: tuple[str, ...]
     plan: SpectraPlan
     window: HammerWindow
+    lines: BoolArray
 
-    def responses(self, pair: Pair, inside: BoolArray) -> ComplexArray:
-        """Return the response spectra of a pair, shape (n_hits of it, n_inside)."""
-        found = np.empty((pair.hits.size, np.count_nonzero(inside)), complex)
-        for place, (number, row) in enumerate(zip(pair.hits, pair.rows, strict=True)):
-            recording, hit = self.plan.chosen[number]
-            rows = response_rows(recording)[row : row + 1]
-            (one,) = response_spectra(
-                recording, hit, self.window, self.plan.block, rows
-            )
-            found[place] = one[inside]
-        return found
+    def responses(self, hit: int) -> Iterator[ComplexArray]:
+        """Transform the responses of a hit, shape (n_lines,) each."""
+        recording, own = self.plan.chosen[hit]
+        for row in response_spectra(recording, own, self.window, self.plan.block):
+            yield row[self.lines]
 
-    def at(self, lines: BoolArray) -> HitSpectra:
-        """Return the spectra of all responses at some lines, read once.
-
-        Args:
-            lines: which, shape (n_lines,).
-        """
+    def whole(self) -> HitSpectra:
+        """Return the spectra with all responses, read once."""
         plan = self.plan
-        size = len(plan.chosen), len(plan.labels[0]), np.count_nonzero(lines)
+        size = len(plan.chosen), len(plan.labels[0]), self.frequency.size
         response = np.empty(size, complex)
-        for number, (recording, hit) in enumerate(plan.chosen):
-            others = response_spectra(recording, hit, self.window, plan.block)
-            for row, other in enumerate(others):
-                response[number, row] = other[lines]
+        for number in range(len(plan.chosen)):
+            for row, other in enumerate(self.responses(number)):
+                response[number, row] = other
         return HitSpectra(
-            frequency=plan.frequency[lines],
-            force=self.force[:, lines],
+            frequency=self.frequency,
+            force=self.force,
             response=response,
             labels=plan.labels,
             points=plan.points,
@@ -215,16 +206,24 @@ class HitForces:
         )
 
 
-def hit_forces(recordings: Sequence[Recording], window: HammerWindow) -> HitForces:
+def hit_forces(
+    plan: SpectraPlan, window: HammerWindow, lines: BoolArray | None = None
+) -> HitForces:
     """Transform the force of every accepted hit; see `hit_spectra`.
 
     The memory is that of one channel in place of all.
+
+    Args:
+        plan: of the hits.
+        window: applied to every hit.
+        lines: that are kept, shape (n_lines of the block,); None for all.
     """
-    plan = plan_spectra(recordings)
-    force = np.empty((len(plan.chosen), plan.frequency.size), complex)
+    kept = np.ones(plan.frequency.size, bool) if lines is None else lines
+    force = np.empty((len(plan.chosen), np.count_nonzero(kept)), complex)
     for number, (recording, hit) in enumerate(plan.chosen):
-        force[number] = force_spectrum(recording, hit, window, plan.block)
-    return HitForces(plan.frequency, force, plan.labels, plan.points, plan, window)
+        force[number] = force_spectrum(recording, hit, window, plan.block)[kept]
+    frequency = plan.frequency[kept]
+    return HitForces(frequency, force, plan.labels, plan.points, plan, window, kept)
 
 
 class ForcesOfHits(LabelledHits, Protocol):
@@ -238,8 +237,8 @@ class ForcesOfHits(LabelledHits, Protocol):
     def force(self) -> ComplexArray:
         """[N s], shape (n_hits, n_lines)."""
 
-    def responses(self, pair: Pair, inside: BoolArray) -> ComplexArray:
-        """Return the response spectra of a pair, shape (n_hits of it, n_inside)."""
+    def responses(self, hit: int) -> Iterator[ComplexArray]:
+        """Yield the response spectra of a hit, shape (n_lines,) each."""
 
 
 def join_spectra(parts: Sequence[HitSpectra]) -> HitSpectra:
@@ -284,8 +283,8 @@ def dead_channels(recording: Recording, hit: Hit) -> tuple[tuple[str, float], ..
     found = []
     for row in response_rows(recording):
         samples = recording.samples[row, hit.start : hit.stop]
-        size = max(abs(float(samples.max())), abs(float(samples.min())))
-        if float(np.ptp(samples)) <= _ROUNDING * size:
+        high, low = float(samples.max()), float(samples.min())
+        if high - low <= _ROUNDING * max(abs(high), abs(low)):
             found.append((recording.channels[row].name, float(samples[0])))
     return tuple(found)
 
@@ -302,11 +301,7 @@ def force_spectrum(
 
 
 def response_spectra(
-    recording: Recording,
-    hit: Hit,
-    window: HammerWindow,
-    block: int,
-    rows: Sequence[int] | None = None,
+    recording: Recording, hit: Hit, window: HammerWindow, block: int
 ) -> Iterator[ComplexArray]:
     """Yield the spectra of windowed responses, one channel at a time.
 
@@ -315,10 +310,9 @@ def response_spectra(
         hit: which.
         window: to apply.
         block: number of samples; a shorter hit is padded with zeros.
-        rows: of the responses, None for all.
     """
     stop, weights = _weights(recording, hit, window, block)
-    for row in response_rows(recording) if rows is None else rows:
+    for row in response_rows(recording):
         one = recording.samples[row, hit.start : stop]
         one = (one - one.mean()) * weights[1]
         spectrum = scipy.fft.rfft(one, block, overwrite_x=True)

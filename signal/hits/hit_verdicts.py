@@ -207,9 +207,9 @@ def _overload(
     recording: Recording, bound: tuple[int, int, int], limits: HitLimits, peak: float
 ) -> Judged | None:
     start, _, stop = bound
-    segment = recording.samples[:, start:stop]
-    for channel, samples in zip(recording.channels, segment, strict=True):
-        largest = float(np.abs(samples).max())
+    for row, channel in enumerate(recording.channels):
+        samples = recording.samples[row, start:stop]
+        largest = max(float(samples.max()), -float(samples.min()))
         if channel.range is not None:
             share = largest / channel.range
             if share >= limits.overload_fraction:

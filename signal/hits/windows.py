@@ -269,7 +269,6 @@ def _pulse_length(recording: Recording, hit: Hit) -> int:
     return peak + (int(low[0]) if low.size else 0) - trigger + 1
 
 
-@remembered
 def left_at_end(recording: Recording, hit: Hit, length: int | None = None) -> float:
     """Return the rms of the last tenth over that of the first, largest response.
 
@@ -282,14 +281,22 @@ def left_at_end(recording: Recording, hit: Hit, length: int | None = None) -> fl
         length: of the block in samples, None for the whole segment.
     """
     stop = hit.stop if length is None else min(hit.start + length, hit.stop)
-    rows = list(response_rows(recording))
-    response = recording.samples[rows, hit.trigger : stop]
-    response = response - response.mean(axis=1, keepdims=True)
-    tenth = max(1, response.shape[1] // 10)
-    start, middle, end = (
-        np.sqrt(np.mean(response[:, first : first + tenth] ** 2, axis=1))
-        for first in (0, 4 * tenth, response.shape[1] - tenth)
-    )
-    start = np.where(start > 0.0, start, 1.0)
-    floor = (end > 0.9 * middle) & (end < 0.5 * start)
-    return float(np.max(np.where(floor, 0.0, end / start)))
+    return _left_at(recording, hit.trigger, stop)
+
+
+@remembered
+def _left_at(recording: Recording, trigger: int, stop: int) -> float:
+    """Return what is left at `stop` of the responses to a hit at `trigger`."""
+    tenth = max(1, (stop - trigger) // 10)
+    found = 0.0
+    for row in response_rows(recording):
+        samples = recording.samples[row, trigger:stop]
+        mean = samples.mean()
+        start, middle, end = (
+            float(np.sqrt(np.mean((samples[first : first + tenth] - mean) ** 2)))
+            for first in (0, 4 * tenth, samples.size - tenth)
+        )
+        start = start or 1.0
+        floor = end > 0.9 * middle and end < 0.5 * start
+        found = max(found, 0.0 if floor else end / start)
+    return found

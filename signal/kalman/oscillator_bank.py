@@ -103,8 +103,8 @@ def has_dropouts(recording: Recording) -> bool:
 
 def _lost_spans(samples: FloatArray) -> list[tuple[int, int]]:
     """Return first and one past the last of each run of lost samples of a channel."""
-    still = np.diff(samples) == 0.0
-    if np.mean(~still) < _MOVING:
+    still = samples[1:] == samples[:-1]
+    if not still.any() or np.mean(~still) < _MOVING:
         return []
     runs, least = _runs(still), _least_still(still)
     # The first of equal samples may be the last good one; zero is not.

@@ -25,6 +25,7 @@ from jointbench.acquisition.basics.arrays import (
 )
 from jointbench.signal.modal.frf_lines import FrfLines
 from jointbench.signal.modal.normal_equations import (
+    combined,
     correlations,
     gram_matrices,
     inverses,
@@ -175,36 +176,51 @@ def fit_residues(
         Heylen, Lammens and Sas, Modal Analysis Theory and Testing (1997), A.3.3.
     """
     basis = modal_basis(lines, pole)
-    weight = 2.0 / variance
     used = np.ones(basis.shape[1], bool)
     if real_modes:
         used[: 2 * pole.size : 2] = False
-    some = np.ascontiguousarray(basis[:, used])
-    solved = inverses(gram_matrices(some, weight))
-    right = correlations(some, weight * lines.response)
+    solved, inverse = _solved(lines, basis[:, used], variance)
     n_frf, size = variance.shape[0], basis.shape[1]
-    coefficients, inverse = (
-        np.zeros((n_frf, size)),
-        np.tile(np.eye(size), (n_frf, 1, 1)),
+    coefficients = np.zeros((n_frf, size))
+    coefficients[:, used] = solved
+    whole = np.tile(np.eye(size), (n_frf, 1, 1))
+    whole[np.ix_(np.arange(n_frf), used, used)] = inverse
+    significance = wald_significance(coefficients, whole, pole.size)
+    return LinearFit(coefficients, combined(coefficients, basis), significance)
+
+
+def pole_significance(
+    lines: FrfLines, pole: ComplexArray, variance: FloatArray
+) -> FloatArray:
+    """Return the significance that `fit_residues` states, without its synthesis."""
+    return wald_significance(
+        *_solved(lines, modal_basis(lines, pole), variance), pole.size
     )
-    coefficients[:, used] = (solved @ right[:, :, None])[:, :, 0]
-    inverse[np.ix_(np.arange(n_frf), used, used)] = solved
-    modal = inverse[:, : 2 * pole.size, : 2 * pole.size]
-    significance = wald_significance(coefficients, modal)
-    return LinearFit(coefficients, coefficients @ basis.T, significance)
 
 
-def wald_significance(coefficients: FloatArray, inverse: FloatArray) -> FloatArray:
+def _solved(
+    lines: FrfLines, columns: ComplexArray, variance: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the coefficients of columns in every FRF, and their covariance."""
+    weight = 2.0 / variance
+    inverse = inverses(gram_matrices(columns, weight))
+    right = correlations(columns, weight * lines.response)
+    return (inverse @ right[:, :, None])[:, :, 0], inverse
+
+
+def wald_significance(
+    coefficients: FloatArray, inverse: FloatArray, n_modes: int
+) -> FloatArray:
     """Return the chi-squared of each residue against zero, summed over FRFs.
 
     Args:
         coefficients: residues first, shape (n_frf, n).
-        inverse: covariance of the residues, shape (n_frf, 2 n_modes, 2 n_modes).
+        inverse: covariance, residues first, shape (n_frf, n, n).
+        n_modes: number of residues.
 
     Returns:
         Shape (n_modes,).
     """
-    n_modes = inverse.shape[1] // 2
     pairs = coefficients[:, : 2 * n_modes].reshape(coefficients.shape[0], n_modes, 2)
     index = np.arange(2 * n_modes).reshape(n_modes, 2)
     blocks = inverse[:, index[:, :, None], index[:, None, :]]

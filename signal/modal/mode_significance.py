@@ -16,7 +16,7 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.acquisition.basics.tail_probabilities import chi2_limit
 from jointbench.signal.modal.frf_lines import FrfLines, measured_width
 from jointbench.signal.modal.line_noise import local_residual
-from jointbench.signal.modal.lsfd import fit_residues
+from jointbench.signal.modal.lsfd import fit_residues, pole_significance
 
 # Probability that noise anywhere in the band passes for a mode; every line is one test
 # (Bonferroni).
@@ -91,8 +91,8 @@ def significance(
     """
     local = local_residual(residual)
     everything = np.append(pole, beyond)
-    judged = fit_residues(lines, everything, np.maximum(noise, local))
-    apparent = np.nan_to_num(judged.significance[: pole.size])
+    judged = pole_significance(lines, everything, np.maximum(noise, local))
+    apparent = np.nan_to_num(judged[: pole.size])
     return np.asarray(apparent / _window_gain(lines, pole))
 
 

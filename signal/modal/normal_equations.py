@@ -30,25 +30,57 @@ def gram_matrices(columns: ComplexArray, weight: FloatArray) -> FloatArray:
         Shape (n_frf, n, n).
     """
     if weight.shape[0] <= _FEW_FRFS:
-        rows = stacked(columns)
-        scaled = (rows * np.sqrt(np.tile(w, 2))[:, None] for w in weight)
-        return np.array([part.T @ part for part in scaled])
+        rows = _as_real(columns.T)
+        scaled = (rows * np.repeat(np.sqrt(w), 2) for w in weight)
+        return np.array([part @ part.T for part in scaled])
     size = columns.shape[1]
     upper = np.triu_indices(size)
     packed = np.zeros((weight.shape[0], upper[0].size))
+    real, imag = (np.ascontiguousarray(p.T) for p in (columns.real, columns.imag))
+    pairs, other = (np.empty((n, _LINES_AT_ONCE)) for n in (upper[0].size, size))
     for first in range(0, columns.shape[0], _LINES_AT_ONCE):
-        part = np.ascontiguousarray(columns[first : first + _LINES_AT_ONCE].T)
-        real, imag = part.real.copy(), part.imag.copy()
-        pairs = [real[i] * real[i:] + imag[i] * imag[i:] for i in range(size)]
-        packed += weight[:, first : first + part.shape[1]] @ np.vstack(pairs).T
+        here = slice(first, first + _LINES_AT_ONCE)
+        count = real[0, here].size
+        _products(real[:, here], imag[:, here], pairs[:, :count], other[:, :count])
+        packed += weight[:, here] @ pairs[:, :count].T
     gram = np.empty((weight.shape[0], size, size))
     gram[:, upper[0], upper[1]] = gram[:, upper[1], upper[0]] = packed
     return gram
 
 
+def _products(
+    real: FloatArray, imag: FloatArray, pairs: FloatArray, other: FloatArray
+) -> None:
+    """Form the products of each column with itself and those after it, in place.
+
+    Args:
+        real: parts of the columns, shape (n, n_lines).
+        imag: same shape.
+        pairs: receives the products, shape (n (n + 1) / 2, n_lines).
+        other: room for one column's, shape (n, n_lines).
+    """
+    first = 0
+    for i in range(real.shape[0]):
+        past = first + real.shape[0] - i
+        np.multiply(real[i], real[i:], out=pairs[first:past])
+        pairs[first:past] += np.multiply(imag[i], imag[i:], out=other[i:])
+        first = past
+
+
 def correlations(columns: ComplexArray, values: ComplexArray) -> FloatArray:
     """Return Re(columns^H values) row by row, shape (n_frf, n)."""
-    return np.asarray((values @ columns.conj()).real)
+    return np.asarray(_as_real(values) @ _as_real(columns.T).T)
+
+
+def combined(coefficients: FloatArray, columns: ComplexArray) -> ComplexArray:
+    """Return columns with real coefficients, row by row, shape (n_frf, n_lines)."""
+    made = coefficients @ _as_real(columns.T)
+    return np.asarray(made.view(np.complex128))
+
+
+def _as_real(values: ComplexArray) -> FloatArray:
+    """Return rows with real and imaginary parts in turn: half the work of complex."""
+    return np.ascontiguousarray(values).view(np.float64)
 
 
 def inverses(gram: FloatArray) -> FloatArray:

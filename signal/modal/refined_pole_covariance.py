@@ -8,11 +8,16 @@ searched (Golub and Pereyra; Kaufman's Jacobian). With per-line variances this i
 maximum likelihood.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import BoolArray, ComplexArray, FloatArray
+from jointbench.acquisition.basics.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    squared_size,
+)
 from jointbench.signal.modal.frf_lines import FrfLines, gaps_of, measured_width
 from jointbench.signal.modal.line_noise import residual_around
 from jointbench.signal.modal.lsfd import (
@@ -22,6 +27,7 @@ from jointbench.signal.modal.lsfd import (
     wald_significance,
 )
 from jointbench.signal.modal.normal_equations import (
+    combined,
     correlations,
     gram_matrices,
     inverses,
@@ -43,6 +49,10 @@ _NEXT_TO_ZERO = 0.1
 _LEAST_DECAY, _MOST_DECAY, _LEAST_PLACE = 5e-4, 0.3, 0.2
 # Damping of the step above which the pole is dropped instead.
 _PATIENCE = 1.0
+# Damping up to which a step is that of Gauss and Newton, chi-squared of a value up to
+# which the residual is noise, a step that is small over the half-power half-width, and
+# what it may leave of a standard deviation: then the optimum is one step away.
+_NEWTON, _NOISE_ONLY, _NEAR, _NEGLIGIBLE = 1e-3, 1.5, 1e-3, 1e-2
 _STUCK = 1e6
 
 
@@ -95,8 +105,9 @@ class RefinedPoles:
 class _Point:
     """Cost and normal equations at one set of poles.
 
-    Residues follow the poles: `residue_noise` is their covariance at fixed poles, shape
-    (n_frf, 2 n_modes, 2 n_modes), `residue_slope` their change with (Re p, Im p).
+    Residues and residual terms follow the poles: `residue_noise` is the covariance of
+    residues at fixed poles, shape (n_frf, 2 n_modes, 2 n_modes), `slope` the change of
+    all coefficients with (Re p, Im p), shape (n_frf, n_linear, 2 n_modes).
     """
 
     cost: float
@@ -105,7 +116,7 @@ class _Point:
     residual: ComplexArray
     coefficients: FloatArray
     residue_noise: FloatArray
-    residue_slope: FloatArray
+    slope: FloatArray
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -173,13 +184,13 @@ def refine_poles(
         _own_blocks(joint)[:n_modes],
         residual_around(lines, own, here.residual, variance),
         converged[:n_modes],
-        Linearised(joint, here.residue_noise, here.residue_slope),
+        Linearised(joint, here.residue_noise, here.slope[:, : 2 * pole.size]),
         pole[n_modes:],
         here.residual,
         LinearFit(
             here.coefficients,
             lines.response - here.residual,
-            wald_significance(here.coefficients, here.residue_noise),
+            wald_significance(here.coefficients, here.residue_noise, pole.size),
         ),
     )
 
@@ -196,9 +207,13 @@ def _search(
     here, settled = _evaluate(lines, pole, variance), False
     moved = np.full(pole.size, np.inf)
     for _ in range(steps):
-        trial = pole + np.where(free, _step(here, prior, pole, free, damping), 0.0)
+        trial, gain = _stepped(here, prior, pole, free, damping)
         trial[prior.n_modes :] = _kept_beyond(lines, prior, pole, trial)
         lost = _lost(lines, trial, prior)
+        if damping <= _NEWTON and not lost.any():
+            moved = np.abs(trial - pole) / measured_width(lines, pole)
+            if _is_last(moved, gain, here):
+                return trial, _moved_on(lines, here, pole, trial - pole), free
         if lost.any() and damping > _PATIENCE:
             pole, free = np.where(lost, prior.start, pole), free & ~lost
             here, damping = _evaluate(lines, pole, variance), 1e-3
@@ -211,14 +226,50 @@ def _search(
             settled = damping > _STUCK
         else:
             moved = np.abs(trial - pole) / measured_width(lines, pole)
-            gained = here.cost - there.cost
-            unit = max(1.0, there.cost / (2.0 * lines.response.size))
+            settled = _is_small(moved, here.cost - there.cost, there, prior)
             pole, here, damping = trial, there, max(damping / 10.0, 1e-9)
-            settled = bool(np.all(moved[: prior.n_modes] < _SMALL_STEP))
-            settled &= gained < _SMALL_GAIN * unit
         if settled:
             break
     return pole, here, free & (settled | (moved < _SETTLED))
+
+
+def _is_small(moved: FloatArray, gain: float, here: _Point, prior: _Prior) -> bool:
+    """Return whether a step changes nothing that the noise would not.
+
+    Args:
+        moved: by each pole, over its half-power half-width.
+        gain: of chi-squared.
+        here: one end of the step.
+        prior: knows which poles are modes.
+    """
+    unit = max(1.0, here.cost / (2.0 * here.residual.size))
+    slight = bool(np.all(moved[: prior.n_modes] < _SMALL_STEP))
+    return slight and gain < _SMALL_GAIN * unit
+
+
+def _is_last(moved: FloatArray, gain: float, here: _Point) -> bool:
+    """Return whether the optimum is one Gauss-Newton step away.
+
+    What a step leaves is about its square, both over the half-power half-width, where
+    the residual is noise; over the standard deviation of the pole, which is the step
+    over the root of its gain, that is the step times that root.
+    """
+    unit = here.cost / (2.0 * here.residual.size)
+    largest = float(np.max(moved, initial=0.0))
+    left = largest * np.sqrt(max(gain, 0.0))
+    return bool(unit < _NOISE_ONLY and largest < _NEAR and left < _NEGLIGIBLE)
+
+
+def _moved_on(
+    lines: FrfLines, here: _Point, pole: ComplexArray, change: ComplexArray
+) -> _Point:
+    """Return the point after the last step, to first order."""
+    step = change.view(np.float64)
+    turn = slope_turns(here.coefficients[:, : step.size])
+    coefficients = here.coefficients + here.slope @ step
+    fitted = combined(coefficients, modal_basis(lines, pole))
+    fitted += combined(turn @ step, pole_slopes(lines, pole))
+    return replace(here, coefficients=coefficients, residual=lines.response - fitted)
 
 
 def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Point:
@@ -235,7 +286,7 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
     inverse = inverses(products[:, :n_linear, :n_linear])
     right = correlations(columns[:, :n_linear], weight * lines.response)
     solved = (inverse @ right[:, :, None])[:, :, 0]
-    residual = lines.response - solved @ columns[:, :n_linear].T
+    residual = lines.response - combined(solved, columns[:, :n_linear])
     turn = slope_turns(solved[:, :n_poles])
     overlap = products[:, :n_linear, n_linear:] @ turn
     gram = _transposed(turn) @ products[:, n_linear:, n_linear:] @ turn
@@ -243,13 +294,13 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
     # The error is orthogonal to the linear columns: the projection drops out.
     slope = correlations(columns[:, n_linear:], weight * residual)
     return _Point(
-        cost=float(np.sum(weight * np.abs(residual) ** 2)),
+        cost=float(np.vdot(weight, squared_size(residual))),
         gram=np.sum(gram, axis=0),
         gradient=np.einsum("fij,fi->j", turn, slope),
         residual=residual,
         coefficients=solved,
         residue_noise=inverse[:, :n_poles, :n_poles],
-        residue_slope=-(inverse[:, :n_poles] @ overlap),
+        slope=-(inverse @ overlap),
     )
 
 
@@ -281,18 +332,21 @@ def slope_turns(residue: FloatArray) -> FloatArray:
     return turn
 
 
-def _step(
+def _stepped(
     here: _Point, prior: _Prior, pole: ComplexArray, free: BoolArray, damping: float
-) -> ComplexArray:
-    """Return the Levenberg-Marquardt step of the free poles."""
+) -> tuple[ComplexArray, float]:
+    """Return the poles after a Levenberg-Marquardt step, and its gain to first order.
+
+    Poles that are not free stay.
+    """
     movable, weight = np.repeat(free, 2), np.repeat(prior.weight, 2)
     gram = here.gram + np.diag(weight)
     gram = np.where(np.outer(movable, movable), gram, 0.0)
     gram += np.diag(damping * np.diag(gram) + ~movable)
     away = (prior.start - pole).view(np.float64)
     force = np.where(movable, here.gradient + weight * away, 0.0)
-    change = inverses(gram) @ force
-    return np.asarray(change.view(np.complex128))
+    change = np.where(movable, inverses(gram) @ force, 0.0)
+    return pole + change.view(np.complex128), float(force @ change)
 
 
 def _kept_beyond(

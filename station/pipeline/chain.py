@@ -22,7 +22,12 @@ from jointbench.signal.amplitude.amplitude_curve import AmplitudeMode
 from jointbench.signal.amplitude.amplitude_modes import amplitude_modes
 from jointbench.signal.amplitude.resolved_model import resolved_model
 from jointbench.signal.frf.estimators import Estimator
-from jointbench.signal.frf.frf import Frf, estimate_frf
+from jointbench.signal.frf.frf import Frf
+from jointbench.signal.frf.measured_frf import (
+    LevelCheck,
+    MeasuredFrf,
+    measure_frf,
+)
 from jointbench.signal.hits.find_hits import HitCriteria
 from jointbench.signal.hits.pulse_duration import time_scale_words
 from jointbench.signal.hits.windows import WindowRequest, requested_window
@@ -79,6 +84,8 @@ class ModalChain:
         result: modes, stabilisation and synthesis.
         provenance: every step from the recordings to the modes.
         amplitude: the modes over their amplitude; empty where that was not looked at.
+        levels: whether the FRF depends on the level of the hits; None where no hits
+            were looked at.
     """
 
     recordings: tuple[Recording, ...]
@@ -86,6 +93,7 @@ class ModalChain:
     result: ModalResult
     provenance: Provenance
     amplitude: tuple[AmplitudeMode, ...] = ()
+    levels: LevelCheck | None = None
 
 
 def run_chain(
@@ -182,11 +190,23 @@ def modal_chain(
         BadData: no usable hit, channels missing, or no mode above the noise.
     """
     at = at_words(preload)
-    frf = _frf_stage(judged, settings, run, at)
-    result = _modes_stage(frf, settings, run, at)
+    measured = _frf_stage(judged, settings, run, at)
+    result = _modes_stage(measured.frf, settings, run, at)
     filled = _fill_stage(judged, result, settings, run, at)
-    whole = ModalChain(tuple(judged), frf, result, result.model.provenance)
+    whole = _chain_of(judged, measured, result)
     return _amplitude_stage(filled[0] if filled else whole, run, at)
+
+
+def _chain_of(
+    recordings: Sequence[Recording], measured: MeasuredFrf, result: ModalResult
+) -> ModalChain:
+    return ModalChain(
+        tuple(recordings),
+        measured.frf,
+        result,
+        result.model.provenance,
+        levels=measured.levels,
+    )
 
 
 def _amplitude_stage(chain: ModalChain, run: StageRun, at: str) -> ModalChain:
@@ -270,7 +290,7 @@ def _recorded(recording: Recording) -> tuple[object, ...]:
 
 def _frf_stage(
     judged: Sequence[Recording], settings: ChainSettings, run: StageRun, at: str
-) -> Frf:
+) -> MeasuredFrf:
     """Estimate the FRF of recordings with judged hits, and the noise in each."""
     for recording in judged:
         survey(recording, settings.kalman)
@@ -283,8 +303,8 @@ def _frf_stage(
     return stages.run(
         f"frf{at}",
         stages.key("frf", [settings.window, settings.estimator.value], found, *keys),
-        Frf,
-        lambda: _chain_frf(
+        MeasuredFrf,
+        lambda: _measured(
             [_kalman_stage(*p, settings, run) for p in zip(judged, keys, strict=True)],
             settings,
         ),
@@ -346,9 +366,9 @@ def _filled(
         )
         if all(new is old for new, old in zip(repaired, judged, strict=True)):
             return chain
-        frf = _chain_frf([_observed(r, settings) for r in repaired], settings)
-        result = identify_modes(frf, settings.modal, progress=progress)
-        chain = (ModalChain(repaired, frf, result, result.model.provenance),)
+        measured = _measured([_observed(r, settings) for r in repaired], settings)
+        result = identify_modes(measured.frf, settings.modal, progress=progress)
+        chain = (_chain_of(repaired, measured, result),)
     return chain
 
 
@@ -359,7 +379,7 @@ def _observed(recording: Recording, settings: ChainSettings) -> Recording:
     return replace(recording, provenance=(*recording.provenance, seen))
 
 
-def _chain_frf(recordings: Sequence[Recording], settings: ChainSettings) -> Frf:
+def _measured(recordings: Sequence[Recording], settings: ChainSettings) -> MeasuredFrf:
     """Estimate the FRF of recordings whose noise the Kalman stage has seen."""
     window = requested_window(recordings, settings.window)
-    return estimate_frf(recordings, window=window, estimator=settings.estimator)
+    return measure_frf(recordings, window=window, estimator=settings.estimator)

@@ -29,10 +29,10 @@ CALLERS = (
 STAGE_MODULES = {
     "hits": ("station.pipeline.judge_again",),
     "kalman": ("signal.kalman.smoothing", "signal.hits.windows"),
-    "frf": ("signal.frf.frf", "signal.hits.windows"),
+    "frf": ("signal.frf.measured_frf", "signal.hits.windows"),
     "modes": ("signal.modal.modes",),
     "fill": (
-        "signal.frf.frf",
+        "signal.frf.measured_frf",
         "signal.kalman.smoothing",
         "signal.modal.modes",
         "signal.kalman.oscillator_bank",

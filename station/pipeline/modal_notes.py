@@ -6,16 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.frf.beyond_band import Beyond, look_beyond
 from jointbench.signal.frf.frf_of_functions import noise_source
-from jointbench.signal.frf.linearity import Linearity, check_linearity
+from jointbench.signal.frf.linearity import Linearity
+from jointbench.signal.frf.measured_frf import check_levels
 from jointbench.signal.hits.find_hits import accepted_hits
 from jointbench.signal.hits.hit_pairs import point_of
-from jointbench.signal.hits.hit_spectra import hit_forces
 from jointbench.signal.hits.pulse_duration import time_scale_words
-from jointbench.signal.hits.windows import choose_window, join_windows
 from jointbench.signal.modal.data_limits import (
     block_words,
     mode_words,
@@ -67,15 +65,13 @@ def modal_notes(chain: ModalChain) -> ModalNotes:
     if not chain.recordings:
         return _frf_notes(chain)
     judged = [r for r in chain.recordings if accepted_hits(r)]
-    window = join_windows([choose_window(recording) for recording in judged])
-    spectra = hit_forces(judged, window)
-    try:
-        linearity, unchecked = check_linearity(spectra), ""
-    except BadData as error:
-        linearity, unchecked = None, str(error)
-    beyond = look_beyond(chain.frf, chain.result.band, spectra)
+    levels = chain.levels or check_levels(judged)
+    power = np.interp(chain.frf.frequency, levels.frequency, levels.force_power)
+    beyond = look_beyond(chain.frf, chain.result.band, power)
     possible = (*chain.result.remarks, *_reciprocal_words(chain, judged))
-    return ModalNotes(beyond, linearity, unchecked, limit_words(chain), (), possible)
+    return ModalNotes(
+        beyond, levels.linearity, levels.unchecked, limit_words(chain), (), possible
+    )
 
 
 def _reciprocal_words(

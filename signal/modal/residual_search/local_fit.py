@@ -32,6 +32,7 @@ from jointbench.signal.modal.lsfd import (
     modal_size,
 )
 from jointbench.signal.modal.normal_equations import (
+    combined,
     correlations,
     gram_matrices,
     inverses,
@@ -116,16 +117,19 @@ def group_around(
     near |= outer & bool(keep[0]) & (whole.pole.imag < places[0])
     near &= ~outer | with_beyond
     index = np.flatnonzero(near)
-    own = _contribution(whole, index, keep)
+    kept = np.flatnonzero(keep)
+    if kept[-1] - kept[0] == kept.size - 1:  # without a gap nothing is copied
+        part: slice | IntArray = slice(int(kept[0]), int(kept[-1]) + 1)
+    else:
+        part = kept
+    residual = whole.residual[:, part]
+    lines = FrfLines(whole.lines.laplace[part], residual, whole.lines.derivatives)
+    own = _contribution(whole, index, lines)
     return Group(
-        FrfLines(
-            whole.lines.laplace[keep],
-            whole.residual[:, keep] + own,
-            whole.lines.derivatives,
-        ),
-        whole.noise[:, keep],
-        whole.variance[:, keep],
-        whole.residual[:, keep],
+        FrfLines(lines.laplace, residual + own, lines.derivatives),
+        whole.noise[:, part],
+        whole.variance[:, part],
+        residual,
         index[index < whole.n_modes],
         index[index >= whole.n_modes],
     )
@@ -143,16 +147,11 @@ def _enough_lines(whole: WholeFit, omega: float, reach: float) -> BoolArray:
         reach *= 1.3
 
 
-def _contribution(whole: WholeFit, index: IntArray, keep: BoolArray) -> ComplexArray:
-    """Return what some poles add to the kept lines, shape (n_frf, n_kept)."""
-    lines = FrfLines(
-        whole.lines.laplace[keep],
-        whole.lines.response[:, keep],
-        whole.lines.derivatives,
-    )
-    basis = modal_basis(lines, whole.pole[index])[:, : 2 * index.size]
+def _contribution(whole: WholeFit, index: IntArray, lines: FrfLines) -> ComplexArray:
+    """Return what some poles add to the FRFs on lines, shape (n_frf, n_lines)."""
     columns = (2 * index[:, None] + np.arange(2)).ravel()
-    return np.asarray(whole.fit.coefficients[:, columns] @ basis.T)
+    shapes = modal_columns(lines, whole.pole[index])
+    return combined(whole.fit.coefficients[:, columns], shapes)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

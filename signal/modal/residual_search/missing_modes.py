@@ -122,7 +122,9 @@ def _likeness(whole: WholeFit, decays: Sequence[float]) -> FloatArray:
     pitch = float(np.median(np.diff(omega)))
     away = pitch * np.arange(-omega.size + 1, omega.size)
     size = scipy.fft.next_fast_len(2 * omega.size)
-    weighted = scipy.fft.fft(whole.residual / np.sqrt(whole.noise), size, axis=1)
+    # Single precision: this chooses where to look.
+    white = (whole.residual / np.sqrt(whole.noise)).astype(np.complex64)
+    weighted = scipy.fft.fft(white, size, axis=1)
     ones = scipy.fft.fft(np.ones(omega.size), size)
     found = []
     for decay in decays:
@@ -131,9 +133,10 @@ def _likeness(whole: WholeFit, decays: Sequence[float]) -> FloatArray:
         turned = np.zeros(size, complex)
         turned[: omega.size] = shape[omega.size - 1 :: -1].conj()
         turned[size - omega.size + 1 :] = shape[: omega.size - 1 : -1].conj()
-        alike = scipy.fft.ifft(weighted * scipy.fft.fft(turned), axis=1)
+        filtered = weighted * scipy.fft.fft(turned.astype(np.complex64))
+        alike = scipy.fft.ifft(filtered, axis=1, overwrite_x=True)
         total = scipy.fft.ifft(ones * scipy.fft.fft(np.abs(turned) ** 2)).real
-        power = np.sum(np.abs(alike[:, : omega.size]) ** 2, axis=0)
+        power = np.sum(np.abs(alike[:, : omega.size]) ** 2, axis=0, dtype=float)
         found.append(2.0 * power / total[: omega.size])
     return np.array(found)
 

@@ -28,7 +28,8 @@ def beyond(structure: Make, hammered: Make) -> Callable[..., Beyond]:
         )
         frf = estimate_frf(record)
         fitted = band or identify_modes(frf, ModalSettings(highest_order=30)).band
-        return look_beyond(frf, fitted, hit_spectra([record], choose_window(record)))
+        force = hit_spectra([record], choose_window(record)).force
+        return look_beyond(frf, fitted, np.mean(np.abs(force) ** 2, axis=0))
 
     return make
 

@@ -6,14 +6,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import uniform_filter1d
 
 from jointbench.acquisition.records.recordings import Channel, Quantity, Recording
 from jointbench.signal.frf.estimators import estimate_pair
+from jointbench.signal.frf.excited_band import excited_band
 from jointbench.signal.frf.frf import estimate_frf
-from jointbench.signal.frf.linearity import check_linearity
+from jointbench.signal.frf.linearity import check_linearity, linearity_of_sums
 from jointbench.signal.frf.spectral_sums import PairSums, force_update, sum_hits
 from jointbench.signal.hits.find_hits import find_hits
-from jointbench.signal.hits.hit_spectra import hit_forces, hit_spectra
+from jointbench.signal.hits.hit_spectra import (
+    HitSpectra,
+    hit_forces,
+    hit_spectra,
+    plan_spectra,
+)
 from jointbench.signal.hits.windows import choose_window
 from jointbench.signal.kalman.smoothing import observe_noise, smooth_recording
 
@@ -63,14 +70,40 @@ def test_a_line_without_force_keeps_its_response_as_scatter():
     assert sums.scatter.tolist() == [4.0, 0.0]
 
 
-def test_linearity_needs_one_response_at_a_time():
-    """The same numbers from forces alone as from all spectra."""
-    judged = [find_hits(recording(i)) for i in range(4)]
+def regression_at_once(spectra: HitSpectra, band: tuple[float, float]) -> float:
+    """Return F of the slopes of all pairs on one level, by weighted least squares."""
+    inside = (spectra.frequency >= band[0]) & (spectra.frequency <= band[1])
+    force = spectra.force[:, inside]
+    level = np.log2(np.sqrt(np.mean(np.abs(force) ** 2, axis=1)))
+    weight = np.abs(force) ** 2
+    total = weight.sum(axis=0)
+    away = level[:, None] - (weight * level[:, None]).sum(axis=0) / total
+    lever = (weight * away**2).sum(axis=0)
+    ratios = []
+    for row in range(spectra.response.shape[1]):
+        frf = spectra.response[:, row][:, inside] / force
+        mean = (weight * frf).sum(axis=0) / total
+        slope = (weight * away * frf).sum(axis=0) / lever
+        left = (weight * np.abs(frf - mean - away * slope) ** 2).sum(axis=0)
+        noise = uniform_filter1d(left / (len(level) - 2) / lever, 41, mode="nearest")
+        ratios.append(np.abs(slope) ** 2 / noise)
+    return float(np.mean(ratios))
+
+
+def test_the_regression_on_level_is_that_of_all_hits_at_once():
+    """Hit by hit from a recording as from all spectra, in the excited band."""
+    judged = [find_hits(recording(i)) for i in range(5)]
     window = choose_window(judged[0])
-    one = check_linearity(hit_spectra(judged, window))
-    other = check_linearity(hit_forces(judged, window))
-    assert other.f_value == pytest.approx(one.f_value, rel=1e-9)
-    assert other.hits == one.hits == 4
+    spectra = hit_spectra(judged, window)
+    wanted = regression_at_once(spectra, excited_band(spectra))
+    one = check_linearity(spectra)
+    other = check_linearity(hit_forces(plan_spectra(judged), window))
+    sums = linearity_of_sums(sum_hits(judged, window, levels=True))
+    for found in (one, other, sums):
+        assert found.f_value == pytest.approx(wanted, rel=1e-8)
+        assert found.significance == pytest.approx(one.significance, rel=1e-6)
+        assert found.hits == 5
+    np.testing.assert_allclose(sums.change, one.change, rtol=1e-9)
 
 
 def test_the_gain_of_the_kalman_stage_cancels_in_the_frf():
