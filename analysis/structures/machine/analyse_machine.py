@@ -103,6 +103,7 @@ def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> Machine
         size=(machine.assembled.model.size, lean.model.size),
         bound=float((bound / frequency).max()),
         turn=lean.turn,
+        speeds=machine.speeds,
     )
 
 
@@ -112,7 +113,9 @@ def _variant_result(
     state = lean.state(variant)
     poles = state.poles
     tool = _receptance(lean, poles, request)
-    tool = replace(tool, bound=direct_bound(lean, variant, state, request.tool, tool))
+    if not lean.gyroscopic.any():
+        bound = direct_bound(lean, variant, state, request.tool, tool)
+        tool = replace(tool, bound=bound)
     motion = None
     if request.span is not None:
         few = poles.lowest(request.span.poles)
