@@ -23,13 +23,15 @@ from jointbench.station.machine.machine_file import (
     MachineModel,
     machine_of,
     settings_of,
+    speeds_of,
     springs_of,
 )
 
 # Tables of the model that a reduction depends on, whole.
-_WHOLE = ("materials", "beams", "rigid", "supports", "masses", "points")
-# What of a joint or spring only multiplies its matrices.
+_WHOLE = ("materials", "supports", "masses", "points")
+# What of joints, springs and turning bodies only multiplies their matrices.
 _VALUES = {
+    "speed",
     "stiffness",
     "damping",
     "rotational_stiffness",
@@ -57,7 +59,9 @@ def reduced_machine_of(
     if cache is None:
         return reduce_machine(machine_of(model, folder), band)
     key = machine_key(model, folder)
-    found = read_machine(cache, key, settings_of(model), springs_of(model))
+    found = read_machine(
+        cache, key, settings_of(model), springs_of(model), speeds_of(model)
+    )
     if found is None:
         found = reduce_machine(machine_of(model, folder), band, cache=cache)
         write_machine(cache, key, found)
@@ -77,13 +81,11 @@ def machine_key(model: MachineModel, folder: Path) -> str:
         name: table | {one: _content(folder, table[one]) for one in _FILES}
         for name, table in every["bodies"].items()
     }
-    parts["joints"], parts["springs"] = (
-        {
+    for kind in ("joints", "springs", "beams", "rigid"):
+        parts[kind] = {
             name: {key: one for key, one in table.items() if key not in _VALUES}
             for name, table in every[kind].items()
         }
-        for kind in ("joints", "springs")
-    )
     parts["band"] = model.analysis.band
     text = json.dumps([CACHE_VERSION, parts], sort_keys=False)
     return "machine-" + hashlib.sha256(text.encode()).hexdigest()

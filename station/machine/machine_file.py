@@ -135,7 +135,7 @@ def machine_of(model: MachineModel, folder: Path) -> Machine:
         structure=structure,
         beams=tuple(_beam(name, one, model) for name, one in model.beams.items()),
         rigid=tuple(
-            RigidPart(name, one.position, one.mass, one.inertia)
+            RigidPart(name, one.position, one.mass, one.inertia, one.axis)
             for name, one in model.rigid.items()
         ),
         settings=settings_of(model),
@@ -144,7 +144,17 @@ def machine_of(model: MachineModel, folder: Path) -> Machine:
             name: MachinePoint(one.body, one.position)
             for name, one in model.points.items()
         },
+        speeds=speeds_of(model),
     )
+
+
+def speeds_of(model: MachineModel) -> dict[str, float]:
+    """Return the speeds of the bodies that turn, by name [rad/s]."""
+    return {
+        name: 2.0 * np.pi * one.speed
+        for name, one in (*model.beams.items(), *model.rigid.items())
+        if one.speed
+    }
 
 
 def settings_of(model: MachineModel) -> dict[str, JointSetting]:

@@ -54,6 +54,7 @@ def machine_json(result: MachineResult) -> dict[str, Any]:
         "degrees_of_freedom": result.freedoms,
         "reduced_degrees_of_freedom": result.size[0],
         "largest_frequency_bound": result.bound,
+        "speeds_rad_per_s": dict(result.speeds),
     }
 
 

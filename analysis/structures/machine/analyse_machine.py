@@ -55,6 +55,8 @@ _SAME_SHAPE, _SAME_FREQUENCY = 0.5, 1.4
 _SPEEDS = 600
 # Lines are spaced evenly in the logarithm from this share of the band.
 _LOWEST_LINE = 0.002
+# Least damping ratio of the lines around a pole, and their offset.
+_BESIDE = 1e-4
 
 
 def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> MachineResult:
@@ -103,6 +105,7 @@ def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> Machine
         size=(machine.assembled.model.size, lean.model.size),
         bound=float((bound / frequency).max()),
         turn=lean.turn,
+        speeds=machine.speeds,
     )
 
 
@@ -112,7 +115,9 @@ def _variant_result(
     state = lean.state(variant)
     poles = state.poles
     tool = _receptance(lean, poles, request)
-    tool = replace(tool, bound=direct_bound(lean, variant, state, request.tool, tool))
+    if not lean.gyroscopic.any():
+        bound = direct_bound(lean, variant, state, request.tool, tool)
+        tool = replace(tool, bound=bound)
     motion = None
     if request.span is not None:
         few = poles.lowest(request.span.poles)
@@ -189,7 +194,9 @@ def _lines(request: MachineRequest, poles: PoleSet) -> FloatArray:
         return even
     each = max(5, request.lines // (2 * peaks.size))
     around = np.sinh(np.linspace(-3.0, 3.0, each)) / np.sinh(3.0) * 8.0
-    close = (peaks[:, None] * (1.0 + np.minimum(ratio, 0.1)[:, None] * around)).ravel()
+    # On an undamped pole there is no receptance: the middle line is beside it.
+    width = np.clip(ratio, _BESIDE, 0.1)[:, None]
+    close = (peaks[:, None] * (1.0 + width * (around + _BESIDE))).ravel()
     close = close[(close > low) & (close < request.band_hz)]
     return np.unique(np.concatenate([even, close]))
 

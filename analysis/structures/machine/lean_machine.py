@@ -60,7 +60,8 @@ class VariantState:
     Attributes:
         eigenvalue: [1/s^2], shape (n,).
         shapes: columns, orthonormal, shape (r, n).
-        damping: phi' C phi, loss of the bodies included [1/s], shape (n, n).
+        damping: phi' C phi, loss of the bodies and gyroscopic moments included [1/s],
+            shape (n, n).
         loss_damping: the part of each mode that is loss of the bodies [1/s], shape
             (n,).
         rows: motion x, y, z of all points in each mode, shape (n_rows, n).
@@ -96,12 +97,14 @@ class LeanMachine:
         model: in these coordinates.
         turn: from them to those of the assembly, shape (n, r).
         points: motion x, y, z of each point, shape (3, r), by name.
+        gyroscopic: of the bodies that turn [1/s], shape (r, r).
     """
 
     machine: ReducedMachine
     model: ReducedModel
     turn: FloatArray
     points: Mapping[str, FloatArray]
+    gyroscopic: FloatArray
 
     def state(self, variant: Variant, modes: int | None = None) -> VariantState:
         """Return the undamped modes of a variant.
@@ -121,7 +124,7 @@ class LeanMachine:
         shapes = found.shapes
         flex = self.model.spread.between(shapes)[: variant.damping.size]
         damping = np.tensordot(variant.damping, flex, 1)
-        damping += shapes.T @ self.model.damping @ shapes
+        damping += shapes.T @ (self.model.damping + self.gyroscopic) @ shapes
         loss = viscous_loss(found.eigenvalue, shapes.T @ self.model.loss @ shapes)
         damping += np.diag(loss)
         rows = np.concatenate(list(self.points.values()))
@@ -173,6 +176,7 @@ def lean_machine(machine: ReducedMachine, band_hz: float) -> LeanMachine:
         whole.restricted(turn),
         turn,
         {name: own @ turn for name, own in machine.points.items()},
+        turn.T @ machine.gyroscopic @ turn,
     )
 
 

@@ -49,12 +49,16 @@ _MATRICES = ("stiffness", "damping")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RawBody:
-    """A body before its reduction: matrices, rigid motions, surfaces, ports."""
+    """A body before its reduction: matrices, rigid motions, surfaces, ports.
+
+    `gyroscopic` is that of a turn about its axis at 1 rad/s; None is none.
+    """
 
     matrices: BodyMatrices
     motions: FloatArray
     surfaces: tuple[tuple[str, Surface], ...]
     ports: list[BodyPort]
+    gyroscopic: Sparse | None = None
 
 
 def solid_bodies(machine: Machine) -> tuple[dict[str, RawBody], tuple[PortJoint, ...]]:
@@ -105,7 +109,11 @@ def beam_bodies(machine: Machine) -> dict[str, RawBody]:
             source=BodySource.MATRICES,
         )
         found[beam.name] = RawBody(
-            matrices, motions, ((beam.name, beam_surface(beam)),), []
+            matrices,
+            motions,
+            ((beam.name, beam_surface(beam)),),
+            [],
+            beam.gyroscopic,
         )
     return found
 
@@ -122,7 +130,9 @@ def rigid_bodies(machine: Machine) -> dict[str, RawBody]:
             rigid=np.diag(1.0 / np.sqrt(weight)),
         )
         surfaces = ((part.name, rigid_surface(part)),)
-        found[part.name] = RawBody(matrices, np.eye(6), surfaces, [])
+        found[part.name] = RawBody(
+            matrices, np.eye(6), surfaces, [], Sparse(part.gyroscopic)
+        )
     return found
 
 

@@ -2,13 +2,13 @@
 """Parts of a machine: solids, beams, rigid bodies, springs, points."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
-from jointbench.analysis.structures.matrices.beam_body import BeamBody
+from jointbench.analysis.structures.matrices.beam_body import BeamBody, cross_matrix
 from jointbench.analysis.structures.matrices.parts import GROUND
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.matrices.surface_motion import Attachment
@@ -28,12 +28,24 @@ class RigidPart:
         position: of its centre [m].
         mass: [kg].
         inertia: about the centre along x, y and z [kg m^2].
+        axis: about which it can turn, a principal axis; None is none.
     """
 
     name: str
     position: tuple[float, float, float]
     mass: float
     inertia: tuple[float, float, float]
+    axis: tuple[float, float, float] | None = None
+
+    @property
+    def gyroscopic(self) -> FloatArray:
+        """G of a turn about the axis at 1 rad/s [kg m^2], shape (6, 6)."""
+        found = np.zeros((6, 6))
+        if self.axis is not None:
+            axis = np.asarray(self.axis) / np.linalg.norm(self.axis)
+            polar = float(axis**2 @ np.asarray(self.inertia))
+            found[3:, 3:] = -polar * cross_matrix(axis)
+        return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +130,8 @@ class Machine:
         settings: values of the joints of `structure`, by name.
         springs: between bodies of any kind.
         points: by name.
+        speeds: of the beams and rigid bodies that turn about their axes, by name
+            [rad/s].
     """
 
     structure: Structure
@@ -126,6 +140,7 @@ class Machine:
     settings: Mapping[str, JointSetting]
     springs: tuple[MachineSpring, ...]
     points: Mapping[str, MachinePoint]
+    speeds: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Check that names are used once, and that those named exist."""
@@ -145,6 +160,14 @@ class Machine:
             if point.body not in names:
                 raise UsageError(
                     f"point {name!r} is on {point.body!r}; bodies are {names}"
+                )
+        turning = [one.name for one in self.beams]
+        turning += [one.name for one in self.rigid if one.axis is not None]
+        for name in self.speeds:
+            if name not in turning:
+                raise UsageError(
+                    f"body {name!r} has a speed; beams, and rigid bodies with an axis, "
+                    f"can turn: {turning}"
                 )
 
     @property

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What is computed of a machine: glued, jointed, at its tool, in time."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -204,6 +205,7 @@ class MachineResult:
         size: of the reduced machine, and of its few coordinates.
         bound: largest bound of the relative error of a jointed frequency [-].
         turn: from the coordinates of the shapes to those of the machine, shape (n, r).
+        speeds: of the bodies that turn, by name [rad/s].
     """
 
     glued: VariantResult
@@ -216,6 +218,7 @@ class MachineResult:
     size: tuple[int, int]
     bound: float
     turn: FloatArray
+    speeds: Mapping[str, float]
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""

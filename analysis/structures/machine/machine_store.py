@@ -59,6 +59,7 @@ def write_machine(folder: Path, key: str, machine: ReducedMachine) -> None:
         lean = replace(component, basis=np.zeros((0, component.size)))
         arrays |= component_arrays(f"body{at}.", lean)
         arrays[f"body{at}.motion"] = body.rigid
+        arrays[f"body{at}.gyroscopic"] = body.gyroscopic
         for part, ((_, surface), rows) in enumerate(
             zip(body.surfaces, body.motions, strict=True)
         ):
@@ -74,6 +75,7 @@ def read_machine(
     key: str,
     settings: Mapping[str, JointSetting],
     springs: Sequence[MachineSpring],
+    speeds: Mapping[str, float],
 ) -> ReducedMachine | None:
     """Read a reduced machine, and give its joints values.
 
@@ -82,6 +84,7 @@ def read_machine(
         key: see `write_machine`.
         settings: of the joints over areas, by name.
         springs: between pieces.
+        speeds: of the bodies that turn, by name [rad/s].
 
     Returns:
         The machine; None if it is not there, or its file is cut short.
@@ -116,6 +119,7 @@ def read_machine(
         points={name: assembled.rows(side) for name, side in sides.items()},
         sides=sides,
         freedoms=facts["freedoms"],
+        speeds=speeds,
     )
 
 
@@ -151,4 +155,5 @@ def _body(
         motions=tuple(
             arrays[f"motion{at}.{part}"].astype(np.float64) for part in parts
         ),
+        gyroscopic=arrays[f"body{at}.gyroscopic"],
     )

@@ -64,6 +64,7 @@ class MachineBody:
             see `orthonormal_motions`, shape (6, r).
         surfaces: for pictures, with names.
         motions: of the nodes of each surface, shape (3 n, r).
+        gyroscopic: of a turn about its axis at 1 rad/s [1], shape (r, r).
     """
 
     name: str
@@ -72,10 +73,11 @@ class MachineBody:
     rigid: FloatArray
     surfaces: tuple[tuple[str, Surface], ...]
     motions: tuple[FloatArray, ...]
+    gyroscopic: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "place", "stiffness", "rigid")
+        freeze(self, "place", "stiffness", "rigid", "gyroscopic")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,6 +96,7 @@ class ReducedMachine:
         points: motion x, y, z of each point, shape (3, r), by name.
         sides: body and port of each point, by name.
         freedoms: of the meshes and beams before the reduction.
+        speeds: of the bodies that turn, by name [rad/s].
     """
 
     assembled: Assembled
@@ -106,6 +109,7 @@ class ReducedMachine:
     points: Mapping[str, FloatArray]
     sides: Mapping[str, Side]
     freedoms: int
+    speeds: Mapping[str, float]
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -116,6 +120,16 @@ class ReducedMachine:
         """Number of the joint of every nominal value, shape (n_parameters,)."""
         counts = [len(joint.directions) for joint in self.joints]
         return np.repeat(np.arange(len(counts)), counts)
+
+    @property
+    def gyroscopic(self) -> FloatArray:
+        """G at the speeds of the bodies [1/s], antisymmetric, shape (n, n)."""
+        found = np.zeros((self.assembled.model.size,) * 2)
+        for one in self.bodies:
+            speed = self.speeds.get(one.name, 0.0)
+            if speed:
+                found[np.ix_(one.place, one.place)] += speed * one.gyroscopic
+        return found
 
     def parameters(
         self, stiffness: FloatArray, rigid: Sequence[int] = ()
@@ -179,6 +193,7 @@ def reduce_machine(
         points={name: assembled.rows(side) for name, side in point_of.items()},
         sides=point_of,
         freedoms=sum(one.matrices.mass.shape[0] for one in raw.values()),
+        speeds=machine.speeds,
     )
 
 
@@ -234,4 +249,13 @@ def _machine_body(raw: RawBody, component: Component, place: IntArray) -> Machin
         rigid=rows @ component.basis,
         surfaces=raw.surfaces,
         motions=tuple(one.rows @ component.basis for _, one in raw.surfaces),
+        gyroscopic=_turning(raw, component),
     )
+
+
+def _turning(raw: RawBody, component: Component) -> FloatArray:
+    """Return the gyroscopic matrix of a body in reduced coordinates."""
+    if raw.gyroscopic is None:
+        return np.zeros((component.size,) * 2)
+    found = component.basis.T @ (raw.gyroscopic @ component.basis)
+    return np.asarray(0.5 * (found - found.T))
