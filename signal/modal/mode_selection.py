@@ -151,8 +151,11 @@ def fit_modes(
     )
     report("refining modes", 0.7)
     done = _settled(lines, start, chosen, kept, poles)
+    denied = np.empty(0, complex)
     for _ in range(_SEARCHES if refine and seen else 0):
-        more = _completed(lines, start, done, scatter, seen)
+        missing = find_missing(_final(lines, start, done), seen)
+        denied = missing.denied
+        more = _completed(lines, start, done, scatter, missing.pole)
         if more is None:
             break
         start, done = more
@@ -174,7 +177,7 @@ def fit_modes(
             1 if force is None else force.relative.shape[0],
         ),
         _forced(lines, start, done, force),
-        _doubts(lines, start, done, tried=refine and seen is not None),
+        _doubts(lines, start, done, denied, tried=refine and seen is not None),
     )
 
 
@@ -254,15 +257,15 @@ def _completed(
     start: _Start,
     done: _Settled,
     scatter: FloatArray | None,
-    seen: Seen | None,
+    added: ComplexArray,
 ) -> tuple[_Start, _Settled] | None:
-    """Add what the residual shows; None where it shows nothing.
+    """Add poles that the residual shows; None where it shows nothing.
 
     Weights are taken again: what was missing counted as model error.
     """
     poles = done.poles
     whole = _final(lines, start, done)
-    beyond, added = find_beyond(whole), find_missing(whole, seen)
+    beyond = find_beyond(whole)
     if added.size == 0 and beyond.size == poles.beyond.size:
         return None
     everything = np.append(start.candidates, added)
@@ -313,13 +316,18 @@ def _forced(
 
 
 def _doubts(
-    lines: FrfLines, start: _Start, done: _Settled, *, tried: bool
+    lines: FrfLines,
+    start: _Start,
+    done: _Settled,
+    denied: ComplexArray,
+    *,
+    tried: bool,
 ) -> DoubtfulNeighbours:
     if not tried:
         nothing = np.zeros((done.poles.pole.size, 2, 2))
-        return DoubtfulNeighbours(np.empty(0), nothing)
+        return DoubtfulNeighbours(np.empty(0), nothing, np.empty(0))
     own = done.poles.covariance * done.poles.inflation[:, None, None]
-    return doubtful_neighbours(_final(lines, start, done), own)
+    return doubtful_neighbours(_final(lines, start, done), own, denied)
 
 
 def _again(

@@ -71,22 +71,28 @@ class DoubtfulNeighbours:
         frequency: of the neighbours [Hz], shape (n,), ascending.
         shift: mean squared change of (Re p, Im p) of each mode [rad^2/s^2], shape
             (n_modes, 2, 2).
+        denied: resonances that the lines need and the orders of the fit do not show
+            [Hz], shape (n,), ascending.
     """
 
     frequency: FloatArray
     shift: FloatArray
+    denied: FloatArray
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "frequency", "shift")
+        freeze(self, "frequency", "shift", "denied")
 
 
-def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeighbours:
+def doubtful_neighbours(
+    whole: WholeFit, covariance: FloatArray, denied: ComplexArray
+) -> DoubtfulNeighbours:
     """Try one more mode around each mode.
 
     Args:
         whole: final fit of all lines.
         covariance: of (Re p, Im p) of each mode [rad^2/s^2], shape (n_modes, 2, 2).
+        denied: poles that the orders of the fit do not show [rad/s].
 
     Returns:
         Places, and what they add to the covariance.
@@ -116,7 +122,12 @@ def doubtful_neighbours(whole: WholeFit, covariance: FloatArray) -> DoubtfulNeig
         if 1.0 - weight[0] > _STATED:
             likeliest = int(np.argmax(weight[1:])) % trials.size
             places.append(float(trials[likeliest].imag))
-    return DoubtfulNeighbours(_distinct(places, width), shift)
+    apart = np.abs(denied.imag[:, None] - modes.imag)
+    broad = np.maximum(measured_width(whole.lines, denied)[:, None], width)
+    left = denied[np.all(apart > broad, axis=1)]
+    return DoubtfulNeighbours(
+        _distinct(places, width), shift, _distinct(left.imag.tolist(), width)
+    )
 
 
 def _tried(
@@ -264,16 +275,30 @@ def neighbour_words(doubts: DoubtfulNeighbours) -> tuple[str, ...]:
         doubts: of the final fit.
 
     Returns:
-        One sentence, or none.
+        A sentence on neighbours and one on resonances apart from modes, where any are.
     """
-    count = doubts.frequency.size
-    if count == 0:
-        return ()
-    listed = ", ".join(f"{f:.6g}" for f in doubts.frequency[:_LISTED])
-    more = f" and {count - _LISTED} more" if count > _LISTED else ""
-    return (
-        f"{'a mode' if count == 1 else 'modes'} may be missing near {listed} Hz{more}: "
-        "the residual is that of a resonance there, too weak or too close to another "
-        "to be reported; the intervals of the modes around include it; another "
-        "accelerometer or hammer point, or more hits, would show it",
-    )
+    words = []
+    if doubts.frequency.size:
+        one = doubts.frequency.size == 1
+        words.append(
+            f"{'a mode' if one else 'modes'} may be missing near "
+            f"{_listed(doubts.frequency)}: the residual is that of a resonance there, "
+            "too weak or too close to another to be reported; the intervals of the "
+            "modes around include it; another accelerometer or hammer point, or more "
+            "hits, would show it"
+        )
+    if doubts.denied.size:
+        words.append(
+            f"the lines near {_listed(doubts.denied)} need a resonance that too few "
+            "orders of the fit show, so it is not reported: a mode with little "
+            "damping, leakage or a nonlinear structure; record longer after each hit, "
+            "or compare hits of two levels"
+        )
+    return tuple(words)
+
+
+def _listed(frequency: FloatArray) -> str:
+    """Return the first frequencies as words."""
+    listed = ", ".join(f"{f:.6g}" for f in frequency[:_LISTED])
+    rest = frequency.size - _LISTED
+    return f"{listed} Hz and {rest} more" if rest > 0 else f"{listed} Hz"

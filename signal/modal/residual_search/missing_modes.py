@@ -9,6 +9,7 @@ by the same rule as any candidate, and where it explains most of what the fit le
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
@@ -55,7 +56,20 @@ _APART = 1.0
 _NARROWEST = 0.3
 
 
-def find_missing(whole: WholeFit, seen: Seen | None) -> ComplexArray:
+@dataclass(frozen=True, slots=True, eq=False)
+class MissingModes:
+    """Poles that the lines need and no fitted mode explains.
+
+    Attributes:
+        pole: those that the FRF shows, too [rad/s], shape (n_missing,).
+        denied: the others, which are no modes unless something else shows them.
+    """
+
+    pole: ComplexArray
+    denied: ComplexArray
+
+
+def find_missing(whole: WholeFit, seen: Seen | None) -> MissingModes:
     """Return the poles of modes that the residual needs.
 
     Args:
@@ -63,17 +77,19 @@ def find_missing(whole: WholeFit, seen: Seen | None) -> ComplexArray:
         seen: whether a pole is one of the FRF; None takes every one as seen.
 
     Returns:
-        Refined together with their neighbours [rad/s], shape (n_missing,).
+        Refined together with their neighbours.
     """
     found: list[complex] = []
+    denied: list[complex] = []
     limit = least_significance(whole.lines)
     for start in trial_starts(whole, limit, apart=_APART, most=_TRIALS):
         pole = _tried(whole, start)
-        if pole is None or (seen is not None and not seen(pole)):
+        if pole is None:
             continue
-        if _away(whole.lines, pole, np.array(found, complex)):
-            found.append(pole)
-    return np.array(found, complex)
+        kept = found if seen is None or seen(pole) else denied
+        if _away(whole.lines, pole, np.array(kept, complex)):
+            kept.append(pole)
+    return MissingModes(np.array(found, complex), np.array(denied, complex))
 
 
 def trial_starts(

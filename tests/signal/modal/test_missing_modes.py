@@ -18,6 +18,7 @@ from jointbench.signal.modal.shared_errors import shared_covariance
 
 OMEGA = 2.0 * np.pi * np.arange(50.0, 150.0, 0.125)
 SIZE = 1e-3
+NONE = np.empty(0, complex)
 
 
 def pole_at(frequency: float, ratio: float = 0.01) -> complex:
@@ -71,7 +72,8 @@ def test_a_mode_that_was_missed_is_found_in_the_residual() -> None:
     """Two of three modes fitted; the third within 10 % of its width."""
     third = pole_at(104.0)
     lines = measured([pole_at(80.0), pole_at(100.0), third], [1.0, 1.0, 0.1])
-    found = find_missing(whole_fit(lines, [pole_at(80.0), pole_at(100.0)]), None)
+    whole = whole_fit(lines, [pole_at(80.0), pole_at(100.0)])
+    found = find_missing(whole, None).pole
     assert found.size == 1
     assert errors(found, third)[0] < 0.1
 
@@ -80,17 +82,21 @@ def test_a_complete_fit_gets_no_mode_and_no_doubt() -> None:
     """White residual: nothing added, no interval wider, nothing said."""
     poles = [pole_at(80.0), pole_at(100.0)]
     whole = whole_fit(measured(poles, [1.0, 1.0]), poles)
-    doubts = doubtful_neighbours(whole, spread(whole))
-    assert find_missing(whole, None).size == find_beyond(whole).size == 0
+    doubts = doubtful_neighbours(whole, spread(whole), NONE)
+    assert find_missing(whole, None).pole.size == find_beyond(whole).size == 0
     assert not doubts.shift.any()
     assert neighbour_words(doubts) == ()
 
 
-def test_a_pole_that_no_order_shows_is_not_added() -> None:
+def test_a_pole_that_no_order_shows_is_remarked_on_and_not_added() -> None:
     """The same third mode, denied by the stabilisation table."""
     poles = [pole_at(80.0), pole_at(100.0), pole_at(104.0)]
     whole = whole_fit(measured(poles, [1.0, 1.0, 0.1]), poles[:2])
-    assert find_missing(whole, lambda pole: False).size == 0
+    missing = find_missing(whole, lambda pole: False)
+    assert missing.pole.size == 0
+    doubts = doubtful_neighbours(whole, spread(whole), missing.denied)
+    assert np.all(np.abs(doubts.denied - 104.0) < 0.1)
+    assert "the lines near 104" in neighbour_words(doubts)[-1]
 
 
 def test_a_neighbour_that_stays_out_widens_the_interval_and_is_named() -> None:
@@ -98,7 +104,7 @@ def test_a_neighbour_that_stays_out_widens_the_interval_and_is_named() -> None:
     poles = [pole_at(80.0), pole_at(100.0), pole_at(100.6)]
     lines = measured(poles, [1.0, 1.0, 0.1])
     whole = whole_fit(lines, poles[:2])
-    doubts = doubtful_neighbours(whole, spread(whole))
+    doubts = doubtful_neighbours(whole, spread(whole), NONE)
     moved = np.abs(whole.pole[1] - poles[1])
     assert np.sqrt(np.trace(doubts.shift[1])) > 0.5 * moved
     assert doubts.shift[0].max() < 0.2 * doubts.shift[1].max()
