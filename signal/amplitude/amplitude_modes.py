@@ -6,12 +6,14 @@ curves that explain the decays better than all linear modes of the group are kep
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.one_thread import one_thread
 from jointbench.acquisition.records.recordings import Recording
 from jointbench.signal.amplitude.amplitude_curve import (
+    AmplitudeCurve,
     AmplitudeMode,
     Dependence,
     SoftLimit,
@@ -182,6 +184,8 @@ def _judged(
             float(shown.damping_ratio[0]),
             float(shown.damping_sd[0]),
         )
+    elif shown is not None and change is not None and change.clear:
+        soft = _reaching(soft, shown)
     return AmplitudeMode(
         dependence=outcome,
         reason=reason,
@@ -198,6 +202,21 @@ def _judged(
         ratio=ratio,
         laws=laws,
         replaces=tuple(float(model.natural_frequency[i]) for i in members),
+    )
+
+
+def _reaching(soft: SoftLimit, curve: AmplitudeCurve) -> SoftLimit:
+    """Return a limit whose interval reaches the soft end of a curve.
+
+    The change is clear and too small to be reported, or not decided: the pole of all
+    levels is not the one at small amplitude.
+    """
+    away = soft.frequency - float(curve.frequency[0])
+    spread = soft.damping_ratio - float(curve.damping_ratio[0])
+    return replace(
+        soft,
+        frequency_sd=float(np.hypot(soft.frequency_sd, away)),
+        damping_sd=float(np.hypot(soft.damping_sd, spread)),
     )
 
 

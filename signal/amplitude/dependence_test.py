@@ -64,9 +64,20 @@ class Change:
         """True where the change is clear and more than a tenth of a bandwidth."""
         large = abs(self.frequency) > _FREQUENCY_EFFECT * self.zeta
         other = abs(self.damping) > _DAMPING_EFFECT * self.zeta
-        clear = abs(self.frequency) > _CLEAR * self.frequency_sd
-        other_clear = abs(self.damping) > _CLEAR * self.damping_sd
-        return (large and clear) or (other and other_clear)
+        frequency, damping = self._clear
+        return (large and frequency) or (other and damping)
+
+    @property
+    def clear(self) -> bool:
+        """True where frequency or damping changes by more than the uncertainty."""
+        return any(self._clear)
+
+    @property
+    def _clear(self) -> tuple[bool, bool]:
+        return (
+            abs(self.frequency) > _CLEAR * self.frequency_sd,
+            abs(self.damping) > _CLEAR * self.damping_sd,
+        )
 
 
 @dataclass(frozen=True, slots=True)

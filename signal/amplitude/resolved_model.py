@@ -28,23 +28,26 @@ def resolved_model(model: ModalModel, found: Sequence[AmplitudeMode]) -> ModalMo
 
     A mode that stands for several poles, or that depends on amplitude, gets frequency
     and damping at small amplitude; shape and residues are those of its strongest pole.
-    Where nothing is merged and nothing depends, the model comes back as it is.
+    One that changes too little to be reported has a wider interval. Where none of that
+    is so, the model comes back as it is.
 
     Args:
         model: of the linear fit.
         found: one record a physical mode, from `amplitude_modes`.
     """
-    changed = [
-        mode
-        for mode in found
-        if len(mode.replaces) > 1 or mode.dependence is Dependence.DEPENDS
-    ]
-    if not changed:
-        return model
     soft = [mode.soft for mode in found]
-    order = np.argsort([one.frequency for one in soft])
     known = model.natural_frequency
-    rows = np.array([np.argmin(np.abs(known - mode.replaces[0])) for mode in found])
+    rows = np.array(
+        [np.argmin(np.abs(known - mode.replaces[0])) for mode in found], int
+    )
+    wider = np.array([one.frequency_sd for one in soft]) > model.frequency_sd[rows]
+    changed = [
+        len(mode.replaces) > 1 or mode.dependence is Dependence.DEPENDS or wide
+        for mode, wide in zip(found, wider, strict=True)
+    ]
+    if not any(changed):
+        return model
+    order = np.argsort([one.frequency for one in soft])
     rows = rows[order]
     done = step(
         "resolve_amplitude",

@@ -130,10 +130,10 @@ class _Circle:
         if self.half and abs(first - round(first)) < _WHOLE:
             padded = np.zeros((series.shape[0], points // 2 + 1), series.dtype)
             padded[:, round(first) : round(first) + angle.size] = series
-            sums = 0.5 * points * scipy.fft.irfft(padded, points, axis=1)
-            return np.asarray(sums[:, lags % points] + 0.5 * padded[:, :1].real)
-        sums = points * scipy.fft.ifft(series, points, axis=1)[:, lags % points]
-        sums = sums * np.exp(1j * angle[0] * lags)
+            sums = scipy.fft.irfft(padded, points, axis=1)[:, lags % points]
+            return np.asarray(0.5 * (points * sums + padded[:, :1].real))
+        sums = scipy.fft.ifft(series, points, axis=1)[:, lags % points]
+        sums = sums * points * np.exp(1j * angle[0] * lags)
         return np.asarray(sums.real if self.half else sums)
 
 
@@ -300,6 +300,12 @@ def _solved(matrix: Coefficients, right: Coefficients) -> Coefficients:
     return np.asarray(found)
 
 
+def _back_solved(factor: Coefficients, right: Coefficients) -> Coefficients:
+    """Solve with the conjugate transpose of a lower factor; LAPACK without checks."""
+    trtrs: Any = scipy.linalg.get_lapack_funcs("trtrs", (factor, right))
+    return np.asarray(trtrs(factor, right, lower=1, trans=2)[0])
+
+
 def _shapes(
     reduced: _Reduced, denominator: Coefficients, roots: ComplexArray
 ) -> ComplexArray:
@@ -314,8 +320,6 @@ def _shapes(
     moved = reduced.cross[:size, :, : size * n_inputs] @ denominator.reshape(
         -1, n_inputs
     )
-    numerator = -scipy.linalg.solve_triangular(
-        reduced.factor[:size, :size].conj().T, moved.reshape(size, -1), lower=False
-    )
+    numerator = -_back_solved(reduced.factor[:size, :size], moved.reshape(size, -1))
     residues = (powers @ numerator).reshape(-1, n_outputs, n_inputs)
     return np.asarray(np.einsum("roi,ri->ro", residues, null))

@@ -96,6 +96,22 @@ def test_a_softening_mode_depends_on_amplitude() -> None:
     assert softening().dependence is Dependence.DEPENDS
 
 
+def test_a_change_too_small_to_report_is_in_the_interval() -> None:
+    """0.09 % at the hardest hit, 80 dB: not a dependence, and no tight interval."""
+    base = chain(np.random.default_rng(1), 1)
+    omega, shapes = base.modes()
+    size = float(abs(shapes[0, 0]) ** 2 / omega[0])
+    lost = 2.0 * 9e-4 * omega[0] ** 2 / shapes[0, 0] ** 2
+    joint = micro_slip(lost, size, EXPONENT)
+    stuck = with_joint(base, joint, float(joint.slider_stiffness.sum()))
+    model, found = resolved(struck(stuck, LEVELS, 80.0))
+    true = float(stuck.modes()[0][0] / 2 / np.pi)
+    limit = resolved_model(model, found)
+    assert found[0].dependence is Dependence.NONE
+    assert abs(model.natural_frequency[0] - true) > 3.0 * model.frequency_sd[0]
+    assert abs(limit.natural_frequency[0] - true) < 2.0 * limit.frequency_sd[0]
+
+
 def test_poles_on_one_curve_become_one_mode_at_small_amplitude() -> None:
     """A linear estimator reports several; the soft limit is that of the stuck joint."""
     model, found = slipping_modes()
