@@ -24,12 +24,14 @@ class ScatterDirection:
         unit: of its size, ``"-"`` or ``"s"``.
         columns: derivatives of the model that share the size.
         scale: size in that unit of an internal size of 1.
+        expected: size that the sheet states [unit]; 0 if it states none.
     """
 
     name: str
     unit: str
     columns: tuple[int, ...]
     scale: float = 1.0
+    expected: float = 0.0
 
     @property
     def is_joint(self) -> bool:
