@@ -44,8 +44,8 @@ from jointbench.simulators.detectability.expected_margin import (
 from jointbench.simulators.hidden.effect_draws import CATALOGUE, OUTSIDE_CATALOGUE
 
 KINDS = ("inside", "outside", "inside", "taken out", "inside", "outside")
-SAMPLES = 768
-"""Of each record that are kept: a diagnosis takes a third of the time."""
+SAMPLES = 512
+"""Of each record that are kept: a diagnosis takes a quarter of the time."""
 SINGLE = replace(STANDARD, most_samples=1.0)
 """The standard policy, with a search that ends after single effects."""
 
