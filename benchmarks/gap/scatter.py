@@ -148,21 +148,28 @@ def page(runs: Sequence[Run], engine: str) -> str:
         right, wrong = words.count("right"), words.count("wrong name")
         lines.append(f"| {100 * size:g} % | {right} | {wrong} | {len(own)} |")
     words = [word_of(r) for r in good]
+    missed = len(singles) - len(good)
     lines += [
         "",
         f"Right: {share_text(words.count('right'), len(words))}; wrong name: "
-        f"{share_text(words.count('wrong name'), len(words))}.",
+        f"{share_text(words.count('wrong name'), len(words))}. {missed} more were not "
+        "made: their effect does not reach that margin at the largest physical size.",
         "",
         "## Time",
         "",
-        f"Nothing missing: {_times(nulls)}. One effect: {_times(singles)}. CPU time of "
+        f"Nothing missing: {_times(nulls)}. One effect: {_times(good)}. CPU time of "
         "one core of a machine that was also busy with other work.",
         "",
         "## Other verdicts",
         "",
-        "| kind | truth | way | size | seed | verdict | reason |",
-        "|---|---|---|---|---|---|---|",
+        "| kind | truth | way | size | seed | margin, rival | verdict | reason |",
+        "|---|---|---|---|---|---|---|---|",
         *(_other(r) for r in [*nulls, *good] if not _expected(r)),
+        "",
+        "A margin is the squared distance of the records from the nearest rival, "
+        "fitted with the base, over the number of parameters of the effect. Pairs with "
+        "a margin below 50 are not counted "
+        "([record](decisions/0160-margins-with-refitted-rivals-and-force-noise.md)).",
     ]
     return "\n".join([*lines, ""])
 
@@ -198,6 +205,7 @@ def _other(run: Run) -> str:
         run["way"],
         f"{100 * run['size']:g} %",
         str(run["seed"]),
+        f"{run['margins'][0]:.0f}, {run['rival']}" if run["margins"] else "",
         f"{run['found']['verdict']} {named}".strip(),
         run["found"]["reason"],
     )

@@ -179,7 +179,7 @@ def _finite_samples(place: str, dataset: h5py.Dataset) -> FloatArray:
 
 
 def _scatter(where: str, file: h5py.File) -> StatedScatter:
-    """Return the scatter of the hits that the sheet states, all in SI units."""
+    """Return the scatter of the hits that the file states, all in SI units."""
     if "scatter_sd" not in file.attrs:
         return NOTHING_STATED
     stated = _json_object(where, file, "scatter_sd", SCATTER_KEYS)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scatter of the hits as the sheet of a campaign states it."""
+"""Scatter of the hits as the nominal parameters of a campaign state it."""
 
 import math
 from dataclasses import dataclass, fields

@@ -98,9 +98,9 @@ def force_time_gate(force: FloatArray) -> tuple[tuple[int, int], float]:
 def _padding(force: FloatArray, hit: tuple[int, int], sigma: float) -> int:
     """Return the least padding of the hits beyond which the force is noise.
 
-    Each sample within the gate adds its noise to the prediction, where it rings on in
-    every mode; the ringing of the filter, which a gate cuts off, is in proportion to
-    the force. So the gate of a noisy record is narrow.
+    Each sample within the time gate adds its noise to the prediction, where it rings on
+    in every mode; the ringing of the filter, which a time gate cuts off, is in
+    proportion to the force. So the time gate of a noisy record is narrow.
 
     Args:
         force: of all records [N], shape (n_records, n).

@@ -95,7 +95,7 @@ class ResidualSettings:
     stated_spread: float = numerical(
         0.7,
         "-",
-        "prior sd of the logarithm of a size that the sheet states",
+        "prior sd of the logarithm of a size that the nominal parameters state",
         "an operator knows the scatter of the hits within a factor of two",
     )
     scatter_iterations: int = numerical(

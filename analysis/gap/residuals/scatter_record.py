@@ -24,7 +24,7 @@ class ScatterDirection:
         unit: of its size, ``"-"`` or ``"s"``.
         columns: derivatives of the model that share the size.
         scale: size in that unit of an internal size of 1.
-        expected: size that the sheet states [unit]; 0 if it states none.
+        expected: size that the nominal parameters state [unit]; 0 if none.
     """
 
     name: str

@@ -27,7 +27,7 @@ class SizeProblem:
             direction share their size.
         systematic: X, shape (n_records, n_columns, n_systematic).
         highest: largest size of each direction, shape (n_directions,).
-        expected: size that the sheet states, same shape; 0 where it states none.
+        expected: size that is stated, same shape; 0 where none is.
         rho: correlation between successive hits [-].
     """
 
@@ -44,7 +44,7 @@ class SizeProblem:
         return weigh(self.records, each, self.rho)
 
     def deviance(self, size: FloatArray, *, restricted: bool = True) -> float:
-        """Return -2 log likelihood of sizes, shape (n_directions,), with the sheet."""
+        """Return -2 log likelihood of sizes, (n_directions,), with their prior."""
         bare = deviance(self.weighed(size), self.systematic, restricted=restricted)
         return bare + self.surprise(size)
 

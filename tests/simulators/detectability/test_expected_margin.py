@@ -115,18 +115,24 @@ def test_whitening_is_the_inverse_root_of_the_covariance(quiet, scattered):
     )
 
 
-def test_force_noise_hides_what_it_makes_ring(quiet):
-    """One sd of the force in one sample rings far above the noise, but is one sd."""
+def test_noise_of_the_force_is_white_after_whitening(quiet):
+    """Along the ringing of one sample of the force, of which the pulse has many."""
     view = quiet.view
     condition = view.design.conditions[0]
-    start = np.ceil(condition.pulse.start * SAMPLE_RATE) / SAMPLE_RATE
-    sd = 20 * FORCE_NOISE * view.design.noise
-    short = Pulse(start, 1 / SAMPLE_RATE, sd * np.pi / 2, exponent=1.0)
+    step = 1 / SAMPLE_RATE
+    sd = FORCE_NOISE * view.design.noise
+    start = np.floor(condition.pulse.start / step) * step
+    short = Pulse(start, step, sd * np.pi / 2, exponent=1.0)
     design = replace(view.design, conditions=(replace(condition, pulse=short),))
     rings = np.zeros_like(view.responses)
-    rings[0] = sketch_responses(design)[0]
-    assert np.linalg.norm(view.weights.inverse * rings) > 4.0
-    assert np.linalg.norm(weigh(view.weights, rings)) < 1.0
+    rings[0] = view.weights.inverse[0] * sketch_responses(design)[0]
+    along = rings / np.linalg.norm(rings)
+    white = weigh(view.weights, along / view.weights.inverse).reshape(rings.shape)
+    samples = int(np.ceil(max(c.pulse.width for c in view.design.conditions) / step))
+    late = [np.roll(rings, k, axis=2) for k in range(samples)]
+    forced = sum(float(np.sum(white * h)) ** 2 for h in late)
+    assert forced > 0.2
+    assert_allclose(float(np.sum(white**2)) + forced, 1.0, rtol=1e-3)
 
 
 def test_a_refitted_base_is_at_the_minimum_of_its_cost(quiet):

@@ -55,7 +55,7 @@ def estimated(
         values: of each hit along each column.
         seed: of the noise.
         beside: a residual that no direction describes, over the noise.
-        directions: with the sizes that the sheet states.
+        directions: with the sizes that are stated.
     """
     rng = np.random.default_rng([seed, 1])
     columns = ways(rng)
@@ -131,7 +131,7 @@ def test_sizes_are_those_of_repeats_where_the_model_does_not_fit_either() -> Non
 
 
 def test_a_stated_size_counts_where_the_hits_say_little() -> None:
-    """Hits without scatter leave a size of 0; a sheet of 1e-5 is not contradicted."""
+    """Hits without scatter leave a size of 0; a stated 4e-5 is not contradicted."""
     constant = np.tile([0.02, 0.001, 0.0, 0.01], (HITS, 1))
     stated = replace(DIRECTIONS[0], expected=4e-5)
     found = estimated(constant, directions=(stated, *DIRECTIONS[1:]))
@@ -140,7 +140,7 @@ def test_a_stated_size_counts_where_the_hits_say_little() -> None:
 
 
 def test_hits_overrule_a_stated_size() -> None:
-    """16 hits that scatter by 1 %, with 10 % or 0.1 % on the sheet."""
+    """16 hits that scatter by 1 %, with 10 % or 0.1 % stated."""
     for expected in (0.1, 0.001):
         stated = replace(DIRECTIONS[0], expected=expected)
         found = estimated(drawn(1), directions=(stated, *DIRECTIONS[1:]))

@@ -155,7 +155,7 @@ def hits_with_ringing(noise: float) -> FloatArray:
 
 
 @pytest.mark.parametrize(("noise", "most"), [(2e-3, 48), (0.05, 24), (3.0, 8)])
-def test_the_gate_of_a_noisy_force_is_narrow(noise: float, most: int) -> None:
+def test_the_time_gate_of_a_noisy_force_is_narrow(noise: float, most: int) -> None:
     """It keeps the ringing of the filter that exceeds the noise, and little noise."""
     force = hits_with_ringing(noise)
     (first, last), sigma = force_time_gate(force)
