@@ -34,7 +34,7 @@ MARGIN_RANGE = (1.0, 1e4)
 _CLOSE = 0.15  # relative tolerance of the size of an effect
 _MOST_SIZES = 6
 _FAR = 3.0  # ratio of margins at which refitted rivals require another size
-_MORE_SIZES = 2
+_MORE_SIZES = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -90,6 +90,7 @@ def estimate_scatter(
         direction,
         _intercepts(records.along.shape),
         np.full(len(directions), np.inf),
+        np.array([d.expected / d.scale for d in directions]),
     )
     joints = frozenset(k for k, d in enumerate(directions) if d.is_joint)
     beside = 1.0 + policy.chi2_limit * chi2_sd(dof)

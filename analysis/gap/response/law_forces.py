@@ -28,15 +28,17 @@ MOVING = (COULOMB, QUADRATIC_DAMPING, CURVES, POWER_DAMPING)
 LANES = RESPONSE.lanes
 _STILL = RESPONSE.still_speed
 
-FORCE, GUESS, LAST, BEFORE, MOTION, SPEED, SLOPE, PACE = (i * LANES for i in range(8))
+FORCE, GUESS, LAST, BEFORE, MOTION, SPEED, PACE = (i * LANES for i in range(7))
 """Offsets within a port: force of its laws, its estimate, the two last motions, the
-motion, its rate, the change of that rate per unit force of the port in a step, and the
-rate at the start of the step."""
-DEFECT, LEAN, SHIFT, SPREAD = (i * LANES for i in range(8, 12))
+motion, its rate, and the rate at the start of the step."""
+SLOPE, HOLD = 7 * LANES, 8 * LANES
+"""The change of the rate by a force of the port that rises to 1 N within a step, and by
+one that is 1 N throughout."""
+DEFECT, LEAN, SHIFT, SPREAD = (i * LANES for i in range(9, 13))
 """Where a force jumps or bends within a step: its mean and first moment over the step
 less those of a straight line, and its first and second moment less those of the samples
 of a band-limited signal. Moments are about the middle of a step of length 1."""
-PORT = 12 * LANES
+PORT = 13 * LANES
 OWN, EARLIER, EXTRAPOLATED, DRIFT = (i * LANES for i in range(4))
 """Offsets within a law: its force, that of the previous step, the extrapolation, and,
 for dry friction, the change of the speed in the last step by all else."""

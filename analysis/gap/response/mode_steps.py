@@ -16,6 +16,7 @@ from jointbench.analysis.gap.response.law_forces import (
     DEFECT,
     FORCE,
     GUESS,
+    HOLD,
     LANES,
     LEAN,
     MOTION,
@@ -84,6 +85,8 @@ def resting_state(
                 own = push * shapes[m, p, k]
                 slope = own.real * pole.real - own.imag * pole.imag
                 w[p * PORT + SLOPE + k] += slope
+                held = (start + end) * inputs[m, p, k] * shapes[m, p, k] * pole
+                w[p * PORT + HOLD + k] += held.real
                 if n_ports == 1:
                     continue
                 there = at + _PORTS + p * _AT_PORT
