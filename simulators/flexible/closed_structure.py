@@ -100,7 +100,7 @@ def specimen_coordinates(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class JointState:
+class JointAtTorque:
     """Linear joint, feet and attachments at one torque.
 
     Attributes:
@@ -149,7 +149,7 @@ class ClosedStructure:
         return np.asarray(np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi))
 
 
-def close_structure(place: Coordinates, state: JointState) -> ClosedStructure:
+def close_structure(place: Coordinates, state: JointAtTorque) -> ClosedStructure:
     """Assemble the bodies with their joint, feet and attachments.
 
     Args:
@@ -185,7 +185,7 @@ def close_structure(place: Coordinates, state: JointState) -> ClosedStructure:
 
 
 def _couplings(
-    place: Coordinates, state: JointState
+    place: Coordinates, state: JointAtTorque
 ) -> Sequence[tuple[FloatArray, FloatArray, FloatArray]]:
     """Return rows, stiffness and damping of the bolts by direction, and of feet."""
     values = state.values

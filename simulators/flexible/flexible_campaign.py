@@ -23,9 +23,11 @@ from jointbench.simulators.flexible.flexible_specimen import (
     BoltedSpecimen,
     draw_specimen,
 )
+from jointbench.simulators.flexible.friction_and_stops import LawBank, law_bank
 from jointbench.simulators.flexible.gauss_integration import HitSet, integrate_hits
 from jointbench.simulators.flexible.hidden_in_joint import (
     HitCondition,
+    added_coordinates,
     joint_state,
     port_laws_of,
 )
@@ -47,7 +49,6 @@ from jointbench.simulators.flexible.physical_bodies import (
     PhysicalBody,
     physical_bodies,
 )
-from jointbench.simulators.flexible.port_laws import LawBank, law_bank
 from jointbench.simulators.flexible.sensor_chain import (
     CONVERTER,
     OVERSAMPLING,
@@ -65,6 +66,12 @@ _FILLED = 450.0  # acceleration at the highest level [m/s^2], half of the range
 _NOISE_RANGE = (60.0, 80.0)  # below the peaks at the middle of the levels [dB]
 _FORCE_NOISE = 10.0  # [dB] further below the force
 _TRIED = 0.03  # [s] after which no motion is larger
+COMPLIANCES = {
+    "joint_compliance_tangential": slice(0, 2),
+    "joint_compliance_normal": slice(2, 3),
+}
+"""Directions that count as rigid where these are hidden."""
+_YIELDING = {"joint_compliance_tangential", "microslip", "macroslip"}
 BEYOND = {"exact": 0, "life": 0}
 
 
@@ -199,24 +206,15 @@ def _values(
 ) -> tuple[JointValues, JointValues]:
     """Return nominal and true values; a hidden compliance counts as rigid before."""
     nominal = draw_nominal(specimen, rng)
-    hides = {"joint_compliance_tangential": slice(0, 2), "microslip": slice(0, 2)}
-    hides |= {"macroslip": slice(0, 2)}
-    for _ in range(100):
-        if not any(name in hides for name in names):
-            break
-        if np.isfinite(nominal.stiffness).all():
-            break
-        # What slips or yields needs a spring.
+    # What slips or yields needs a spring.
+    while _YIELDING & set(names) and np.isinf(nominal.stiffness).any():
         nominal = draw_nominal(specimen, rng)
     values = draw_true(nominal, rng)
-    told = nominal.stiffness.copy()
-    for name, columns in (
-        ("joint_compliance_tangential", slice(0, 2)),
-        ("joint_compliance_normal", slice(2, 3)),
-    ):
+    stated = nominal.stiffness.copy()
+    for name, columns in COMPLIANCES.items():
         if name in names:
-            told[:, columns] = np.inf
-    return replace(nominal, stiffness=told), values
+            stated[:, columns] = np.inf
+    return replace(nominal, stiffness=stated), values
 
 
 def _tried(bench: FlexibleBench) -> tuple[float, float, DrawScales]:
@@ -257,11 +255,22 @@ def structure_of(
     """Return the structure that a hit meets, and its laws."""
     condition = bench.condition(hit)
     state = joint_state(
-        bench.coordinates, bench.specimen, bench.values, bench.effects, condition
+        bench.coordinates, bench.specimen, _acting(bench), bench.effects, condition
     )
     structure = close_structure(bench.coordinates, state)
     laws = port_laws_of(bench.coordinates, state, bench.effects, condition)
     return structure, law_bank(laws, structure.lift.shape[0])
+
+
+def _acting(bench: FlexibleBench) -> JointValues:
+    """Return the true values, rigid where no hidden compliance shows them."""
+    stiffness = bench.values.stiffness.copy()
+    names = {effect.name for effect in bench.effects}
+    for name, columns in COMPLIANCES.items():
+        rigid = np.isinf(bench.nominal.stiffness[:, columns])
+        if name not in names and rigid.any():
+            stiffness[:, columns] = np.inf
+    return replace(bench.values, stiffness=stiffness)
 
 
 def hit_set(
@@ -274,7 +283,7 @@ def hit_set(
         hits: on one structure.
         rows: shape (n_rows, n_coordinates).
     """
-    extra = sum(e.name in {"hidden_mode", "rattling_mass"} for e in bench.effects)
+    extra = sum(added_coordinates(effect) for effect in bench.effects)
     load = np.stack([_load(bench, hit) for hit in hits], axis=1)
     load = np.vstack((load, np.zeros((extra, load.shape[1]))))
     rows = np.hstack((rows, np.zeros((rows.shape[0], extra))))

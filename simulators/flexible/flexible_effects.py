@@ -206,8 +206,10 @@ def _square_damping(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
 
 
 def _oscillator(s: DrawScales, rng: np.random.Generator) -> FlexibleEffect:
+    # A bracket moves in one direction, a sensor on wax in all of them.
+    moves = str(rng.choice(("normal", "all")))
     return _effect(
-        _place(s, rng),
+        _place(s, rng) | {"direction": moves},
         m=_lightest(s) * _log(rng, 0.005, 0.04),
         frequency=_log(rng, 150.0, 2500.0),
         damping_ratio=_log(rng, 0.005, 0.04),

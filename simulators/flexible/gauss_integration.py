@@ -20,7 +20,7 @@ import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.simulators.flexible.closed_structure import ClosedStructure
-from jointbench.simulators.flexible.port_laws import LawBank, PortMemory
+from jointbench.simulators.flexible.friction_and_stops import LawBank, PortMemory
 
 NODES = (0.5 - sqrt(3) / 6, 0.5 + sqrt(3) / 6)
 """Stages as shares of a step [-]."""

@@ -11,7 +11,7 @@ from jointbench.simulators.flexible.closed_structure import (
     NORMAL,
     Attachment,
     Coordinates,
-    JointState,
+    JointAtTorque,
     Oscillator,
 )
 from jointbench.simulators.flexible.flexible_effects import FlexibleEffect, rocking_arms
@@ -20,12 +20,12 @@ from jointbench.simulators.flexible.flexible_specimen import (
     BodyPlace,
     BoltedSpecimen,
 )
-from jointbench.simulators.flexible.joint_values import JointValues
-from jointbench.simulators.flexible.port_laws import (
+from jointbench.simulators.flexible.friction_and_stops import (
     PortLaw,
     PortLawKind,
     power_law_sliders,
 )
+from jointbench.simulators.flexible.joint_values import JointValues
 
 TANGENTIAL = (0, 1)
 _RATTLER_DAMPING, _RATTLER_FREQUENCY = 0.05, 4.0  # [-], [Hz]: it rests in its cavity
@@ -51,7 +51,7 @@ def joint_state(
     values: JointValues,
     effects: Sequence[FlexibleEffect],
     condition: HitCondition,
-) -> JointState:
+) -> JointAtTorque:
     """Return the linear joint, feet and attachments with effects.
 
     Args:
@@ -61,19 +61,19 @@ def joint_state(
         effects: hidden ones.
         condition: torque and time.
     """
-    state = JointState(values, np.ones(len(specimen.feet)))
+    state = JointAtTorque(values, np.ones(len(specimen.feet)))
     for effect in effects:
         state = _changed(state, place, specimen, effect, condition)
     return state
 
 
 def _changed(
-    state: JointState,
+    state: JointAtTorque,
     place: Coordinates,
     specimen: BoltedSpecimen,
     effect: FlexibleEffect,
     condition: HitCondition,
-) -> JointState:
+) -> JointAtTorque:
     p, where, values = effect.parameters, effect.where, state.values
     match effect.name:
         case "joint_compliance_rocking":
@@ -108,11 +108,11 @@ def _changed(
 
 
 def _attached(
-    state: JointState,
+    state: JointAtTorque,
     place: Coordinates,
     specimen: BoltedSpecimen,
     effect: FlexibleEffect,
-) -> JointState:
+) -> JointAtTorque:
     """Return the state with what an effect fixes to a body."""
     p = effect.parameters
     if effect.name not in {
@@ -131,12 +131,22 @@ def _attached(
     if effect.name == "added_stiffness":
         more = Attachment(normal[None], stiffness=p["k"])
         return replace(state, attachments=(*state.attachments, more))
-    own = (
-        Oscillator(normal, p["m"], p["frequency"], p["damping_ratio"])
-        if effect.name == "hidden_mode"
-        else Oscillator(normal, p["m"], _RATTLER_FREQUENCY, _RATTLER_DAMPING)
-    )
-    return replace(state, oscillators=(*state.oscillators, own))
+    if effect.name == "rattling_mass":
+        own = [Oscillator(normal, p["m"], _RATTLER_FREQUENCY, _RATTLER_DAMPING)]
+    else:
+        moving = rows if effect.where["direction"] == "all" else normal[None]
+        own = [
+            Oscillator(row, p["m"], p["frequency"], p["damping_ratio"])
+            for row in moving
+        ]
+    return replace(state, oscillators=(*state.oscillators, *own))
+
+
+def added_coordinates(effect: FlexibleEffect) -> int:
+    """Return how many coordinates an effect adds to those of the bodies."""
+    if effect.name == "hidden_mode":
+        return 3 if effect.where["direction"] == "all" else 1
+    return int(effect.name == "rattling_mass")
 
 
 def _scaled(
@@ -162,7 +172,7 @@ def named_place(specimen: BoltedSpecimen, effect: FlexibleEffect) -> BodyPlace:
 
 def port_laws_of(
     place: Coordinates,
-    state: JointState,
+    state: JointAtTorque,
     effects: Sequence[FlexibleEffect],
     condition: HitCondition,
 ) -> tuple[PortLaw, ...]:
@@ -174,7 +184,7 @@ def port_laws_of(
 
 def _laws(
     place: Coordinates,
-    state: JointState,
+    state: JointAtTorque,
     effect: FlexibleEffect,
     condition: HitCondition,
 ) -> Iterator[PortLaw]:
@@ -206,7 +216,7 @@ def _laws(
 
 def _friction(
     place: Coordinates,
-    state: JointState,
+    state: JointAtTorque,
     effect: FlexibleEffect,
     condition: HitCondition,
 ) -> Iterator[PortLaw]:

@@ -34,8 +34,9 @@ from jointbench.simulators.flexible.joint_values import (
 from jointbench.simulators.flexible.physical_bodies import PhysicalBody
 from jointbench.simulators.flexible.sensor_chain import BITS, FULL_SCALE, sensitivities
 
-CAMPAIGN_SCHEMA, SHEET_SCHEMA = "campaign/1", "bench-sheet/1"
+CAMPAIGN_SCHEMA, NOMINAL_SCHEMA = "campaign/1", "bench-sheet/1"
 Json = dict[str, object]
+_MASS_SIGMA = 1e-3  # of a body that was weighed
 
 
 def write_flexible_campaign(
@@ -57,7 +58,7 @@ def write_flexible_campaign(
         for body in bench.bodies:
             _write_table(file.create_group(f"model/{body.body.name}"), bench, body)
     for name, content in (
-        ("sheet", bench_sheet(bench)),
+        ("sheet", known_bench(bench)),
         ("truth", flexible_truth(bench) | {"margins": dict(margins or {})}),
     ):
         text = json.dumps(content, indent=1)
@@ -93,7 +94,7 @@ def _channels(bench: FlexibleBench) -> list[Json]:
             "quantity": "force",
             "unit": "N",
             "sensitivity_V_per_unit": float(scale[0]),
-            "body": None,
+            "body": bench.specimen.points[0].body,
             "position_m": None,
             "direction": None,
             "counts_to_V": count,
@@ -139,7 +140,7 @@ def _write_table(group: h5py.Group, bench: FlexibleBench, body: PhysicalBody) ->
             )
 
 
-def bench_sheet(bench: FlexibleBench) -> Json:
+def known_bench(bench: FlexibleBench) -> Json:
     """Return what the crew of the bench knows, as JSON types."""
     specimen, nominal = bench.specimen, bench.nominal
     joint = [
@@ -147,21 +148,22 @@ def bench_sheet(bench: FlexibleBench) -> Json:
     ]
     ratio = float(nominal.damping_ratio[0])
     return {
-        "schema": SHEET_SCHEMA,
+        "schema": NOMINAL_SCHEMA,
         "kind": specimen.kind,
-        "bodies": {b.name: _body_sheet(b, ratio) for b in specimen.bodies},
+        "bodies": {b.name: _known_body(b, ratio) for b in specimen.bodies},
         "plates": {
             "count": 2,
             "E_rel_sigma": MODULUS_SIGMA,
+            "mass_rel_sigma": _MASS_SIGMA,
             "origin": "corner of the bottom body, z up; the bolts lie in the interface",
         },
         "bolts_mm": [_millimetres(at) for at in specimen.bolts],
         "feet_mm": [_millimetres(at) for at in specimen.feet],
         "torques_Nm": list(bench.torques),
-        "hammer_points": {p.name: _place_sheet(p) for p in specimen.points},
+        "hammer_points": {p.name: _known_place(p) for p in specimen.points},
         "aim_sigma_mm": 1e3 * AIM_SIGMA,
         "tilt_sigma_deg": float(np.degrees(TILT_SIGMA)),
-        "sensors": [{"name": s.name} | _place_sheet(s) for s in specimen.sensors],
+        "sensors": [{"name": s.name} | _known_place(s) for s in specimen.sensors],
         "joint_per_bolt": {
             "kn_N_per_m": joint[2],
             "ktx_N_per_m": joint[0],
@@ -184,7 +186,7 @@ def bench_sheet(bench: FlexibleBench) -> Json:
     }
 
 
-def _body_sheet(body: ElasticBody, damping_ratio: float) -> Json:
+def _known_body(body: ElasticBody, damping_ratio: float) -> Json:
     block = body.block
     return {
         "size_mm": _millimetres(block.size),
@@ -202,7 +204,7 @@ def _body_sheet(body: ElasticBody, damping_ratio: float) -> Json:
     }
 
 
-def _place_sheet(place: BodyPlace) -> Json:
+def _known_place(place: BodyPlace) -> Json:
     return {
         "position_mm": _millimetres(place.position),
         "direction": list(place.direction),
