@@ -167,7 +167,7 @@ def _spread(
         whole[axis][np.ix_(i, j, k)] = block
         start += size
     largest = whole.flat[int(np.argmax(np.abs(whole)))]
-    return whole * np.sign(largest)
+    return np.asarray(whole * np.sign(largest))
 
 
 def _matrices(

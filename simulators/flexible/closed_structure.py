@@ -196,7 +196,8 @@ def _couplings(
             continue
         k, c = np.diag(stiffness), np.diag(values.damping[:, direction])
         if direction == NORMAL and state.rocking is not None:
-            k = np.linalg.inv(np.diag(1 / stiffness) + state.rocking)
+            softened = np.linalg.inv(np.diag(1 / stiffness) + state.rocking)
+            k = np.asarray(softened, dtype=float)
             # The added compliance loses as much energy per cycle as the bolts do.
             c = float(np.mean(values.damping[:, NORMAL] / stiffness)) * k
         parts.append((place.bolts[:, direction], k, c))

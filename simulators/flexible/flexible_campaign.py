@@ -50,7 +50,10 @@ from jointbench.simulators.flexible.physical_bodies import (
     physical_bodies,
 )
 from jointbench.simulators.flexible.sensor_chain import (
+    ACCELEROMETER_SENSITIVITY,
     CONVERTER,
+    FULL_SCALE,
+    HAMMER_SENSITIVITY,
     OVERSAMPLING,
     InputNoise,
     digitised,
@@ -180,9 +183,14 @@ def draw_bench(
     plan = plan_hits(specimen.points, torques, plain.levels, tip, rng)
     trial = replace(plain, hits=plan)
     strong, typical, scales = _tried(trial)
-    share = min(1.0, _FILLED / strong)
+    share = min(1.0, _FILLED / max(strong))
     levels = levels_to(STRONGEST * share)
-    hits = plan_hits(specimen.points, torques, levels, tip, rng)
+    full = FULL_SCALE / ACCELEROMETER_SENSITIVITY
+    limits = tuple(
+        min(FULL_SCALE / HAMMER_SENSITIVITY, trial.levels[-1] * full / peak)
+        for peak in strong
+    )
+    hits = plan_hits(specimen.points, torques, levels, tip, rng, limits=limits)
     share = levels[-1] / trial.levels[-1]
     scales = replace(
         scales,
@@ -217,11 +225,12 @@ def _values(
     return replace(nominal, stiffness=stated), values
 
 
-def _tried(bench: FlexibleBench) -> tuple[float, float, DrawScales]:
-    """Return peak and typical acceleration at the highest level, and motions."""
+def _tried(bench: FlexibleBench) -> tuple[tuple[float, ...], float, DrawScales]:
+    """Return peaks by point and a typical peak at the highest level, and motions."""
     chosen = [h for h in bench.hits if h.level == bench.levels[-1] and h.bad is None]
     chosen = [
-        next(h for h in chosen if h.point == p) for p in {h.point for h in chosen}
+        next(h for h in chosen if h.point == p)
+        for p in range(len(bench.specimen.points))
     ]
     place = bench.coordinates
     structure, laws = structure_of(replace(bench, effects=()), chosen[0])
@@ -246,7 +255,8 @@ def _tried(bench: FlexibleBench) -> tuple[float, float, DrawScales]:
         speed[:split].reshape(-1, 3),
         travel[split:],
     )
-    return float(peaks.max()), float(np.median(peaks)), scales
+    by_point = tuple(float(x) for x in np.abs(seen).max(axis=(1, 2)))
+    return by_point, float(np.median(peaks)), scales
 
 
 def structure_of(
@@ -319,7 +329,7 @@ def simulate_hits(bench: FlexibleBench) -> FloatArray:
         own = hit_set(bench, hits, rows)
         signals = integrate_hits(structure, own, laws, steps=steps, step=step)
         signals = faulty_signals(signals, bench.specimen, bench.effects, rate=1 / step)
-        force = own.force(step * np.arange(steps))
+        force = own.force(step * np.arange(steps, dtype=float))
         for index, f, seen in zip(group, force, signals, strict=True):
             found[index] = sampled(f, seen)
     return found

@@ -60,7 +60,7 @@ class ElasticBody:
 
     def within(self, place: Vector) -> FloatArray:
         """Return a place from the corner of the body [m], shape (3,)."""
-        return np.asarray(place) - np.asarray(self.corner)
+        return np.asarray(np.subtract(place, self.corner), dtype=float)
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,10 +97,10 @@ def integrate_hits(
         steps).
     """
     matrices = _matrices(structure, step)
-    times = step * np.arange(steps)
+    times: FloatArray = step * np.arange(steps, dtype=float)
     force = [hits.force(times + node * step) for node in (*_part_nodes(), *NODES)]
     now = hits.force(times)
-    push = matrices.inverse @ (structure.lift.T @ hits.load)
+    push = np.asarray(matrices.inverse @ (structure.lift.T @ hits.load), dtype=float)
     sense = hits.sensors @ structure.lift
     if laws is None:
         found = _linear(matrices, push, force, sense)
@@ -124,15 +124,19 @@ def energy(structure: ClosedStructure, state: FloatArray) -> FloatArray:
     return np.asarray(0.5 * (kinetic + elastic))
 
 
-def propagate(structure: ClosedStructure, state: FloatArray, step: float) -> FloatArray:
-    """Return states one step later without any force.
+def propagate(
+    structure: ClosedStructure, state: FloatArray, *, step: float, steps: int
+) -> FloatArray:
+    """Return states some steps later without any force.
 
     Args:
         structure: assembled.
         state: displacements, then velocities, shape (2 n, any).
         step: [s].
+        steps: number of steps.
     """
-    return np.asarray(_matrices(structure, step).onward @ state)
+    onward = _matrices(structure, step).onward
+    return np.asarray(np.linalg.matrix_power(onward, steps) @ state)
 
 
 def _part_nodes() -> tuple[float, ...]:
@@ -143,7 +147,8 @@ def _part_nodes() -> tuple[float, ...]:
 def _matrices(structure: ClosedStructure, step: float) -> _Steps:
     """Return the matrices of a step whose linear part is several smaller ones."""
     whole, small = _one_step(structure, step), _one_step(structure, step / _PARTS)
-    hammer, after = [], np.eye(small.onward.shape[0])
+    hammer: list[FloatArray] = []
+    after = np.eye(small.onward.shape[0])
     for _ in range(_PARTS):
         hammer = [after @ small.entry, *hammer]
         after = after @ small.onward
@@ -152,7 +157,7 @@ def _matrices(structure: ClosedStructure, step: float) -> _Steps:
 
 def _one_step(structure: ClosedStructure, step: float) -> _Steps:
     size = structure.mass.shape[0]
-    inverse = np.linalg.inv(structure.mass)
+    inverse = np.asarray(np.linalg.inv(structure.mass), dtype=float)
     rate = np.zeros((2 * size, 2 * size))
     rate[:size, size:] = np.eye(size)
     rate[size:, :size] = -inverse @ structure.stiffness

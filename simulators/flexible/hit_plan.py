@@ -90,6 +90,8 @@ def plan_hits(
     levels: tuple[float, ...],
     tip: HammerTip,
     rng: np.random.Generator,
+    *,
+    limits: tuple[float, ...] = (),
 ) -> tuple[HitRecord, ...]:
     """Draw all hits in order of time.
 
@@ -101,6 +103,8 @@ def plan_hits(
         levels: peak forces [N].
         tip: of the hammer.
         rng: source of the draws.
+        limits: force at each point that fills the range of an input [N]; none for no
+            overloads.
     """
     hits: list[HitRecord] = []
     now = 0.0
@@ -110,11 +114,13 @@ def plan_hits(
                 wanted: list[BadHit | None] = [None]
                 wanted += [None] * bool(rng.random() < _REPEATS)
                 if rng.random() < _BAD_SHARE * (1 + _REPEATS):
-                    kind = rng.choice(list(BadHit))
+                    kind = rng.choice([k for k in BadHit if limits or k != "overload"])
                     wanted.insert(int(rng.integers(len(wanted))), BadHit(kind))
                 for bad in wanted:
                     now += float(_INTERVAL * rng.uniform(0.5, 1.5))
                     own = _hit(place, level, levels, tip, bad, rng)
+                    if bad is BadHit.OVERLOAD:
+                        own = _too_hard(own, limits[point], rng)
                     hits.append(replace(own, point=point, torque=torque, time=now))
     return tuple(hits)
 
@@ -159,15 +165,15 @@ def _hit(
         time=0.0,
         offset=_vector(np.asarray(offset)),
         direction=_vector(direction),
-        pulses=_contacts(first, bad, levels[-1], rng),
+        pulses=_contacts(first, bad, rng),
         bad=bad,
     )
 
 
 def _contacts(
-    first: Pulse, bad: BadHit | None, highest: float, rng: np.random.Generator
+    first: Pulse, bad: BadHit | None, rng: np.random.Generator
 ) -> tuple[Pulse, ...]:
-    """Return the contacts of a hit: a double one bounces, an overload is too hard."""
+    """Return the contacts of a hit: a double one bounces."""
     if bad is BadHit.DOUBLE:
         again = replace(
             first,
@@ -176,10 +182,13 @@ def _contacts(
             width=1.1 * first.width,
         )
         return first, again
-    if bad is BadHit.OVERLOAD:
-        # The levels are chosen so that the highest fills half of the range.
-        return (replace(first, peak=highest * float(rng.uniform(4.0, 7.0))),)
     return (first,)
+
+
+def _too_hard(hit: HitRecord, limit: float, rng: np.random.Generator) -> HitRecord:
+    """Return a hit with a force that is beyond the range of an input."""
+    peak = limit * float(rng.uniform(1.3, 2.5))
+    return replace(hit, pulses=(replace(hit.pulses[0], peak=peak),))
 
 
 def _vector(values: FloatArray) -> Vector:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.fft
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.simulators.flexible.closed_structure import Coordinates
 from jointbench.simulators.flexible.flexible_effects import FlexibleEffect
 from jointbench.simulators.flexible.flexible_specimen import (
@@ -154,9 +154,8 @@ def _filtered(signal: FloatArray, effect: FlexibleEffect, rate: float) -> FloatA
     p = effect.parameters
     size = scipy.fft.next_fast_len(signal.shape[-1] + round(0.02 * rate), real=True)
     s = 2j * np.pi * scipy.fft.rfftfreq(size, 1 / rate)
-    factor: ComplexArray
     if effect.name == "delay":
-        factor = np.exp(-s * p["tau"])
+        factor = np.asarray(np.exp(-s * p["tau"]))
     else:
         own = 2 * np.pi * p["frequency"]
         factor = own**2 / (s**2 + 2 * p["damping_ratio"] * own * s + own**2)
@@ -206,7 +205,7 @@ def digitised(
     volts = values * scale[:, None] + offset[:, None]
     top = 2 ** (BITS - 1)
     counts = np.clip(np.round(volts / FULL_SCALE * top), -top, top - 1)
-    return counts.astype(np.int32)
+    return np.asarray(counts, dtype=np.int32)
 
 
 def sensitivities(channels: int) -> FloatArray:

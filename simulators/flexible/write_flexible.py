@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Write campaigns on flexible specimens: hits.h5, sheet.json and truth.json."""
+"""Campaigns on flexible specimens as files: hits, nominal values and truth."""
 
 import json
-from collections.abc import Mapping
 from pathlib import Path
 
 import h5py
@@ -39,30 +38,17 @@ Json = dict[str, object]
 _MASS_SIGMA = 1e-3  # of a body that was weighed
 
 
-def write_flexible_campaign(
-    campaign: FlexibleCampaign,
-    folder: Path,
-    margins: Mapping[str, Mapping[str, object]] | None = None,
-) -> None:
-    """Write a campaign as hits.h5, sheet.json and truth.json.
+def write_hits(campaign: FlexibleCampaign, path: Path) -> None:
+    """Write the hits of a campaign and the modal tables as HDF5.
 
     Args:
         campaign: the campaign.
-        folder: receives the three files; it is made if there is none.
-        margins: of the effects, by name, for the truth.
+        path: of the file; `known_bench` and `flexible_truth` go beside it as JSON.
     """
-    folder.mkdir(parents=True, exist_ok=True)
-    bench = campaign.bench
-    with h5py.File(folder / "hits.h5", "w") as file:
+    with h5py.File(path, "w") as file:
         _write_records(file, campaign)
-        for body in bench.bodies:
-            _write_table(file.create_group(f"model/{body.body.name}"), bench, body)
-    for name, content in (
-        ("sheet", known_bench(bench)),
-        ("truth", flexible_truth(bench) | {"margins": dict(margins or {})}),
-    ):
-        text = json.dumps(content, indent=1)
-        (folder / f"{name}.json").write_text(text, encoding="utf-8")
+        for body in campaign.bench.bodies:
+            _write_table(file.create_group(f"model/{body.body.name}"), campaign, body)
 
 
 def _write_records(file: h5py.File, campaign: FlexibleCampaign) -> None:
@@ -116,9 +102,11 @@ def _channels(bench: FlexibleBench) -> list[Json]:
     return rows
 
 
-def _write_table(group: h5py.Group, bench: FlexibleBench, body: PhysicalBody) -> None:
+def _write_table(
+    group: h5py.Group, campaign: FlexibleCampaign, body: PhysicalBody
+) -> None:
     """Write the modal table of one body; its shapes are those of the drawing."""
-    specimen = bench.specimen
+    specimen = campaign.bench.specimen
     own = specimen.bodies.index(body.body)
     group["freq_hz"] = body.table_frequency
     group["phi_bolts"] = np.stack([body.table_rows(at) for at in specimen.bolts])
