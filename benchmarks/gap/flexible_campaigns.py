@@ -5,9 +5,9 @@ Usage: python benchmarks/gap/flexible_campaigns.py FOLDER --kind single --count 
 
 Kinds: null; single (one effect, each in turn); hidden (the same, to be judged with the
 effect taken out of the catalogue); pair; outside (an effect that no catalogue has). A
-campaign is a folder with hits.h5, sheet.json and truth.json, which holds the margin of
-each effect; one that is there already is not made again. A pair is drawn again until
-both effects reach the margin, a single effect as well.
+campaign is a folder with hits.h5, its nominal values and truth.json, which holds the
+margin of each effect; one that is there already is not made again. A campaign is drawn
+again until each of its effects reaches the margin.
 """
 
 import argparse
@@ -19,17 +19,15 @@ from pathlib import Path
 
 import numpy as np
 
-from jointbench.simulators.flexible.flexible_campaign import (
-    FlexibleBench,
-    draw_bench,
-    make_flexible_campaign,
-)
+from jointbench.simulators.flexible.draw_flexible_bench import draw_bench
+from jointbench.simulators.flexible.draw_specimen import SPECIMEN_KINDS
+from jointbench.simulators.flexible.flexible_bench import FlexibleBench
+from jointbench.simulators.flexible.flexible_campaign import make_flexible_campaign
 from jointbench.simulators.flexible.flexible_effects import (
     FLEXIBLE_EFFECTS,
     FLEXIBLE_OUTSIDE,
 )
 from jointbench.simulators.flexible.flexible_margin import flexible_margin
-from jointbench.simulators.flexible.flexible_specimen import SPECIMEN_KINDS
 from jointbench.simulators.flexible.physical_bodies import WORLDS
 from jointbench.simulators.flexible.write_flexible import (
     flexible_truth,

@@ -25,7 +25,7 @@ _AXES = 3
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class ElasticBlock:
     """A homogeneous rectangular block.
 
     Attributes:
@@ -57,7 +57,7 @@ class BlockModes:
         coefficients: of the polynomials [1/kg^0.5], shape (3, *terms, n_modes).
     """
 
-    block: Block
+    block: ElasticBlock
     terms: tuple[int, int, int]
     frequency: FloatArray
     coefficients: FloatArray
@@ -69,7 +69,7 @@ class BlockModes:
 
 @lru_cache(maxsize=16)
 def block_modes(
-    block: Block, *, terms: tuple[int, int, int], elastic: int
+    block: ElasticBlock, *, terms: tuple[int, int, int], elastic: int
 ) -> BlockModes:
     """Return the six rigid and the first elastic modes of a free block.
 
@@ -171,7 +171,7 @@ def _spread(
 
 
 def _matrices(
-    block: Block, chosen: list[list[IntArray]]
+    block: ElasticBlock, chosen: list[list[IntArray]]
 ) -> tuple[FloatArray, FloatArray]:
     """Return stiffness and mass of one class."""
     shear = block.youngs_modulus / 2 / (1 + block.poisson_ratio)

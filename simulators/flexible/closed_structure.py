@@ -9,7 +9,7 @@ import scipy.linalg
 
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen, Vector
-from jointbench.simulators.flexible.joint_values import JointValues
+from jointbench.simulators.flexible.joint_values import BoltValues
 from jointbench.simulators.flexible.physical_bodies import PhysicalBody
 
 NORMAL = 2  # direction of the bolts
@@ -17,7 +17,7 @@ _ALMOST = 1e-10
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Attachment:
+class FixedPart:
     """Something fixed to a body at a place.
 
     Attributes:
@@ -111,10 +111,10 @@ class JointAtTorque:
         oscillators: hidden ones.
     """
 
-    values: JointValues
+    values: BoltValues
     feet_factors: FloatArray
     rocking: FloatArray | None = None
-    attachments: tuple[Attachment, ...] = ()
+    attachments: tuple[FixedPart, ...] = ()
     oscillators: tuple[Oscillator, ...] = ()
 
     def __post_init__(self) -> None:
@@ -208,7 +208,7 @@ def _couplings(
     return parts
 
 
-def _free_coordinates(place: Coordinates, values: JointValues, size: int) -> FloatArray:
+def _free_coordinates(place: Coordinates, values: BoltValues, size: int) -> FloatArray:
     """Return an orthonormal basis of the motions that rigid directions allow."""
     rigid = np.isinf(values.stiffness).all(axis=0)
     if not rigid.any():

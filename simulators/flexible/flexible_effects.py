@@ -10,7 +10,7 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.acquisition.basics.errors import UsageError
 from jointbench.simulators.flexible.flexible_specimen import BoltedSpecimen
-from jointbench.simulators.flexible.joint_values import JointValues
+from jointbench.simulators.flexible.joint_values import BoltValues
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class DrawScales:
     """
 
     specimen: BoltedSpecimen
-    values: JointValues
+    values: BoltValues
     travel: FloatArray
     speed: FloatArray
     feet_travel: FloatArray

@@ -12,17 +12,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-from jointbench.simulators.flexible.flexible_campaign import (
+from jointbench.simulators.flexible.faulty_sensors import (
+    faulty_signals,
+    sensor_rows,
+    surface_axes,
+)
+from jointbench.simulators.flexible.flexible_bench import (
     FlexibleBench,
     hit_set,
     structure_of,
 )
 from jointbench.simulators.flexible.gauss_integration import integrate_hits
-from jointbench.simulators.flexible.hit_plan import (
-    AIM_SIGMA,
+from jointbench.simulators.flexible.hit_plan import AIM_SIGMA, TILT_SIGMA
+from jointbench.simulators.flexible.hit_records import (
     PRETRIGGER,
     SAMPLE_RATE,
-    TILT_SIGMA,
     HitRecord,
 )
 from jointbench.simulators.flexible.joint_values import (
@@ -31,12 +35,7 @@ from jointbench.simulators.flexible.joint_values import (
     FEET_SIGMA,
     MODULUS_SIGMA,
     STIFFNESS_SIGMA,
-    JointValues,
-)
-from jointbench.simulators.flexible.sensor_chain import (
-    faulty_signals,
-    sensor_rows,
-    surface_axes,
+    BoltValues,
 )
 
 _WINDOW = 0.04  # [s] of each hit
@@ -142,7 +141,7 @@ def _noise(bench: FlexibleBench, base: FloatArray) -> FloatArray:
     return np.asarray(np.hypot(bench.noise.acceleration, floor * peak))
 
 
-def _moved_values(nominal: JointValues, true: JointValues) -> Iterator[JointValues]:
+def _moved_values(nominal: BoltValues, true: BoltValues) -> Iterator[BoltValues]:
     """Yield the true values, each with one parameter moved along its prior."""
 
     def up(sigma: float) -> float:

@@ -7,7 +7,8 @@ from types import MappingProxyType
 from urllib.parse import parse_qsl, urlsplit
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.flexible.flexible_campaign import FlexibleBench, draw_bench
+from jointbench.simulators.flexible.draw_flexible_bench import draw_bench
+from jointbench.simulators.flexible.flexible_bench import FlexibleBench
 
 FLEXIBLE_BENCHES = MappingProxyType(
     {"bolted-plates": "plates", "lap-beam": "lap-beam", "column-on-bed": "column"}
@@ -25,18 +26,25 @@ class FlexibleQuery:
         hide: names of effects, separated by commas.
         world: ``exact`` or ``life``, which the modal table is.
         beyond: modes that the bodies have and the table lacks.
+        margin: 1 to add the margin of each effect to the truth.
     """
 
     seed: int = 1
     hide: str = ""
     world: str = "exact"
     beyond: int = 0
+    margin: int = 0
 
 
 def is_flexible_url(url: str) -> bool:
     """Return whether a URL names a flexible bench."""
     parts = urlsplit(url)
     return parts.scheme == "sim" and parts.path in FLEXIBLE_BENCHES
+
+
+def flexible_query(url: str) -> FlexibleQuery:
+    """Return the parameters of a URL, as `bench_of_flexible_url` reads them."""
+    return FlexibleQuery(**_values(url, urlsplit(url).query))  # type: ignore[arg-type]
 
 
 def bench_of_flexible_url(url: str) -> FlexibleBench:
@@ -52,7 +60,7 @@ def bench_of_flexible_url(url: str) -> FlexibleBench:
     parts = urlsplit(url)
     if not is_flexible_url(url):
         raise UsageError(f"{url!r} is no flexible bench; write {_EXAMPLE}")
-    query = FlexibleQuery(**_values(url, parts.query))  # type: ignore[arg-type]
+    query = flexible_query(url)
     names = tuple(name for name in query.hide.split(",") if name)
     return draw_bench(
         query.seed,

@@ -11,6 +11,7 @@ Source:
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class PortLawKind(IntEnum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PortLaw:
+class BoltLaw:
     """One law at one port.
 
     Attributes:
@@ -80,7 +81,7 @@ class LawBank:
         freeze(self, "rows", "kinds", "parameters", "first", "sliders")
 
 
-def law_bank(laws: tuple[PortLaw, ...], size: int) -> LawBank | None:
+def law_bank(laws: tuple[BoltLaw, ...], size: int) -> LawBank | None:
     """Return laws as arrays, None for no law.
 
     Args:
@@ -120,11 +121,20 @@ def power_law_sliders(phimax: float, chi: float) -> tuple[FloatArray, FloatArray
     return weights, phimax * moments / weights
 
 
+class _LawArrays(NamedTuple):
+    """The arrays of a bank, as a compiled function takes them."""
+
+    kinds: IntArray
+    parameters: FloatArray
+    first: IntArray
+    sliders: FloatArray
+
+
 class PortMemory:
     """State of the laws of many hits: the last motion and the sliders."""
 
     def __init__(self, laws: LawBank, hits: int) -> None:
-        self._laws = laws
+        self._arrays = _LawArrays(laws.kinds, laws.parameters, laws.first, laws.sliders)
         count = laws.kinds.size
         self._last = np.zeros((count, hits))
         self._sliders = np.zeros((laws.sliders.shape[1], hits))
@@ -139,15 +149,13 @@ class PortMemory:
             motion: displacement and velocity at the first stage, then at the second,
                 shape (4 n_laws, n_hits).
         """
-        laws, n = self._laws, self._laws.kinds.size
+        n = self._arrays.kinds.size
         self._scratch[:] = self._sliders
         before = self._last
         for stage in (0, 1):
             r, v = motion[2 * n * stage :][:n], motion[2 * n * stage + n :][:n]
-            _forces(
-                *(laws.kinds, laws.parameters, laws.first, laws.sliders),
-                *(before, r, v, self._scratch, self._stages[n * stage :][:n]),
-            )
+            out = self._stages[n * stage :][:n]
+            _forces(self._arrays, before, r, v, self._scratch, out)
             before = r
         return self._stages
 
@@ -158,14 +166,12 @@ class PortMemory:
             motion: as in `stage_forces`.
             end: displacement and velocity at the end, shape (2 n_laws, n_hits).
         """
-        laws, n = self._laws, self._laws.kinds.size
+        n = self._arrays.kinds.size
         before = self._last
         points = (motion[: 2 * n], motion[2 * n :], end)
         for point in points:
-            _forces(
-                *(laws.kinds, laws.parameters, laws.first, laws.sliders),
-                *(before, point[:n], point[n:], self._sliders, self.force),
-            )
+            r, v = point[:n], point[n:]
+            _forces(self._arrays, before, r, v, self._sliders, self.force)
             before = point[:n]
         self._last = end[:n].copy()
 
@@ -205,10 +211,7 @@ def _friction(
 
 @compiled(error_model="numpy")
 def _forces(
-    kinds: IntArray,
-    parameters: FloatArray,
-    first: IntArray,
-    table: FloatArray,
+    laws: _LawArrays,
     before: FloatArray,
     r: FloatArray,
     v: FloatArray,
@@ -216,12 +219,12 @@ def _forces(
     force: FloatArray,
 ) -> None:
     """Move all sliders from one motion to another and return the forces of all laws."""
-    for law in range(kinds.size):
-        kind, k, g = kinds[law], parameters[law, 0], parameters[law, 1]
+    for law in range(laws.kinds.size):
+        kind, k, g = laws.kinds[law], laws.parameters[law, 0], laws.parameters[law, 1]
         if kind == PortLawKind.FRICTION:
-            low, high = first[law], first[law + 1]
-            own = sliders[low:high]
-            _friction(table[:, low:high], before[law], r[law], own, force[law])
+            low, high = laws.first[law], laws.first[law + 1]
+            table, own = laws.sliders[:, low:high], sliders[low:high]
+            _friction(table, before[law], r[law], own, force[law])
             force[law] *= k
             continue
         for h in range(r.shape[1]):

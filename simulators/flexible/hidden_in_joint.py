@@ -9,8 +9,8 @@ import numpy as np
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.flexible.closed_structure import (
     NORMAL,
-    Attachment,
     Coordinates,
+    FixedPart,
     JointAtTorque,
     Oscillator,
 )
@@ -21,11 +21,11 @@ from jointbench.simulators.flexible.flexible_specimen import (
     BoltedSpecimen,
 )
 from jointbench.simulators.flexible.friction_and_stops import (
-    PortLaw,
+    BoltLaw,
     PortLawKind,
     power_law_sliders,
 )
-from jointbench.simulators.flexible.joint_values import JointValues
+from jointbench.simulators.flexible.joint_values import BoltValues
 
 TANGENTIAL = (0, 1)
 _RATTLER_DAMPING, _RATTLER_FREQUENCY = 0.05, 4.0  # [-], [Hz]: it rests in its cavity
@@ -48,7 +48,7 @@ class HitCondition:
 def joint_state(
     place: Coordinates,
     specimen: BoltedSpecimen,
-    values: JointValues,
+    values: BoltValues,
     effects: Sequence[FlexibleEffect],
     condition: HitCondition,
 ) -> JointAtTorque:
@@ -126,10 +126,10 @@ def _attached(
     rows = place.rows(spot.body, spot.position)
     normal = np.abs(np.asarray(spot.direction)) @ rows
     if effect.name == "added_mass":
-        more = Attachment(rows, mass=p["m"])
+        more = FixedPart(rows, mass=p["m"])
         return replace(state, attachments=(*state.attachments, more))
     if effect.name == "added_stiffness":
-        more = Attachment(normal[None], stiffness=p["k"])
+        more = FixedPart(normal[None], stiffness=p["k"])
         return replace(state, attachments=(*state.attachments, more))
     if effect.name == "rattling_mass":
         own = [Oscillator(normal, p["m"], _RATTLER_FREQUENCY, _RATTLER_DAMPING)]
@@ -150,8 +150,8 @@ def added_coordinates(effect: FlexibleEffect) -> int:
 
 
 def _scaled(
-    values: JointValues, stiffness: FloatArray | float, damping: FloatArray | float
-) -> JointValues:
+    values: BoltValues, stiffness: FloatArray | float, damping: FloatArray | float
+) -> BoltValues:
     """Return values with factors of stiffness and damping per bolt."""
     count = values.stiffness.shape[0]
     own = [np.broadcast_to(x, count)[:, None] for x in (stiffness, damping)]
@@ -175,7 +175,7 @@ def port_laws_of(
     state: JointAtTorque,
     effects: Sequence[FlexibleEffect],
     condition: HitCondition,
-) -> tuple[PortLaw, ...]:
+) -> tuple[BoltLaw, ...]:
     """Return the laws that effects put at bolts, feet and hidden masses."""
     return tuple(
         law for effect in effects for law in _laws(place, state, effect, condition)
@@ -187,7 +187,7 @@ def _laws(
     state: JointAtTorque,
     effect: FlexibleEffect,
     condition: HitCondition,
-) -> Iterator[PortLaw]:
+) -> Iterator[BoltLaw]:
     p, where = effect.parameters, effect.where
     if effect.name in {"microslip", "macroslip"}:
         yield from _friction(place, state, effect, condition)
@@ -196,11 +196,11 @@ def _laws(
         own = state.oscillators[-1]
         k = own.mass * (2 * np.pi * _RATTLER_STIFFNESS) ** 2
         row = np.append(own.row, -1.0)
-        yield PortLaw(PortLawKind.SLOT, row, (k, p["g"]))
+        yield BoltLaw(PortLawKind.SLOT, row, (k, p["g"]))
         return
     if effect.name == "foot_stop":
         row = -place.feet[int(where["foot"]), NORMAL]
-        yield PortLaw(PortLawKind.STOP, row, (p["k"], p["g"]))
+        yield BoltLaw(PortLawKind.STOP, row, (p["k"], p["g"]))
         return
     kinds = {
         "clearance": (PortLawKind.STOP, "k", "g"),
@@ -211,7 +211,7 @@ def _laws(
     if effect.name in kinds:
         kind, first, second = kinds[effect.name]
         row = place.bolts[int(where["bolt"]), NORMAL]
-        yield PortLaw(kind, row, (p[first], p.get(second, 0.0)))
+        yield BoltLaw(kind, row, (p[first], p.get(second, 0.0)))
 
 
 def _friction(
@@ -219,7 +219,7 @@ def _friction(
     state: JointAtTorque,
     effect: FlexibleEffect,
     condition: HitCondition,
-) -> Iterator[PortLaw]:
+) -> Iterator[BoltLaw]:
     """Yield the sliders of the tangential directions of one bolt or of all."""
     p, bolt = effect.parameters, effect.where["bolt"]
     bolts = range(place.bolts.shape[0]) if bolt == "all" else (int(bolt),)
@@ -233,4 +233,4 @@ def _friction(
         for direction in TANGENTIAL:
             k = float(state.values.stiffness[index, direction]) * p["share"]
             row = place.bolts[index, direction]
-            yield PortLaw(PortLawKind.FRICTION, row, (k, 0.0), weights, slips)
+            yield BoltLaw(PortLawKind.FRICTION, row, (k, 0.0), weights, slips)

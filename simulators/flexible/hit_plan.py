@@ -2,58 +2,29 @@
 """Hits of a campaign: points, levels and torques, aim, tilt, pulses and bad hits."""
 
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.flexible.flexible_specimen import BodyPlace, Vector
-from jointbench.simulators.measuring.hammer import Pulse, pulse_force
+from jointbench.simulators.flexible.hit_records import (
+    PRETRIGGER,
+    SAMPLE_RATE,
+    BadHit,
+    HitRecord,
+)
+from jointbench.simulators.measuring.hammer import Pulse
 
-LEVELS, LEVEL_RANGE = 4, 30.0
+_LEVELS, _LEVEL_RANGE = 4, 30.0
+
 AIM_SIGMA, TILT_SIGMA = 1.5e-3, np.radians(1.5)
 """Standard deviations of the landing point [m] and of each of two tilts [rad]."""
-SAMPLE_RATE, SAMPLES, PRETRIGGER = 25600.0, 8192, 512
+
 _BAD_SHARE = 0.1
+
 _REPEATS = 0.35  # share of the conditions that are hit twice
+
 _INTERVAL = 8.0  # mean time between hits [s]
-
-
-class BadHit(StrEnum):
-    """What makes a hit useless."""
-
-    DOUBLE = "double"
-    OVERLOAD = "overload"
-    GLANCING = "glancing"
-
-
-@dataclass(frozen=True, slots=True)
-class HitRecord:
-    """One hit.
-
-    Attributes:
-        point: index of the point under the hammer.
-        torque: on each bolt [N m].
-        level: peak force that the operator aims for [N].
-        time: since the first hit [s].
-        offset: of the landing point from the aimed one [m].
-        direction: of the force, unit vector.
-        pulses: the contact, and a second one of a double hit; times in the record.
-        bad: None for a good hit.
-    """
-
-    point: int
-    torque: float
-    level: float
-    time: float
-    offset: Vector
-    direction: Vector
-    pulses: tuple[Pulse, ...]
-    bad: BadHit | None = None
-
-    def force(self, times: FloatArray) -> FloatArray:
-        """Return the force at ascending times of the record [N]."""
-        return pulse_force(self.pulses, times)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +50,7 @@ def draw_tip(rng: np.random.Generator) -> HammerTip:
 
 def levels_to(highest: float) -> tuple[float, ...]:
     """Return four levels over a factor of 30, with two digits [N]."""
-    raw = highest * LEVEL_RANGE ** (np.arange(1 - LEVELS, 1) / (LEVELS - 1))
+    raw = highest * _LEVEL_RANGE ** (np.arange(1 - _LEVELS, 1) / (_LEVELS - 1))
     scale = 10.0 ** (1 - np.floor(np.log10(raw)))
     return tuple(float(x) for x in np.round(raw * scale) / scale)
 

@@ -21,7 +21,7 @@ _FEET_FREQUENCY, _FEET_DAMPING = (10.0, 22.0), (0.03, 0.08)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class JointValues:
+class BoltValues:
     """Values of the base model; stiffness infinite where a direction is rigid.
 
     Attributes:
@@ -45,7 +45,7 @@ class JointValues:
         freeze(self, "stiffness", "damping", "modulus", "damping_ratio")
 
 
-def draw_nominal(specimen: BoltedSpecimen, rng: np.random.Generator) -> JointValues:
+def draw_nominal(specimen: BoltedSpecimen, rng: np.random.Generator) -> BoltValues:
     """Draw the nominal values of a specimen, the same at every bolt."""
     normal = _log_uniform(rng, *_NORMAL[specimen.kind])
     tangential = normal * rng.uniform(0.35, 0.9) * np.exp(0.05 * rng.normal(size=2))
@@ -60,7 +60,7 @@ def draw_nominal(specimen: BoltedSpecimen, rng: np.random.Generator) -> JointVal
     feet = len(specimen.feet)
     ratio = rng.uniform(*_FEET_DAMPING)
     count = len(specimen.bolts)
-    return JointValues(
+    return BoltValues(
         stiffness=np.tile(_digits(stiffness), (count, 1)),
         damping=np.tile(_digits(damping), (count, 1)),
         feet_stiffness=float(_digits(mass * omega**2 / feet)),
@@ -70,7 +70,7 @@ def draw_nominal(specimen: BoltedSpecimen, rng: np.random.Generator) -> JointVal
     )
 
 
-def draw_true(nominal: JointValues, rng: np.random.Generator) -> JointValues:
+def draw_true(nominal: BoltValues, rng: np.random.Generator) -> BoltValues:
     """Draw the true values about the nominal ones, log-normal.
 
     Stiffness of one direction, and damping of the normal and of both tangential ones,
@@ -81,7 +81,7 @@ def draw_true(nominal: JointValues, rng: np.random.Generator) -> JointValues:
     tangential, normal = np.exp(DAMPING_SIGMA * rng.standard_normal(2))
     losses = np.array([tangential, tangential, normal])
     feet = np.exp(rng.standard_normal(2) * (FEET_SIGMA, DAMPING_SIGMA))
-    return JointValues(
+    return BoltValues(
         stiffness=nominal.stiffness * common * bolts[:, None],
         damping=nominal.damping * losses * bolts[:, None],
         feet_stiffness=nominal.feet_stiffness * float(feet[0]),

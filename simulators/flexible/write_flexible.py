@@ -7,22 +7,16 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from jointbench.simulators.flexible.flexible_campaign import (
-    FlexibleBench,
-    FlexibleCampaign,
-)
+from jointbench.simulators.flexible.flexible_bench import FlexibleBench
+from jointbench.simulators.flexible.flexible_campaign import FlexibleCampaign
 from jointbench.simulators.flexible.flexible_effects import (
     FLEXIBLE_OUTSIDE,
     FlexibleEffect,
 )
 from jointbench.simulators.flexible.flexible_specimen import BodyPlace, ElasticBody
 from jointbench.simulators.flexible.hidden_in_joint import named_place
-from jointbench.simulators.flexible.hit_plan import (
-    AIM_SIGMA,
-    PRETRIGGER,
-    SAMPLE_RATE,
-    TILT_SIGMA,
-)
+from jointbench.simulators.flexible.hit_plan import AIM_SIGMA, TILT_SIGMA
+from jointbench.simulators.flexible.hit_records import PRETRIGGER, SAMPLE_RATE
 from jointbench.simulators.flexible.joint_values import (
     BOLT_SIGMA,
     DAMPING_SIGMA,
@@ -31,7 +25,7 @@ from jointbench.simulators.flexible.joint_values import (
     STIFFNESS_SIGMA,
 )
 from jointbench.simulators.flexible.physical_bodies import PhysicalBody
-from jointbench.simulators.flexible.sensor_chain import BITS, FULL_SCALE, sensitivities
+from jointbench.simulators.flexible.sensor_chain import COUNT, FULL_SCALE, sensitivities
 
 CAMPAIGN_SCHEMA, NOMINAL_SCHEMA = "campaign/1", "bench-sheet/1"
 Json = dict[str, object]
@@ -73,7 +67,6 @@ def _write_records(file: h5py.File, campaign: FlexibleCampaign) -> None:
 def _channels(bench: FlexibleBench) -> list[Json]:
     sensors = bench.specimen.sensors
     scale = sensitivities(1 + len(sensors))
-    count = FULL_SCALE / 2 ** (BITS - 1)
     rows: list[Json] = [
         {
             "name": "hammer",
@@ -83,7 +76,7 @@ def _channels(bench: FlexibleBench) -> list[Json]:
             "body": bench.specimen.points[0].body,
             "position_m": None,
             "direction": None,
-            "counts_to_V": count,
+            "counts_to_V": COUNT,
         }
     ]
     for sensor, volts in zip(sensors, scale[1:], strict=True):
@@ -96,7 +89,7 @@ def _channels(bench: FlexibleBench) -> list[Json]:
                 "body": sensor.body,
                 "position_m": list(sensor.position),
                 "direction": list(sensor.direction),
-                "counts_to_V": count,
+                "counts_to_V": COUNT,
             }
         )
     return rows

@@ -69,8 +69,7 @@ def record_command(
     """Record a whole campaign on a bench into a session file.
 
     All hits are judged after the recording. A flexible bench (two bodies on bolts)
-    gives a file of raw hits, its nominal values as '.sheet.json' and what it hides as
-    '.truth.json'.
+    gives a file of raw hits; nominal values and what it hides go beside it as JSON.
 
     Examples:
         jointbench record 'sim:two-body-campaign?seed=3&hide=jenkins' --out session.h5
@@ -79,7 +78,7 @@ def record_command(
     from jointbench.simulators.flexible.flexible_url import is_flexible_url
 
     if is_flexible_url(source):
-        from jointbench.station.commands.record_flexible import run_record_flexible
+        from jointbench.station.sources.record_flexible import run_record_flexible
 
         run_record_flexible(source, out, overwrite=force, json_target=json)
         return 0

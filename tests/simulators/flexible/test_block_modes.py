@@ -6,14 +6,14 @@ from numpy.testing import assert_allclose
 
 from jointbench.simulators.flexible.block_modes import (
     RIGID,
-    Block,
+    ElasticBlock,
     block_modes,
     displacement,
     displacement_gradient,
 )
 
-SQUARE = Block((0.1, 0.1, 0.07), 70e9, 0.3, 2700.0)
-PLATE = Block((0.5, 0.3, 0.05), 55e9, 0.25, 2600.0)
+SQUARE = ElasticBlock((0.1, 0.1, 0.07), 70e9, 0.3, 2700.0)
+PLATE = ElasticBlock((0.5, 0.3, 0.05), 55e9, 0.25, 2600.0)
 
 
 def test_a_square_block_has_lames_mode() -> None:
@@ -26,7 +26,7 @@ def test_a_square_block_has_lames_mode() -> None:
 
 def test_a_block_without_lateral_strain_is_a_rod() -> None:
     """With Poisson's ratio 0 the longitudinal modes are n c / (2 L)."""
-    rod = Block((0.6, 0.05, 0.04), 70e9, 0.0, 2700.0)
+    rod = ElasticBlock((0.6, 0.05, 0.04), 70e9, 0.0, 2700.0)
     modes = block_modes(rod, terms=(14, 4, 4), elastic=24)
     first = np.sqrt(rod.youngs_modulus / rod.density) / 2 / 0.6
     for order in (1, 2):
@@ -35,7 +35,7 @@ def test_a_block_without_lateral_strain_is_a_rod() -> None:
 
 def test_a_slender_block_bends_as_a_free_beam() -> None:
     """Euler and Bernoulli: (beta L)^2 = 22.373; shear lowers it by 6 (h / L)^2."""
-    beam = Block((1.0, 0.02, 0.01), 200e9, 0.3, 7800.0)
+    beam = ElasticBlock((1.0, 0.02, 0.01), 200e9, 0.3, 7800.0)
     modes = block_modes(beam, terms=(12, 4, 4), elastic=2)
     radius = 0.01 / np.sqrt(12)
     speed = np.sqrt(beam.youngs_modulus / beam.density)
@@ -67,8 +67,8 @@ def test_gradients_are_those_of_the_displacement() -> None:
     modes = block_modes(PLATE, terms=(7, 6, 4), elastic=10)
     place, step = np.array([0.11, 0.07, 0.05]), 1e-4
     for axis, unit in enumerate(np.eye(3)):
-        ahead, behind = (
+        ahead, before = (
             displacement(modes, place + sign * step * unit) for sign in (1, -1)
         )
         found = displacement_gradient(modes, place)[axis]
-        assert_allclose((ahead - behind) / 2 / step, found, atol=1e-5)
+        assert_allclose((ahead - before) / 2 / step, found, atol=1e-5)

@@ -10,7 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from jointbench.acquisition.basics.errors import UsageError
-from jointbench.simulators.flexible.flexible_campaign import draw_bench
+from jointbench.simulators.flexible.draw_flexible_bench import draw_bench
 from jointbench.simulators.flexible.flexible_effects import (
     FLEXIBLE_EFFECTS,
     FLEXIBLE_OUTSIDE,
@@ -18,8 +18,8 @@ from jointbench.simulators.flexible.flexible_effects import (
 )
 from jointbench.simulators.flexible.flexible_margin import flexible_margin
 from jointbench.simulators.flexible.flexible_url import bench_of_flexible_url
-from jointbench.simulators.flexible.hit_plan import PRETRIGGER, SAMPLES, BadHit
-from jointbench.station.commands.record_flexible import run_record_flexible
+from jointbench.simulators.flexible.hit_records import PRETRIGGER, SAMPLES, BadHit
+from jointbench.station.sources.record_flexible import run_record_flexible
 
 URL = "sim:lap-beam?seed=25&hide=loose_bolt,joint_compliance_normal"
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.flexible.friction_and_stops import (
-    PortLaw,
+    BoltLaw,
     PortLawKind,
     PortMemory,
     law_bank,
@@ -16,7 +16,7 @@ from jointbench.simulators.flexible.friction_and_stops import (
 ROW = np.ones(1)
 
 
-def forces(law: PortLaw, path: FloatArray) -> FloatArray:
+def forces(law: BoltLaw, path: FloatArray) -> FloatArray:
     """Return the force of a law along a path of its port [N]."""
     bank = law_bank((law,), 1)
     assert bank is not None
@@ -28,9 +28,9 @@ def forces(law: PortLaw, path: FloatArray) -> FloatArray:
     return np.array(found)
 
 
-def slider(slip: float) -> PortLaw:
+def slider(slip: float) -> BoltLaw:
     """Return one slider with all of a stiffness of 1 N/m."""
-    return PortLaw(PortLawKind.FRICTION, ROW, (1.0, 0.0), np.ones(1), np.array([slip]))
+    return BoltLaw(PortLawKind.FRICTION, ROW, (1.0, 0.0), np.ones(1), np.array([slip]))
 
 
 def test_a_slider_loads_along_a_hyperbolic_tangent() -> None:
@@ -80,5 +80,5 @@ def test_laws_without_memory_have_their_closed_forms(
     kind: PortLawKind, parameters: tuple[float, float], motion: float, force: float
 ) -> None:
     """One motion, one force."""
-    found = forces(PortLaw(kind, ROW, parameters), np.array([motion]))
+    found = forces(BoltLaw(kind, ROW, parameters), np.array([motion]))
     assert found[0] == pytest.approx(force)

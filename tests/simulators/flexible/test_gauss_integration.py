@@ -7,9 +7,10 @@ import pytest
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.simulators.flexible.closed_structure import ClosedStructure
-from jointbench.simulators.flexible.flexible_campaign import (
+from jointbench.simulators.flexible.draw_flexible_bench import draw_bench
+from jointbench.simulators.flexible.faulty_sensors import sensor_rows
+from jointbench.simulators.flexible.flexible_bench import (
     FlexibleBench,
-    draw_bench,
     hit_set,
     structure_of,
 )
@@ -19,8 +20,7 @@ from jointbench.simulators.flexible.gauss_integration import (
     integrate_hits,
     propagate,
 )
-from jointbench.simulators.flexible.hit_plan import SAMPLE_RATE
-from jointbench.simulators.flexible.sensor_chain import sensor_rows
+from jointbench.simulators.flexible.hit_records import SAMPLE_RATE
 
 SAMPLES = 640
 

@@ -2,16 +2,22 @@
 """``jointbench record`` on a flexible bench: raw hits, nominal values and truth."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 
 import h5py
 
 from jointbench.acquisition.basics.errors import UsageError
+from jointbench.simulators.flexible.flexible_bench import FlexibleBench
 from jointbench.simulators.flexible.flexible_campaign import (
     FlexibleCampaign,
     make_flexible_campaign,
 )
-from jointbench.simulators.flexible.flexible_url import bench_of_flexible_url
+from jointbench.simulators.flexible.flexible_margin import flexible_margin
+from jointbench.simulators.flexible.flexible_url import (
+    bench_of_flexible_url,
+    flexible_query,
+)
 from jointbench.simulators.flexible.write_flexible import (
     CAMPAIGN_SCHEMA,
     flexible_truth,
@@ -57,8 +63,16 @@ def run_record_flexible(
     with whole_file(out) as part:
         write_hits(campaign, part)
     write_text(nominal, json.dumps(known_bench(bench), indent=1) + "\n")
-    write_text(truth, json.dumps(flexible_truth(bench), indent=1) + "\n")
+    found = flexible_truth(bench) | {"margins": _margins(bench, url)}
+    write_text(truth, json.dumps(found, indent=1) + "\n")
     _show(campaign, out, json_target)
+
+
+def _margins(bench: FlexibleBench, url: str) -> dict[str, dict[str, float]]:
+    """Return the margin of each effect by its name, where the URL asks for them."""
+    if not flexible_query(url).margin:
+        return {}
+    return {e.name: asdict(flexible_margin(bench, e.name)) for e in bench.effects}
 
 
 def _require_campaign(path: Path) -> None:
