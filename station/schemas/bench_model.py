@@ -20,6 +20,7 @@ from jointbench.analysis.lumped.lumped_model import (
     ResponseChannel,
 )
 from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.schemas.positive_quantities import Force, Mass, Pressure, Share
 from jointbench.station.schemas.record_model import RecordTable, with_mechanical_units
 
 _OUTPUTS = {
@@ -28,12 +29,8 @@ _OUTPUTS = {
     "acceleration": Output.ACCELERATION,
 }
 
-_Mass = Annotated[float, with_unit("mass"), Field(gt=0)]
 _Stiffness = Annotated[float, with_unit("stiffness"), Field(ge=0)]
 _Damping = Annotated[float, with_unit("damping"), Field(ge=0)]
-Force = Annotated[float, with_unit("force"), Field(gt=0)]
-Pressure = Annotated[float, with_unit("pressure"), Field(gt=0)]
-_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
 _Delay = Annotated[float, with_unit("time"), Field(gt=0, lt=LONGEST_DELAY)]
 
 
@@ -44,8 +41,8 @@ class BodyTable(StrictTable):
     the point at which its channel sits, or the name of the body.
     """
 
-    mass: _Mass
-    mass_sd: _Mass | None = None
+    mass: Mass
+    mass_sd: Mass | None = None
     channel: str | None = None
     points: tuple[str, ...] = ()
 
@@ -82,9 +79,9 @@ class ScatterTable(StrictTable):
     A key left out states nothing: the size is then estimated from the hits alone.
     """
 
-    force_gain: _Share | None = None
-    joint_stiffness: _Share | None = None
-    channel_gain: _Share | None = None
+    force_gain: Share | None = None
+    joint_stiffness: Share | None = None
+    channel_gain: Share | None = None
     force_delay: _Delay | None = None
     channel_delay: _Delay | None = None
 
@@ -100,7 +97,7 @@ class GapTable(StrictTable):
 
     output: Literal["displacement", "velocity", "acceleration"] = "acceleration"
     preload_reference: Force | None = None
-    repeatability: _Share | None = None
+    repeatability: Share | None = None
     scatter: ScatterTable = ScatterTable()
     sessions: tuple[str, ...] = ()
 

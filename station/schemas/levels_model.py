@@ -27,18 +27,16 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from jointbench.station.files.toml_file import StrictTable, with_unit
+from jointbench.station.files.toml_file import StrictTable
+from jointbench.station.schemas.positive_quantities import Force, Frequency, Share
 
-_Frequency = Annotated[float, with_unit("frequency"), Field(gt=0)]
-_Force = Annotated[float, with_unit("force"), Field(gt=0)]
-_Share = Annotated[float, with_unit("ratio"), Field(gt=0, lt=1)]
 Excitation = Literal["random", "multisine", "sweep"]
 
 
 class BaseTable(StrictTable):
     """The base: band and number of modes, and whether a mode beyond it is allowed."""
 
-    band: tuple[_Frequency, _Frequency]
+    band: tuple[Frequency, Frequency]
     modes: Annotated[int, Field(ge=1, le=20)] | None = None
     beyond: bool = True
 
@@ -64,12 +62,12 @@ class RecordsTable(StrictTable):
 
     columns: str | None = None
     lines: str | None = None
-    rate: _Frequency | None = None
+    rate: Frequency | None = None
     excitation: Excitation = "random"
     period: Annotated[int, Field(ge=16)] | None = None
     lead: Annotated[int, Field(ge=0)] = 0
     decimate: Annotated[int, Field(ge=1, le=100)] = 1
-    repeatability: _Share | None = None
+    repeatability: Share | None = None
     remove_mean: bool = False
 
     @model_validator(mode="after")
@@ -105,7 +103,7 @@ class LevelTable(StrictTable):
     excitation: Excitation | None = None
     period: Annotated[int, Field(ge=16)] | None = None
     lead: Annotated[int, Field(ge=0)] | None = None
-    frf_force: _Force | None = None
+    frf_force: Force | None = None
 
 
 class LevelsModel(StrictTable):
