@@ -175,7 +175,7 @@ def balance_friction(
             w[at + SPREAD] += second - (force + before) / 24.0
 
 
-@compiled(inline="always")
+@compiled(forceinline=True)
 def _others_moved(
     w: FloatArray,
     f: FloatArray,

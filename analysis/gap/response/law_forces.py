@@ -102,7 +102,7 @@ def rub(
     return force
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def corner(before: float, now: float, edge: float) -> float:
     """Return the mean of max(r - edge, 0) over a step less that of its ends [m].
 
@@ -114,7 +114,7 @@ def corner(before: float, now: float, edge: float) -> float:
     return -0.5 * inside / (high - low + 1e-300)
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def force_of_real_joint(
     a: int, at: int, w: FloatArray, f: FloatArray, kinds: IntArray, p: FloatArray
 ) -> None:
@@ -144,7 +144,7 @@ def force_of_real_joint(
             f[own + k] = first * (v / size) * (size / third) ** second
 
 
-@compiled(fastmath=True, inline="always")
+@compiled(fastmath=True, forceinline=True)
 def force_without_memory(
     a: int,
     at: int,
