@@ -47,6 +47,8 @@ def reduced_machine_of(
 ) -> ReducedMachine:
     """Reduce the machine of a model file, or read it from the cache.
 
+    With measured bodies only its meshed bodies are kept.
+
     Args:
         model: the file.
         folder: of the files that it names.
@@ -56,8 +58,8 @@ def reduced_machine_of(
         The machine, with the values of its joints.
     """
     band = model.analysis.band
-    if cache is None:
-        return reduce_machine(machine_of(model, folder), band)
+    if cache is None or model.measured:
+        return reduce_machine(machine_of(model, folder), band, cache=cache)
     key = machine_key(model, folder)
     found = read_machine(
         cache, key, settings_of(model), springs_of(model), speeds_of(model)

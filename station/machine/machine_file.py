@@ -61,6 +61,11 @@ from jointbench.station.machine.machine_tables import (
     PointTable,
     TransientTable,
 )
+from jointbench.station.machine.measured_bodies import links_of, measured_parts
+from jointbench.station.machine.measured_tables import (
+    BandedBodyTable,
+    MixedLinkTable,
+)
 
 TOOL = "tool"
 """The point whose receptance is reported."""
@@ -79,6 +84,8 @@ class MachineModel(StrictTable):
     springs: dict[str, SpringTable] = Field(default_factory=dict)
     supports: tuple[SupportTable, ...] = ()
     masses: tuple[MassTable, ...] = ()
+    measured: dict[str, BandedBodyTable] = Field(default_factory=dict)
+    links: dict[str, MixedLinkTable] = Field(default_factory=dict)
     points: dict[str, PointTable] = Field(min_length=1)
     loads: tuple[LoadTable, ...] = ()
     transient: TransientTable | None = None
@@ -104,7 +111,7 @@ class MachineModel(StrictTable):
                 )
         if self.transient is not None and not self.loads:
             raise ValueError("a table [transient] needs [[loads]]")
-        if not self.joints and not self.springs:
+        if not self.joints and not self.springs and not self.links:
             raise ValueError("give [joints.*] or [springs.*] between the bodies")
         return self
 
@@ -145,6 +152,8 @@ def machine_of(model: MachineModel, folder: Path) -> Machine:
             for name, one in model.points.items()
         },
         speeds=speeds_of(model),
+        measured=measured_parts(model.measured, folder),
+        links=links_of(model.links, [*model.bodies, *model.beams, *model.rigid]),
     )
 
 

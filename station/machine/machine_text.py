@@ -231,9 +231,7 @@ def _bound_sentence(result: MachineResult) -> list[str]:
     bound = result.jointed.tool.bound
     if bound is None:
         return []
-    text = (
-        "The jointed receptance at the tool differs from that of the mesh by at most "
-    )
+    text = "The jointed receptance at the tool is within "
     if np.isfinite(bound.largest):
         return [
             f"{text}{bound.largest:.1e} of that of the mesh, away from antiresonances"

@@ -89,7 +89,8 @@ def run_any_machine(
     """Compute a machine of modelled bodies, or of bodies measured alone.
 
     Args:
-        model: the file; a table [measured] means measured bodies.
+        model: the file; a table [measured] without [bodies] means that all bodies are
+            measured.
         report: HTML report to write.
         motion: table of the transient to write.
         json_target: JSON to write.
@@ -111,10 +112,12 @@ def run_any_machine(
 
 
 def _describes_measured(path: Path) -> bool:
+    """Return whether all bodies of a file are measured."""
     try:
-        return "measured" in load_toml(path)
+        found = load_toml(path)
     except (OSError, ValueError):
-        return False  # the reader of the model names what is wrong
+        return False  # the reader of the model refuses it
+    return "measured" in found and "bodies" not in found
 
 
 def request_of(settings: MachineModel, folder: Path) -> MachineRequest:

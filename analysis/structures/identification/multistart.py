@@ -13,6 +13,7 @@ from jointbench.analysis.structures.identification.stiffness_problem import (
     StiffnessProblem,
     residuals,
     states_apart,
+    without_masses,
 )
 
 # Damping starts at this fraction of stiffness over frequency.
@@ -20,6 +21,8 @@ _DAMPING_START = 1e-2
 # Two ends are one solution if every parameter agrees to this in ln.
 _SAME = 0.02
 _MOST_STEPS = 100
+# Ends with nominal masses that are used where masses are unknown.
+_MOST_ENDS = 8
 # Most branches of solutions that are followed along undetermined unknowns ...
 _FOLLOWED = 4
 # ... and number of values of each such unknown over the whole box.
@@ -120,6 +123,8 @@ def find_optima(
         Distinct ends. States without shared unknowns are searched separately; a rival
         is then another end of one state with the best of all others.
     """
+    if problem.masses is not None:
+        return _with_masses(problem, starts, seed)
     searched = [
         _search(part, starts, seed + at)
         for at, (part, _) in enumerate(states_apart(problem))
@@ -135,9 +140,30 @@ def find_optima(
     return (_joined(problem, best), *(in_order(problem, rivals) if rivals else ()))
 
 
+def _with_masses(
+    problem: StiffnessProblem, starts: int, seed: int
+) -> tuple[Optimum, ...]:
+    """Search with the nominal masses, then from the ends with the masses unknown.
+
+    Masses of sensors couple all states, but move their unknowns little.
+    """
+    ends = find_optima(without_masses(problem), starts=starts, seed=seed)
+    missing = np.zeros(problem.size - ends[0].unknowns.size)
+    found = [
+        descend(problem, np.concatenate([one.unknowns, missing]))
+        for one in ends[:_MOST_ENDS]
+    ]
+    return _followed(problem, found)
+
+
 def _search(problem: StiffnessProblem, starts: int, seed: int) -> tuple[Optimum, ...]:
     """Search an undivided problem; see `find_optima`."""
     found = [descend(problem, start) for start in _starts(problem, starts, seed)]
+    return _followed(problem, found)
+
+
+def _followed(problem: StiffnessProblem, found: list[Optimum]) -> tuple[Optimum, ...]:
+    """Follow undetermined unknowns from the ends of a search; return distinct ends."""
     limit = min(found, key=lambda end: end.chi2).limit()
     standing = [end for end in found if end.chi2 < limit]
     for branch in _branches(problem, standing)[:_FOLLOWED]:

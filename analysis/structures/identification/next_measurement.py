@@ -13,6 +13,7 @@ from jointbench.analysis.structures.reduction.predict_modes import (
     damping_ratios,
     modal_state,
 )
+from jointbench.analysis.structures.reduction.sensor_masses import is_mass
 
 # Usual uncertainty of a hammer test: frequency 0.2 %, damping ratio 5 % of its value.
 _FREQUENCY_SD = 0.002
@@ -34,6 +35,8 @@ def what_to_measure(problem: StiffnessProblem, best: Optimum, at: int) -> str:
     Returns:
         One clause on what to measure and the resulting uncertainty.
     """
+    if is_mass(problem.names[at]):
+        return "weigh the sensor"
     row = int(np.flatnonzero(np.any(problem.columns == at, axis=1))[0])
     state = modal_state(problem.model, values_of(problem, best.unknowns, row).stiffness)
     values = values_of(problem, best.unknowns, row)

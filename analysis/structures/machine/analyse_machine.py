@@ -82,7 +82,7 @@ def analyse_machine(machine: ReducedMachine, request: MachineRequest) -> Machine
     rigid_one = _variant_result(lean, glued(machine), request)
     soft_one = _variant_result(lean, nominal, request)
     spread = None
-    if machine.deviations.any():
+    if machine.deviations.any() or machine.measured:
         spread = sample_joints(lean, request, soft_one.tool.frequency)
     if spread is not None:
         tool = replace(

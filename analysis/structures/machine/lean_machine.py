@@ -180,6 +180,14 @@ def lean_machine(machine: ReducedMachine, band_hz: float) -> LeanMachine:
     )
 
 
+def whole_machine(machine: ReducedMachine) -> LeanMachine:
+    """Return a machine in all coordinates of its bodies."""
+    model = machine.assembled.model
+    return LeanMachine(
+        machine, model, np.eye(model.size), machine.points, machine.gyroscopic
+    )
+
+
 def machine_variants(machine: ReducedMachine) -> list[Variant]:
     """Return glued, jointed, each joint rigid alone, softer and stiffer."""
     nominal, damping = machine.stiffness, machine.damping

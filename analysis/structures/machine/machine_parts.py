@@ -8,6 +8,11 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, UsageError
+from jointbench.analysis.structures.machine.measured_parts import (
+    MachineLink,
+    MeasuredPart,
+    require_points,
+)
 from jointbench.analysis.structures.matrices.beam_body import BeamBody, cross_matrix
 from jointbench.analysis.structures.matrices.parts import GROUND
 from jointbench.analysis.structures.matrices.structure import Structure
@@ -132,6 +137,8 @@ class Machine:
         points: by name.
         speeds: of the beams and rigid bodies that turn about their axes, by name
             [rad/s].
+        measured: bodies that were measured alone.
+        links: between these and other bodies.
     """
 
     structure: Structure
@@ -141,11 +148,15 @@ class Machine:
     springs: tuple[MachineSpring, ...]
     points: Mapping[str, MachinePoint]
     speeds: Mapping[str, float] = field(default_factory=dict)
+    measured: tuple[MeasuredPart, ...] = ()
+    links: tuple[MachineLink, ...] = ()
 
     def __post_init__(self) -> None:
         """Check that names are used once, and that those named exist."""
         names = self.bodies
+        require_points(self.measured, self.links)
         all_of = [*names, *self.structure.joints, *(s.name for s in self.springs)]
+        all_of += [one.name for one in (*self.measured, *self.links)]
         twice = {one for one in all_of if all_of.count(one) > 1}
         if twice:
             raise UsageError(f"names of bodies and joints are given twice: {twice}")
@@ -172,7 +183,7 @@ class Machine:
 
     @property
     def bodies(self) -> list[str]:
-        """Names of all bodies: solids, beams, rigid ones."""
+        """Names of all modelled bodies: solids, beams, rigid ones."""
         return [
             *(one.name for one in self.structure.bodies),
             *(one.name for one in self.beams),

@@ -2,7 +2,7 @@
 """Each body of a machine reduced once, then closed over joints and springs."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ from jointbench.analysis.structures.machine.body_geometry import (
 from jointbench.analysis.structures.machine.machine_bodies import (
     RawBody,
     beam_bodies,
+    link_joint,
     rigid_bodies,
     rows_of_point,
     solid_bodies,
@@ -24,6 +25,11 @@ from jointbench.analysis.structures.machine.machine_parts import (
     JointSetting,
     Machine,
     MachineSpring,
+)
+from jointbench.analysis.structures.machine.measured_parts import (
+    MachineLink,
+    MeasuredPart,
+    rigid_link_stiffness,
 )
 from jointbench.analysis.structures.machine.rigid_joints import (
     rigid_joint,
@@ -97,6 +103,8 @@ class ReducedMachine:
         sides: body and port of each point, by name.
         freedoms: of the meshes and beams before the reduction.
         speeds: of the bodies that turn, by name [rad/s].
+        measured: bodies that were measured alone, the last ones.
+        band_hz: highest frequency of interest [Hz].
     """
 
     assembled: Assembled
@@ -110,6 +118,8 @@ class ReducedMachine:
     sides: Mapping[str, Side]
     freedoms: int
     speeds: Mapping[str, float]
+    measured: tuple[MeasuredPart, ...] = ()
+    band_hz: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -170,30 +180,84 @@ def reduce_machine(
         body, rows = rows_of_point(machine, name)
         raw[body].ports.append(point_port(f"point {name}", Sparse(rows[:3])))
         point_of[name] = (body, f"point {name}")
-    every = (*joints, *extra)
-    rigid = [rigid_joint(raw, one) for one in every]
+    links = [link_joint(machine, raw, one) for one in machine.links]
+    every = (*joints, *extra, *links)
+    rigid = [rigid_joint(raw, one) for one in (*joints, *extra)]
+    rigid += [replace(one, name=f"{one.name} rigid") for one in links]
     components = [_reduced(one, band_hz, cache) for one in raw.values()]
+    components += [one.component(band_hz) for one in machine.measured]
     assembled = assemble_components(
         components, [*every, *rigid], box=MACHINE_BOX, modes=MACHINE_MODES
     )
-    values = nominal_values(machine.settings, machine.springs, every)
+    values = nominal_values(machine.settings, (*machine.springs, *machine.links), every)
+    held = [rigid_stiffness(raw, one) for one in (*joints, *extra)]
+    held += [rigid_link_stiffness(components, one) for one in machine.links]
+    meshed = [
+        _machine_body(one, component, place)
+        for one, component, place in zip(
+            raw.values(), components, assembled.places, strict=False
+        )
+    ]
     return ReducedMachine(
         assembled=assembled,
-        bodies=tuple(
-            _machine_body(one, component, place)
-            for one, component, place in zip(
-                raw.values(), components, assembled.places, strict=True
-            )
-        ),
+        bodies=(*meshed, *_measured_bodies(assembled, len(meshed))),
         stiffness=values[0],
         damping=values[1],
         deviations=values[2:],
         joints=tuple(every),
-        rigid=np.array([rigid_stiffness(raw, one) for one in every]),
+        rigid=np.array(held),
         points={name: assembled.rows(side) for name, side in point_of.items()},
         sides=point_of,
         freedoms=sum(one.matrices.mass.shape[0] for one in raw.values()),
         speeds=machine.speeds,
+        measured=machine.measured,
+        band_hz=band_hz,
+    )
+
+
+def _measured_bodies(assembled: Assembled, first: int) -> list[MachineBody]:
+    """Return the bodies without a mesh: their rigid motions are not told apart."""
+    return [
+        MachineBody(
+            name=one.name,
+            place=place,
+            stiffness=one.stiffness,
+            rigid=np.zeros((6, one.size)),
+            surfaces=(),
+            motions=(),
+            gyroscopic=np.zeros((one.size,) * 2),
+        )
+        for one, place in zip(
+            assembled.components[first:], assembled.places[first:], strict=True
+        )
+    ]
+
+
+def redrawn(machine: ReducedMachine, random: np.random.Generator) -> ReducedMachine:
+    """Return a machine whose measured bodies are drawn from their uncertainty.
+
+    Args:
+        machine: with measured bodies.
+        random: source of the draw.
+    """
+    whole = machine.assembled
+    first = len(whole.components) - len(machine.measured)
+    drawn = [one.drawn(random, machine.band_hz) for one in machine.measured]
+    assembled = assemble_components(
+        [*whole.components[:first], *drawn],
+        whole.joints,
+        box=MACHINE_BOX,
+        modes=MACHINE_MODES,
+    )
+    meshed = [
+        replace(one, place=place)
+        for one, place in zip(machine.bodies[:first], assembled.places, strict=False)
+    ]
+    return replace(
+        machine,
+        assembled=assembled,
+        bodies=(*meshed, *_measured_bodies(assembled, first)),
+        points={name: assembled.rows(side) for name, side in machine.sides.items()},
     )
 
 
@@ -206,7 +270,7 @@ def _reduced(raw: RawBody, band_hz: float, cache: Path | None) -> Component:
 
 def nominal_values(
     settings: Mapping[str, JointSetting],
-    springs: Sequence[MachineSpring],
+    springs: Sequence[MachineSpring | MachineLink],
     joints: Sequence[PortJoint],
 ) -> FloatArray:
     """Return stiffness, damping and their relative deviations of all joints.
@@ -215,7 +279,7 @@ def nominal_values(
 
     Args:
         settings: of the joints over areas, by name.
-        springs: between pieces.
+        springs: between pieces, and links of measured bodies.
         joints: in the order of the parameters.
 
     Returns:

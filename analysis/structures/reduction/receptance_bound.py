@@ -156,9 +156,11 @@ def _outside_norm(
         back = inverse * (solution.damping @ damped)
         still, heavy = still - back, heavy - solution.model.shift * back
         springs.append((turn @ damped, values.damping[:, None]))
-    motion = turn @ still
+    motion, heavy = turn @ still, turn @ heavy
+    if damped is not None:
+        heavy = heavy + _own_damping(solution.model, turn @ damped)
     springs.append((motion, values.stiffness[:, None]))
-    forces = Forces(motion, turn @ heavy, tuple(springs), ())
+    forces = Forces(motion, heavy, tuple(springs), ())
     return solution.model.residual.of_forces(forces, values.stiffness)
 
 
@@ -175,6 +177,17 @@ def _loss_norm(solution: DampedSolution, vectors: ComplexArray) -> FloatArray:
         (),
     )
     return model.residual.of_forces(forces, values.stiffness)
+
+
+def _own_damping(model: ReducedModel, motion: ComplexArray) -> ComplexArray:
+    """Return the forces of the dampers of measured bodies, over their unit mass."""
+    found = np.zeros_like(motion)
+    for body, place in zip(
+        model.residual.components, model.residual.places, strict=True
+    ):
+        if np.any(body.damping):
+            found[place] = body.damping @ motion[place]
+    return found
 
 
 def _loss_factors(model: ReducedModel) -> FloatArray:
@@ -205,6 +218,7 @@ def _response_residual(
         stretched = (1.0 + 1j * _loss_factors(model))[:, None] * motion
     unit = np.repeat(np.eye(count), lines.size, axis=1)
     ties = values.stiffness[:, None] + s * values.damping[:, None]
+    own = own + _own_damping(model, motion)
     forces = Forces(
         stretched,
         s**2 * motion + s * own,
