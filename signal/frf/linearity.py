@@ -26,7 +26,6 @@ from jointbench.signal.frf.spectral_sums import (
     HitAdder,
     LevelLines,
     SpectralSums,
-    sums_of_pair,
 )
 from jointbench.signal.hits.hit_pairs import pair_up
 from jointbench.signal.hits.hit_spectra import ForcesOfHits
@@ -121,7 +120,7 @@ def check_linearity(
     for number, (force, labels, point) in enumerate(hits):
         rows = (row[part] for row in spectra.responses(number))
         adder.add(force[part], rows, labels, point)
-    sums = [(sums_of_pair(adder, spectra, pair), pair.hits) for pair in pairs]
+    sums = [(adder.of_pair(spectra, pair), pair.hits) for pair in pairs]
     impulse = np.array(adder.level)
     return _linearity(spectra.frequency[part], impulse, sums, slice(None))
 

@@ -149,6 +149,12 @@ class HitAdder:
             if self.levels is not None and sums.slope and moved:
                 sums.slope.add(moved, error[self.levels.part])
 
+    def of_pair(self, common: LabelledHits, pair: Pair) -> PairSums:
+        """Return the sums of a pair that `pair_up` found among the hits added."""
+        # All hits of a pair measured one output from one input: the first names both.
+        hit, row = int(pair.hits[0]), int(pair.rows[0])
+        return self.pairs[common.labels[hit][row], common.points[hit]]
+
     def _pair(self, label: str, point: str) -> PairSums:
         if (label, point) not in self.pairs:
             sums = self.pairs[label, point] = PairSums.empty(self.nothing)
@@ -228,7 +234,7 @@ def _sums(
         frequency=common.frequency,
         outputs=outputs,
         inputs=inputs,
-        pairs=tuple(sums_of_pair(adder, common, pair) for pair in pairs),
+        pairs=tuple(adder.of_pair(common, pair) for pair in pairs),
         power=adder.power / len(common.points),
         quantity=common.quantity,
         block=common.block,
@@ -238,15 +244,3 @@ def _sums(
         level=np.array(adder.level),
         hits=tuple(pair.hits for pair in pairs),
     )
-
-
-def sums_of_pair(adder: HitAdder, common: LabelledHits, pair: Pair) -> PairSums:
-    """Return the sums of a pair that `pair_up` found; see `PairSums`.
-
-    Args:
-        adder: of all hits.
-        common: the hits.
-        pair: all of its hits measured one output from one input.
-    """
-    hit, row = int(pair.hits[0]), int(pair.rows[0])
-    return adder.pairs[common.labels[hit][row], common.points[hit]]
