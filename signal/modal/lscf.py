@@ -43,6 +43,8 @@ _RIDGE = 1e-14
 _SERIES_AT_ONCE = 128
 Progress = Callable[[str, float], None]
 """Called with the current step and its completed share [-]."""
+# Inputs for which null vectors need no decomposition.
+_PAIR = 2
 _TINY = float(np.finfo(float).tiny)
 Coefficients = NDArray[np.inexact[Any]]
 """Real on half the circle, complex on the whole."""
@@ -316,10 +318,20 @@ def _shapes(
         return np.ones((roots.size, n_outputs), complex)
     powers = np.vander(roots, size, increasing=True)
     at_roots = (powers @ denominator.reshape(size, -1)).reshape(-1, n_inputs, n_inputs)
-    null = np.linalg.svd(at_roots)[2][:, -1].conj()
+    null = _null_vectors(at_roots)
     moved = reduced.cross[:size, :, : size * n_inputs] @ denominator.reshape(
         -1, n_inputs
     )
     numerator = -_back_solved(reduced.factor[:size, :size], moved.reshape(size, -1))
     residues = (powers @ numerator).reshape(-1, n_outputs, n_inputs)
-    return np.asarray(np.einsum("roi,ri->ro", residues, null))
+    return np.asarray((residues @ null[:, :, None])[:, :, 0])
+
+
+def _null_vectors(matrices: ComplexArray) -> ComplexArray:
+    """Return v with A v = 0 for each singular matrix, shape (n, n_inputs)."""
+    if matrices.shape[1] != _PAIR:
+        return np.asarray(np.linalg.svd(matrices)[2][:, -1].conj())
+    # Across the longer row, as both are along one direction.
+    longer = np.argmax(np.sum(np.abs(matrices) ** 2, axis=2), axis=1)
+    row = matrices[np.arange(longer.size), longer]
+    return np.asarray(np.stack((-row[:, 1], row[:, 0]), axis=1))

@@ -64,10 +64,12 @@ def _grown(start: ComplexArray, size: int) -> ComplexArray:
     An offset from the ring keeps them distinct.
     """
     roots = start
-    radius = float(np.median(np.abs(start)))
+    radius = float(np.sort(np.abs(start))[start.size // 2])
     while roots.size < size:
         angle = np.sort(np.angle(roots))
-        gap = np.diff(np.append(angle, angle[0] + 2.0 * np.pi))
+        gap = np.empty(angle.size)
+        gap[:-1] = angle[1:] - angle[:-1]
+        gap[-1] = angle[0] + 2.0 * np.pi - angle[-1]
         few = min(size - roots.size, max(1, gap.size // 2))
         widest = np.argsort(gap)[::-1][:few]
         added = radius * np.exp(1j * (angle[widest] + 0.5 * gap[widest]))
