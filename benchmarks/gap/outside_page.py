@@ -32,7 +32,7 @@ pairs, acceptance criteria, and the verdict under model error.
 
 A wrong name is a verdict of `named`, or of `mostly` with a family that is not true of
 the effect. Ambiguous: two or more effects of the catalogue explain the records, and the
-verdict says that they cannot be told apart; none of them is true. Right family:
+verdict says that they are alike; none of them is true. Right family:
 `mostly` with a true one. None: nothing was found. Margins are somewhat too large where
 the rival acts on all channels (a delay, beside a drift of the clock) or where scatter
 of the joint from hit to hit can imitate a drift of it: neither is among the rivals.

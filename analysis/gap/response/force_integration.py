@@ -195,7 +195,7 @@ def _keep_pace(
             w[p * PORT + PACE + k] = w[p * PORT + SPEED + k]
 
 
-@compiled(fastmath=True)
+@compiled(fastmath=True, error_model="numpy")
 def _integrate_lanes(
     displacement: FloatArray,
     velocity: FloatArray,
@@ -272,7 +272,7 @@ class LaneModes(NamedTuple):
     shapes: ComplexArray
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, error_model="numpy")
 def integrate_forces(
     displacement: FloatArray,
     velocity: FloatArray,
