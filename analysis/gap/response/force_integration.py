@@ -196,7 +196,7 @@ def _keep_pace(
             w[p * PORT + PACE + k] = w[p * PORT + SPEED + k]
 
 
-@compiled(fastmath=True)
+@compiled(fastmath=True, error_model="numpy")
 def _integrate_lanes(
     displacement: FloatArray,
     velocity: FloatArray,
@@ -273,7 +273,7 @@ class LaneModes(NamedTuple):
     shapes: ComplexArray
 
 
-@compiled(nogil=True)
+@compiled(nogil=True, error_model="numpy")
 def integrate_forces(
     displacement: FloatArray,
     velocity: FloatArray,

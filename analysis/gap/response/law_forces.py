@@ -78,7 +78,7 @@ class IntegrationLaws(NamedTuple):
     band_limited: bool
 
 
-@compiled()
+@compiled(error_model="numpy")
 def rub(
     limit: float, width: float, v: float, slope: float, guess: float, start: float
 ) -> float:

@@ -129,6 +129,16 @@ def test_a_switch_of_dry_friction_is_followed_to_its_end(drift: float) -> None:
     assert np.allclose([force, mean, first, second], expected, atol=1e-4)
 
 
+def test_dry_friction_beside_a_spring_that_runs_away_raises_nothing() -> None:
+    """A search meets such springs: the response is not finite, and is rejected."""
+    bench = bench_of([2])
+    rub = made.term_of(bench, "coulomb", "link:ground", values_of("coulomb", "ground"))
+    soft = made.term_of(bench, "cubic_stiffness", "link:joint", [-1e19])
+    with np.errstate(all="ignore"):
+        found = bench.response(np.zeros(6), [rub, soft])
+    assert not np.isfinite(found).all()
+
+
 @pytest.mark.parametrize("name", ["iwan", "coulomb", "quadratic_damping"])
 def test_a_second_law_without_amplitude_changes_nothing(name: str) -> None:
     """One joint is the special case of several, whatever the order of the effects."""
