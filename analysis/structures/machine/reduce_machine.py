@@ -216,7 +216,7 @@ def reduce_machine(
 
 
 def _measured_bodies(assembled: Assembled, first: int) -> list[MachineBody]:
-    """Return the bodies without a mesh: their rigid motions are not told apart."""
+    """Return the bodies without a mesh: their rigid motions are part of their modes."""
     return [
         MachineBody(
             name=one.name,
