@@ -4,7 +4,6 @@
 from pathlib import Path
 
 import numpy as np
-import scipy.signal
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.acquisition.basics.errors import BadData, SamplingError, UsageError
@@ -138,9 +137,9 @@ def _decimated(recording: Recording, factor: int) -> Recording:
     """Keep one sample in `factor`, forces and responses through the same filter."""
     if factor == 1:
         return recording
-    samples = scipy.signal.decimate(
-        recording.samples, factor, ftype="fir", axis=1, zero_phase=True
-    )
+    from scipy.signal import decimate  # slow to import
+
+    samples = decimate(recording.samples, factor, ftype="fir", axis=1, zero_phase=True)
     return Recording(
         recording.name,
         np.ascontiguousarray(samples),

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import qmc
 
 from jointbench.acquisition.basics.arrays import BoolArray, FloatArray
 from jointbench.analysis.structures.identification.stiffness_problem import (
@@ -261,6 +260,8 @@ def with_value(unknowns: FloatArray, at: int, value: float) -> FloatArray:
 
 def _starts(problem: StiffnessProblem, count: int, seed: int) -> list[FloatArray]:
     """Spread stiffness over the box; damping follows at light damping ratios."""
+    from scipy.stats import qmc  # slow to import
+
     low, high = np.log(problem.model.box[0]), np.log(problem.model.box[1])
     share = qmc.LatinHypercube(problem.size, seed=seed).random(count)
     points = low + (high - low) * share
