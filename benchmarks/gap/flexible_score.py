@@ -36,7 +36,7 @@ _FAMILIES = (
     {"gain_error", "polarity", "wrong_direction", "cross_axis", "wrong_position"},
     {"delay", "cable_resonance"},
 )
-"""Effects that hits can hardly tell apart; a name of the family is `family`."""
+"""Effects that hits hardly distinguish; another name of the family is `family`."""
 Json = dict[str, Any]
 
 
