@@ -329,8 +329,9 @@ def frf_bound(
         poles=pole,
         vectors=vector[:count],
     )
+    laplace = np.asarray(1j * omega, complex)
     better = np.einsum("or,ril->oil", rows @ modal.space, response)
-    apart = np.abs(receptance(model, values, 1j * omega, rows, rows) - better)
+    apart = np.abs(receptance(model, values, laplace, rows, rows) - better)
     return np.asarray(apart + receptance_bound(solution, load, response, omega))
 
 
