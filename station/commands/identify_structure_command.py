@@ -17,6 +17,10 @@ from jointbench.analysis.structures.identification.joint_result import (
     StructureIdentification,
     structure_json,
 )
+from jointbench.analysis.structures.identification.sensor_masses import (
+    SensorMasses,
+    sensor_masses,
+)
 from jointbench.analysis.structures.identification.stiffness_problem import Prior
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.body_moduli import (
@@ -32,10 +36,6 @@ from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduce import reduce_structure
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
 from jointbench.analysis.structures.reduction.reduction_cache import cached, content_key
-from jointbench.analysis.structures.reduction.sensor_masses import (
-    SensorMasses,
-    sensor_masses,
-)
 from jointbench.station.files.output_paths import check_outputs
 from jointbench.station.files.toml_file import read_toml
 from jointbench.station.joints.contact_comparison import (

@@ -159,11 +159,9 @@ def machine_of(model: MachineModel, folder: Path) -> Machine:
 
 def speeds_of(model: MachineModel) -> dict[str, float]:
     """Return the speeds of the bodies that turn, by name [rad/s]."""
-    return {
-        name: 2.0 * np.pi * one.speed
-        for name, one in (*model.beams.items(), *model.rigid.items())
-        if one.speed
-    }
+    speeds = {name: one.speed for name, one in model.beams.items()}
+    speeds |= {name: one.speed for name, one in model.rigid.items()}
+    return {name: 2.0 * np.pi * speed for name, speed in speeds.items() if speed}
 
 
 def settings_of(model: MachineModel) -> dict[str, JointSetting]:

@@ -32,6 +32,11 @@ from jointbench.analysis.structures.identification.parameter_intervals import (
 from jointbench.analysis.structures.identification.profile_likelihood import (
     profile_likelihood,
 )
+from jointbench.analysis.structures.identification.sensor_masses import (
+    SensorMasses,
+    is_mass,
+    structure_with_masses,
+)
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,
     Prior,
@@ -61,11 +66,6 @@ from jointbench.analysis.structures.reduction.predict_modes import (
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     frequency_bound,
-)
-from jointbench.analysis.structures.reduction.sensor_masses import (
-    SensorMasses,
-    is_mass,
-    structure_with_masses,
 )
 
 # The model does not fit if the probability of a larger chi2 is below this.

@@ -2,6 +2,7 @@
 """Least-squares descents from many starts, and their distinct ends."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -12,7 +13,6 @@ from jointbench.analysis.structures.identification.stiffness_problem import (
     StiffnessProblem,
     residuals,
     states_apart,
-    without_masses,
 )
 
 # Damping starts at this fraction of stiffness over frequency.
@@ -146,13 +146,29 @@ def _with_masses(
 
     Masses of sensors couple all states, but move their unknowns little.
     """
-    ends = find_optima(without_masses(problem), starts=starts, seed=seed)
+    ends = find_optima(_without_masses(problem), starts=starts, seed=seed)
     missing = np.zeros(problem.size - ends[0].unknowns.size)
     found = [
         descend(problem, np.concatenate([one.unknowns, missing]))
         for one in ends[:_MOST_ENDS]
     ]
     return _followed(problem, found)
+
+
+def _without_masses(problem: StiffnessProblem) -> StiffnessProblem:
+    """Return the problem with the nominal masses of all sensors."""
+    count = 0 if problem.masses is None else len(problem.masses.names)
+    kept = slice(0, problem.size - count)
+    return replace(
+        problem,
+        names=problem.names[kept],
+        damping=problem.damping[kept],
+        low=problem.low[kept],
+        high=problem.high[kept],
+        prior=problem.prior[kept],
+        prior_sd=problem.prior_sd[kept],
+        masses=None,
+    )
 
 
 def _search(problem: StiffnessProblem, starts: int, seed: int) -> tuple[Optimum, ...]:

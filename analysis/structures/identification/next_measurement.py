@@ -4,6 +4,7 @@
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.structures.identification.sensor_masses import is_mass
 from jointbench.analysis.structures.identification.stiffness_problem import (
     Optimum,
     StiffnessProblem,
@@ -13,7 +14,6 @@ from jointbench.analysis.structures.reduction.predict_modes import (
     damping_ratios,
     modal_state,
 )
-from jointbench.analysis.structures.reduction.sensor_masses import is_mass
 
 # Usual uncertainty of a hammer test: frequency 0.2 %, damping ratio 5 % of its value.
 _FREQUENCY_SD = 0.002

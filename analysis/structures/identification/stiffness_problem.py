@@ -8,6 +8,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray, IntArray
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.structures.identification.sensor_masses import (
+    SensorMasses,
+    with_mass_factors,
+)
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
     evidence_residual,
@@ -15,10 +19,6 @@ from jointbench.analysis.structures.identification.structure_evidence import (
 from jointbench.analysis.structures.reduction.body_moduli import is_modulus
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduced_model import ReducedModel
-from jointbench.analysis.structures.reduction.sensor_masses import (
-    SensorMasses,
-    with_mass_factors,
-)
 
 # Largest factor by which a search may leave the box of the reduction.
 _BEYOND = 3.0
@@ -307,21 +307,6 @@ def _mass_slope(
         moved[column] += sign * _MASS_STEP
         ends.append(evidence_residual(*state_at(problem, moved, row), values)[0])
     return np.asarray((ends[0] - ends[1]) / (2.0 * _MASS_STEP))
-
-
-def without_masses(problem: StiffnessProblem) -> StiffnessProblem:
-    """Return the problem with the nominal masses of all sensors."""
-    kept = slice(0, _mass_columns(problem).start)
-    return replace(
-        problem,
-        names=problem.names[kept],
-        damping=problem.damping[kept],
-        low=problem.low[kept],
-        high=problem.high[kept],
-        prior=problem.prior[kept],
-        prior_sd=problem.prior_sd[kept],
-        masses=None,
-    )
 
 
 def states_apart(

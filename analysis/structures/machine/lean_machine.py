@@ -163,7 +163,7 @@ def lean_machine(machine: ReducedMachine, band_hz: float) -> LeanMachine:
     still = whole.strains.shape[1]
     rows = np.concatenate(list(machine.points.values()))
     columns = [np.zeros((whole.size, 0))]
-    for variant in machine_variants(machine):
+    for variant in _machine_variants(machine):
         values = machine.parameters(variant.stiffness, variant.rigid)
         found = solve_reduced(whole, values, whole.size)
         count = int(np.searchsorted(found.natural_frequency, band_hz)) + _SPARE
@@ -188,7 +188,7 @@ def whole_machine(machine: ReducedMachine) -> LeanMachine:
     )
 
 
-def machine_variants(machine: ReducedMachine) -> list[Variant]:
+def _machine_variants(machine: ReducedMachine) -> list[Variant]:
     """Return glued, jointed, each joint rigid alone, softer and stiffer."""
     nominal, damping = machine.stiffness, machine.damping
     everything = tuple(range(machine.rigid.size))

@@ -156,7 +156,8 @@ class Machine:
         names = self.bodies
         require_points(self.measured, self.links)
         all_of = [*names, *self.structure.joints, *(s.name for s in self.springs)]
-        all_of += [one.name for one in (*self.measured, *self.links)]
+        all_of += [one.name for one in self.measured]
+        all_of += [one.name for one in self.links]
         twice = {one for one in all_of if all_of.count(one) > 1}
         if twice:
             raise UsageError(f"names of bodies and joints are given twice: {twice}")

@@ -290,7 +290,7 @@ def nominal_values(
     for joint in joints:
         if joint.name in settings:
             one = settings[joint.name]
-            values = [one.stiffness, one.damping]
+            values: list[tuple[float, ...]] = [one.stiffness, one.damping]
             deviations = (one.stiffness_sd, one.damping_sd)
         else:
             spring = named[joint.name]

@@ -15,10 +15,10 @@ from jointbench.acquisition.basics.errors import BadData
 from jointbench.analysis.structures.reduction.assembled_response import (
     DampedModes,
     complex_modes,
+    frf_bound,
     receptance,
 )
 from jointbench.analysis.structures.reduction.component import Component
-from jointbench.analysis.structures.reduction.frf_bound import frf_bound
 from jointbench.analysis.structures.reduction.joint_spread import JointSpread
 from jointbench.analysis.structures.reduction.port_joints import (
     PortJoint,

@@ -6,13 +6,17 @@ dampers locked, and the static responses to the loads; the small state matrix gi
 poles and residues, and every line is a sum over them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
 from jointbench.analysis.structures.reduction.dense_modes import shifted_inverse
 from jointbench.analysis.structures.reduction.predict_modes import JointValues
+from jointbench.analysis.structures.reduction.receptance_bound import (
+    DampedSolution,
+    receptance_bound,
+)
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     ReducedModes,
@@ -32,6 +36,10 @@ _LIGHT = 0.02
 # Strong dampers: positive real s, as shares of the highest line, at which responses are
 # solved exactly; they follow decays.
 _DECAYS = np.geomspace(0.01, 2.0, 14)
+# The bound is that of a projection on the modes up to this multiple of the last line.
+_BOUND_REACH = 2.5
+# ... and on those with dampers replaced by springs at these shares of that line.
+_BOUND_LOCKED = (1.0, 0.1)
 # Least ratio of imaginary to real part of an oscillating pole.
 _SWINGS = 0.02
 
@@ -70,7 +78,7 @@ class DampedModes:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Projected:
+class _Projected:
     """Second-order matrices over a few orthonormal directions; the mass is unit.
 
     Attributes:
@@ -95,7 +103,7 @@ def project(
     top: float,
     loads: FloatArray,
     more: tuple[ReducedModes, FloatArray] | None = None,
-) -> Projected:
+) -> _Projected:
     """Project on modes up to a frequency [rad/s] and on responses to loads.
 
     Strong dampers hold their joints: then also on responses at real s, or without loads
@@ -126,7 +134,7 @@ def project(
         space = _joined(space, more[1])
     small = space.T @ (whole @ space) + 1j * (space.T @ (model.loss @ space))
     small[: found.rigid] = small[:, : found.rigid] = 0.0
-    return Projected(space, small, space.T @ (viscous @ space))
+    return _Projected(space, small, space.T @ (viscous @ space))
 
 
 def _with_decays(
@@ -189,7 +197,7 @@ def complex_modes(model: ReducedModel, values: JointValues) -> DampedModes:
     top = float(np.sqrt(solve_reduced(model, values.stiffness).eigenvalue[-1]))
     small = project(model, values, top, np.zeros((model.size, 0)))
     count = small.damping.shape[0]
-    pole, vector = np.linalg.eig(state_matrix(small))
+    pole, vector = np.linalg.eig(_state_matrix(small))
     size = np.abs(pole)
     kept = (size > 1e-9 * np.sqrt(model.shift)) & (
         pole.imag > -_SWINGS * np.abs(pole.real)
@@ -200,7 +208,7 @@ def complex_modes(model: ReducedModel, values: JointValues) -> DampedModes:
     return DampedModes(pole[order], shapes / largest)
 
 
-def state_matrix(small: Projected) -> ComplexArray:
+def _state_matrix(small: _Projected) -> ComplexArray:
     """Return the matrix of displacement and velocity, shape (2 m, 2 m)."""
     count = small.damping.shape[0]
     state = np.zeros((2 * count, 2 * count), complex)
@@ -231,17 +239,17 @@ def receptance(
     """
     top = float(np.abs(laplace).max(initial=0.0))
     loads = np.concatenate([outputs, inputs]).T
-    small = project(model, values, top, distinct(loads))
+    small = project(model, values, top, _distinct(loads))
     count = small.damping.shape[0]
     still = _uncoupled(small)
     moving = np.arange(still, count)
-    inner = Projected(
+    inner = _Projected(
         small.space[:, moving],
         small.stiffness[np.ix_(moving, moving)],
         small.damping[np.ix_(moving, moving)],
     )
     out, into = outputs @ small.space, inputs @ small.space
-    pole, vector = np.linalg.eig(state_matrix(inner))
+    pole, vector = np.linalg.eig(_state_matrix(inner))
     force = np.zeros((2 * moving.size, inputs.shape[0]), complex)
     force[moving.size :] = into[:, moving].T
     weight = np.linalg.solve(vector, force)
@@ -253,14 +261,97 @@ def receptance(
     return np.asarray(found.reshape(shape) + (rigid if still else 0.0))
 
 
-def _uncoupled(small: Projected) -> int:
+def _uncoupled(small: _Projected) -> int:
     """Return the number of first directions with neither stiffness nor damping."""
     held = np.abs(small.damping).max(axis=0) + np.abs(small.stiffness).max(axis=0)
     free = held <= 1e-12 * held.max(initial=0.0)
     return int(np.argmin(free)) if not free.all() else int(free.size)
 
 
-def distinct(loads: FloatArray) -> FloatArray:
+def _distinct(loads: FloatArray) -> FloatArray:
     """Return an orthonormal basis of load vectors, which often repeat."""
     vector, size, _ = np.linalg.svd(loads, full_matrices=False)
     return np.asarray(vector[:, size > _DEPENDENT * size.max(initial=0.0)])
+
+
+def frf_bound(
+    model: ReducedModel,
+    values: JointValues,
+    omega: FloatArray,
+    rows: FloatArray,
+    load: tuple[int, slice],
+) -> FloatArray:
+    """Bound the error of `receptance` between the rows of a port.
+
+    It is the change by a projection on more modes, and the bound of that one's error.
+
+    Args:
+        model: of the assembly.
+        values: of its joints.
+        omega: lines [rad/s], shape (n_lines,); the highest sets the projection.
+        rows: of the port from the coordinates of the model, shape (n_rows, r).
+        load: number of its body, and its pattern columns.
+
+    Returns:
+        [m/N], shape (n_rows, n_rows, n_lines).
+    """
+    top = float(omega.max(initial=0.0))
+    small = project(model, values, top, _distinct(rows.T), _wider(model, values, top))
+    level, turn = np.linalg.eigh(small.stiffness.real)
+    level = np.maximum(level, 0.0)
+    modal = _Projected(
+        small.space @ turn,
+        turn.T @ small.stiffness @ turn,
+        turn.T @ small.damping @ turn,
+    )
+    count = level.size
+    pole, vector = np.linalg.eig(_state_matrix(modal))
+    force = np.zeros((2 * count, rows.shape[0]), complex)
+    force[count:] = (rows @ modal.space).T
+    weight = np.linalg.solve(vector, force)
+    lines = 1.0 / (1j * omega - pole[:, None])
+    response = np.stack(
+        [vector[:count] @ (one[:, None] * lines) for one in weight.T], axis=1
+    )
+    few = replace(
+        model,
+        loss=modal.stiffness.imag,
+        residual=model.residual.restricted(modal.space),
+    )
+    solution = DampedSolution(
+        model=few,
+        values=values,
+        eigenvalue=level,
+        shapes=np.eye(count),
+        damping=modal.damping,
+        modal_damping=np.zeros(count),
+        structural=True,
+        poles=pole,
+        vectors=vector[:count],
+    )
+    laplace = np.asarray(1j * omega, complex)
+    better = np.einsum("or,ril->oil", rows @ modal.space, response)
+    apart = np.abs(receptance(model, values, laplace, rows, rows) - better)
+    return np.asarray(apart + receptance_bound(solution, load, response, omega))
+
+
+def _wider(
+    model: ReducedModel, values: JointValues, top: float
+) -> tuple[ReducedModes, FloatArray]:
+    """Return modes beyond the last line, and those with the dampers locked."""
+    limit = (_BOUND_REACH * top) ** 2
+    found = solve_reduced(model, values.stiffness, model.size)
+    kept = max(int(np.searchsorted(found.eigenvalue, limit)), found.rigid)
+    modes = ReducedModes(
+        found.eigenvalue[:kept],
+        found.natural_frequency[:kept],
+        found.shapes[:, :kept],
+        found.rigid,
+    )
+    locked = [
+        solve_below(model, values.stiffness + share * top * values.damping, limit)
+        for share in _BOUND_LOCKED
+        if values.damping.any()
+    ]
+    none = np.zeros((model.size, 0))
+    return modes, np.concatenate([none, *(one.shapes for one in locked)], axis=1)

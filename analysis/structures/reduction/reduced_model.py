@@ -17,7 +17,7 @@ from jointbench.analysis.structures.reduction.joint_spread import JointSpread
 from jointbench.analysis.structures.reduction.residual_norm import ResidualNorm
 from jointbench.analysis.structures.reduction.rigid_motions import unstrained
 
-Pairs = tuple[FloatArray, FloatArray]
+_Pairs = tuple[FloatArray, FloatArray]
 """Eigenvalues, the lowest first, and vectors as columns."""
 
 # Extra modes solved, so that the last requested one has neighbours.
@@ -174,7 +174,7 @@ def solve_reduced(
     """
     wanted = min(count or model.modes, model.size)
 
-    def solve(matrix: FloatArray, start: FloatArray | None) -> Pairs:
+    def solve(matrix: FloatArray, start: FloatArray | None) -> _Pairs:
         missing = wanted - model.size + matrix.shape[0]
         if missing <= 0:
             return np.zeros(0), np.zeros((matrix.shape[0], 0))
@@ -197,7 +197,7 @@ def solve_below(
         All rigid modes, and the others below the limit.
     """
 
-    def solve(matrix: FloatArray, start: FloatArray | None) -> Pairs:
+    def solve(matrix: FloatArray, start: FloatArray | None) -> _Pairs:
         if not matrix.size:
             return np.zeros(0), np.zeros((0, 0))
         return dense_modes_below(matrix, model.shift, limit, start)
@@ -208,7 +208,7 @@ def solve_below(
 def _solved(
     model: ReducedModel,
     stiffness: FloatArray,
-    solve: Callable[[FloatArray, FloatArray | None], Pairs],
+    solve: Callable[[FloatArray, FloatArray | None], _Pairs],
     most: int,
 ) -> ReducedModes:
     """Return rigid motions, then what `solve` finds among the others."""

@@ -9,6 +9,12 @@ from jointbench.analysis.structures.identification.identify_structure import (
     StructureSearch,
     identify_structure,
 )
+from jointbench.analysis.structures.identification.sensor_masses import (
+    SensorMasses,
+    sensor_masses,
+    structure_with_masses,
+    with_mass_factors,
+)
 from jointbench.analysis.structures.identification.structure_evidence import (
     StructureEvidence,
 )
@@ -19,12 +25,6 @@ from jointbench.analysis.structures.reduction.predict_modes import JointValues
 from jointbench.analysis.structures.reduction.reduced_model import (
     ReducedModel,
     solve_reduced,
-)
-from jointbench.analysis.structures.reduction.sensor_masses import (
-    SensorMasses,
-    sensor_masses,
-    structure_with_masses,
-    with_mass_factors,
 )
 
 SENSORS = {
