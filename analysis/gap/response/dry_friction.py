@@ -43,7 +43,7 @@ _FAR = RESPONSE.friction_far
 _FASTEST = RESPONSE.table_speed
 
 
-@compiled(inline="always")
+@compiled(forceinline=True)
 def _exponential_weights(x: float) -> tuple[float, float, float]:
     """Return phi_1, phi_2 and phi_3 of an exponential integrator, for x <= 0."""
     if x > -0.02:
