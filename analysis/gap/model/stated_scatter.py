@@ -5,9 +5,9 @@ import math
 from dataclasses import dataclass, fields
 
 from jointbench.acquisition.basics.errors import BadData
+from jointbench.analysis.gap.model.campaign_settings import CAMPAIGN
 
-LONGEST_DELAY = 1e-3
-"""A hit that is late by a millisecond is another hit [s]."""
+LONGEST_DELAY = CAMPAIGN.longest_stated_delay
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class StatedScatter:
         """Refuse values that no hit can have."""
         for field in fields(self):
             value = getattr(self, field.name)
-            most = LONGEST_DELAY if field.name.endswith("delay") else 1.0
+            most = LONGEST_DELAY if field.name.endswith("_delay") else 1.0
             if value is not None and not (math.isfinite(value) and 0.0 < value < most):
                 raise BadData(
                     f"the scatter {field.name!r} is {value!r}, it must be above 0 and "
