@@ -188,6 +188,13 @@ class _Without(FitProblem):
         seen[self.hidden] = 0.0
         return seen
 
+    def base_slopes(self, x: FloatArray, resolution: Resolution) -> FloatArray | None:
+        """Return the slopes by the base, 0 in the ignored rows; None if unknown."""
+        slopes = FitProblem.base_slopes(self, x, resolution)
+        if slopes is not None:
+            slopes[self.hidden] = 0.0
+        return slopes
+
 
 def _shown_by_it_alone(fit: Fit, whole: FloatArray, others: FloatArray) -> BoolArray:
     """Return the effects with a parameter that no other group determines.

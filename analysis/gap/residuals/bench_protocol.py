@@ -2,7 +2,7 @@
 """Interface of a bench: residuals of a base model plus effects."""
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -113,6 +113,22 @@ class Bench(Scaled, Protocol):
             terms: effects.
             resolution: window and step.
         """
+        ...
+
+
+@runtime_checkable
+class SlopedBench(Protocol):
+    """A bench that computes slopes by its base in closed form, and limits its base."""
+
+    @property
+    def base_limits(self) -> tuple[FloatArray, FloatArray]:
+        """Lower and upper bounds of the base coordinates, shape (n_base,) each."""
+        ...
+
+    def slopes(
+        self, base: FloatArray, terms: Sequence[Term], resolution: Resolution
+    ) -> FloatArray:
+        """Return d residual / d base, shape (n_rows, n_base)."""
         ...
 
 

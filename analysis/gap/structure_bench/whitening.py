@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""Whitening of hits whose landing point, tilt and gain are known with a sd only.
+
+With the derivatives W of a record by its directions u ~ N(0, 1) over sigma, its residual
+has the covariance I + W W'. Multiplied by the inverse root of that, the residual is
+white, and the directions need no coordinates of their own in the fit.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from jointbench.acquisition.basics.arrays import FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Whitening:
+    """Inverse root of the covariance of each record.
+
+    Attributes:
+        basis: orthonormal directions, shape (n_records, n_rows, n_directions).
+        taken: share of each that is removed, shape (n_records, n_directions).
+    """
+
+    basis: FloatArray
+    taken: FloatArray
+
+    def __call__(self, rows: FloatArray) -> FloatArray:
+        """Whiten rows of records, shape (n_records, n_rows, n_columns)."""
+        inside = self.basis.transpose(0, 2, 1) @ rows
+        return np.asarray(rows - self.basis @ (self.taken[:, :, None] * inside))
+
+
+def whitening_of(scaled: FloatArray) -> Whitening:
+    """Return the whitening for directions.
+
+    Args:
+        scaled: derivatives by directions of unit sd, over sigma, shape
+            (n_records, n_rows, n_directions).
+    """
+    values, vectors = np.linalg.eigh(scaled.transpose(0, 2, 1) @ scaled)
+    values = np.maximum(values, 0.0)
+    root = np.sqrt(np.maximum(values, 1e-30))
+    basis = (scaled @ vectors) / root[:, None, :]
+    taken = 1.0 - 1.0 / np.sqrt(1.0 + values)
+    return Whitening(basis, np.where(values > 1e-30, taken, 0.0))
+
+
+def directions_found(scaled: FloatArray, residual: FloatArray) -> FloatArray:
+    """Return the most likely directions of each record, shape (n_records, n).
+
+    Args:
+        scaled: as in `whitening_of`.
+        residual: model minus measurement over sigma at u = 0, (n_records, n_rows).
+
+    Returns:
+        u in units of its sd.
+    """
+    across = scaled.transpose(0, 2, 1)
+    inner = np.eye(scaled.shape[2]) + across @ scaled
+    return np.asarray(-np.linalg.solve(inner, across @ residual[:, :, None])[:, :, 0])

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""The bench sheet: what is known of two bolted plates before the hits (JSON)."""
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from jointbench.acquisition.basics.errors import BadData
+from jointbench.acquisition.file_access.quoting import named, visible
+from jointbench.analysis.gap.intake.read_hit_campaign import PlannedPoint
+from jointbench.analysis.gap.structure_bench.jointed_bodies import BenchSheet
+from jointbench.station.files.json_file import read_json
+
+SHEET_SCHEMA = "bench-sheet/1"
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Sigma = Annotated[float, Field(gt=0, le=3, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Stiffness = Positive | Literal["rigid"]
+
+
+class _Part(BaseModel):
+    """A part of the sheet; keys that are not used here are allowed."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+
+class _Plates(_Part):
+    E_rel_sigma: Sigma
+    mass_rel_sigma: Sigma
+
+
+class _Point(_Part):
+    direction: tuple[Finite, Finite, Finite]
+    body: str
+
+
+class _Sigmas(_Part):
+    k: Sigma
+    c: Sigma
+
+
+class _Joint(_Part):
+    kn_N_per_m: Stiffness
+    ktx_N_per_m: Stiffness
+    kty_N_per_m: Stiffness
+    cn_Ns_per_m: Positive
+    ct_Ns_per_m: Positive
+    rel_sigma: _Sigmas
+    bolt_to_bolt_rel_sigma: Sigma
+
+
+class _Feet(_Part):
+    k_N_per_m: Positive
+    c_Ns_per_m: Positive
+    rel_sigma: _Sigmas
+
+
+class SheetFile(_Part):
+    """The sheet as written."""
+
+    schema_: Literal["bench-sheet/1"] = Field(alias="schema")
+    plates: _Plates
+    torques_Nm: Annotated[tuple[Positive, ...], Field(min_length=1, max_length=100)]
+    hammer_points: Annotated[dict[str, _Point], Field(min_length=1, max_length=100)]
+    aim_sigma_mm: Positive
+    tilt_sigma_deg: Positive
+    joint_per_bolt: _Joint
+    plate_damping_ratio: Positive
+    plate_damping_rel_sigma: Sigma
+    feet: _Feet
+
+
+def read_sheet(path: Path) -> tuple[BenchSheet, dict[str, PlannedPoint]]:
+    """Read a bench sheet.
+
+    Returns:
+        Nominal parameters, and hammer points by name.
+
+    Raises:
+        BadData: the file is missing, no JSON, or breaks a rule; the message names the
+            key, the value and the rule.
+    """
+    found = read_json(path, SheetFile)
+    points = {}
+    for name, point in found.hammer_points.items():
+        length = math.hypot(*point.direction)
+        if length == 0:
+            raise BadData(
+                f"{named(path)}: hammer point {visible(name)} has direction 0 0 0; "
+                "write the direction of the hit"
+            )
+        x, y, z = (v / length for v in point.direction)
+        points[name] = PlannedPoint((x, y, z), point.body)
+    return _sheet(found), points
+
+
+def _sheet(found: SheetFile) -> BenchSheet:
+    joint, feet = found.joint_per_bolt, found.feet
+    stiffness = [
+        math.inf if k == "rigid" else k
+        for k in (joint.ktx_N_per_m, joint.kty_N_per_m, joint.kn_N_per_m)
+    ]
+    return BenchSheet(
+        stiffness=np.array(stiffness),
+        damping=np.array([joint.ct_Ns_per_m, joint.ct_Ns_per_m, joint.cn_Ns_per_m]),
+        stiffness_sd=joint.rel_sigma.k,
+        damping_sd=joint.rel_sigma.c,
+        bolt_sd=joint.bolt_to_bolt_rel_sigma,
+        foot=(feet.k_N_per_m, feet.c_Ns_per_m),
+        foot_sd=(feet.rel_sigma.k, feet.rel_sigma.c),
+        loss=(found.plate_damping_ratio, found.plate_damping_rel_sigma),
+        modulus_sd=found.plates.E_rel_sigma,
+        mass_sd=found.plates.mass_rel_sigma,
+        aim_sd=1e-3 * found.aim_sigma_mm,
+        tilt_sd=math.radians(found.tilt_sigma_deg),
+        torque_reference=float(np.median(found.torques_Nm)),
+    )
