@@ -45,13 +45,11 @@ def search_structure(bench: StructureBench, progress: Progress) -> SearchOutcome
     progress("base in short windows")
     few = bench.chosen(one_of_each(bench.campaign.hits))
     start = _base_in_windows(few)
+    few = few.at(start, (), few.landing, STRUCTURE.table_floor)
     progress("base in whole records")
-    whole, base = settled(
-        replace(bench, reach=STRUCTURE.final_reach), start, (), STRUCTURE.table_floor
-    )
+    whole, base = _base_in_whole_records(bench, few, start)
     first = accept_structure(whole, base, base)
     progress("directed tests")
-    few = few.at(start, (), few.landing, STRUCTURE.table_floor)
     near = minimise(make_problem(few, ()), start, SHORT, iterations=8)
     screening = screen(few, near, few.candidates, resolution=SHORT)
     none = SearchOutcome(whole, base, first, screening, base, first, (), (base,))
@@ -76,10 +74,25 @@ def _base_in_windows(few: StructureBench) -> FloatArray:
     for window in STRUCTURE.base_windows:
         few = few.at(x, (), few.landing, STRUCTURE.coarse_floor)
         problem = make_problem(few, ())
-        x = minimise(
-            problem, x, Resolution(window), iterations=8, exact_slopes=False
-        ).x
+        x = minimise(problem, x, Resolution(window), iterations=8, exact_slopes=False).x
     return x
+
+
+def _base_in_whole_records(
+    bench: StructureBench, few: StructureBench, start: FloatArray
+) -> tuple[StructureBench, Fit]:
+    """Fit the base to whole records: to all of them, unless it is far off.
+
+    A base far off is fitted to one record of each condition, and its chi2 is that of
+    all records.
+    """
+    reach = STRUCTURE.final_reach
+    r = make_problem(few, ()).residual(start, LONGER)
+    if float(r @ r) < STRUCTURE.near_chi2 * r.size:
+        return settled(replace(bench, reach=reach), start, (), STRUCTURE.table_floor)
+    x = _whole(replace(few, reach=reach), start, ()).x
+    whole = replace(bench, reach=reach).at(x, (), bench.landing, STRUCTURE.table_floor)
+    return whole, minimise(make_problem(whole, ()), x, FULL, iterations=0)
 
 
 def settled(

@@ -40,25 +40,43 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import (
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Closure:
-    """Closed responses between rows and columns, with what their slopes need.
+    """Closed responses between the sensors and force columns.
 
     Attributes:
         s: Laplace variable of each line [rad/s], shape (n_lines,).
         torque: factor of the torque on stiffness and damping of the bolts [-].
         response: displacement per force [m/N], shape (n_lines, n_rows, n_columns).
         left: joint forces per unit of each row, shape (n_lines, n_joints, n_rows).
-        right: joint forces of each column, shape (n_lines, n_joints, n_columns).
-        closed_rows: rows in modes with the joints closed, (n_lines, n_rows, n_modes).
-        closed_columns: likewise, shape (n_lines, n_modes, n_columns).
+        system: A of each line, shape (n_lines, n_joints, n_joints).
+        across: motion of the open joints by each column, shape
+            (n_lines, n_joints, n_columns).
+        columns: force rows in modes, shape (n_columns, n_modes).
     """
 
     s: ComplexArray
     torque: float
     response: ComplexArray
     left: ComplexArray
+    system: ComplexArray
+    across: ComplexArray
+    columns: FloatArray
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClosedRows:
+    """What the slopes of a closed response need.
+
+    Attributes:
+        left: joint forces per unit of each row, shape (n_lines, n_joints, n_rows).
+        right: joint forces of each column, shape (n_lines, n_joints, n_columns).
+        rows: with the joints closed, in modes, shape (n_lines, n_rows, n_modes).
+        columns: likewise, shape (n_lines, n_modes, n_columns).
+    """
+
+    left: ComplexArray
     right: ComplexArray
-    closed_rows: ComplexArray
-    closed_columns: ComplexArray
+    rows: ComplexArray
+    columns: ComplexArray
 
 
 def modal_receptances(
@@ -93,9 +111,17 @@ def joint_compliances(
 def _sums_over_modes(one: FloatArray, two: FloatArray, d: ComplexArray) -> ComplexArray:
     """Return the sum over modes of one, d and two, shape (n_lines, n_one, n_two)."""
     pairs = (one[:, None, :] * two[None, :, :]).reshape(-1, d.shape[1])
-    found = np.empty((d.shape[0], pairs.shape[0]), dtype=complex)
-    found.real = d.real @ pairs.T
-    found.imag = d.imag @ pairs.T
+    kept = np.arange(len(pairs))
+    if one is two:
+        upper = np.triu_indices(len(one))
+        kept = upper[0] * len(one) + upper[1]
+    found = np.empty((d.shape[0], len(kept)), dtype=complex)
+    found.real = d.real @ pairs[kept].T
+    found.imag = d.imag @ pairs[kept].T
+    if one is two:
+        source = np.empty((len(one), len(one)), dtype=int)
+        source[upper] = source[upper[::-1]] = np.arange(len(kept))
+        found = found[:, source.ravel()]
     return found.reshape(d.shape[0], len(one), len(two))
 
 
@@ -115,61 +141,81 @@ def close(
         columns: force rows in modes, shape (n_columns, n_modes).
         torque: factor of the torque on stiffness and damping of the bolts [-].
     """
-    places = [bodies.places[a.place].rows for a in state.attached]
-    rows = np.concatenate([bodies.sensors, *places])
-    columns = np.concatenate([columns, *places])
+    rows, columns = _ends(bodies, state, columns)
     joints = bodies.joint_rows
     d = modal_receptances(bodies, state, s)
     system = _sums_over_modes(joints, joints, d)
     at = np.arange(len(joints))
     system[:, at, at] += joint_compliances(bodies, state, s, torque)
-    ends = np.concatenate([rows, columns])
-    across = _sums_over_modes(joints, ends, d)
-    forces = np.linalg.solve(system, across)
-    n = len(rows)
-    left, right = forces[:, :, :n], forces[:, :, n:]
+    across = _sums_over_modes(joints, columns, d)
+    left = np.linalg.solve(system, _sums_over_modes(joints, rows, d))
     response = _sums_over_modes(rows, columns, d)
-    response -= across[:, :, :n].transpose(0, 2, 1) @ right
-    closed_rows = rows - left.transpose(0, 2, 1) @ joints
-    closed_columns = (columns - right.transpose(0, 2, 1) @ joints).transpose(0, 2, 1)
-    found = Closure(s, torque, response, left, right, closed_rows, closed_columns)
-    return found if not places else _with_attached(found, bodies, state)
+    response -= left.transpose(0, 2, 1) @ across
+    if state.attached:
+        _, force = _attached_forces(bodies, state, s, response)
+        count = force.shape[1]
+        response = response[:, :-count, :-count] - response[:, :-count, -count:] @ force
+    return Closure(s, torque, response, left, system, across, columns)
 
 
-def _with_attached(bare: Closure, bodies: JointedBodies, state: JointState) -> Closure:
-    """Attach masses and oscillators, whose rows and columns are the last ones.
+def _ends(
+    bodies: JointedBodies, state: JointState, columns: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return rows and columns, with those of attached things at their ends."""
+    places = [bodies.places[a.place].rows for a in state.attached]
+    return (
+        np.concatenate([bodies.sensors, *places]),
+        np.concatenate([columns, *places]),
+    )
 
-    H' = H - H_P (I + Z H_PP)^-1 Z H_P'; rows and columns change alike.
+
+def _attached_forces(
+    bodies: JointedBodies, state: JointState, s: ComplexArray, h: ComplexArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the forces of attached masses and oscillators per row and per column.
+
+    H' = H - H_P (I + Z H_PP)^-1 Z H_P'; their rows and columns are the last ones.
+
+    Args:
+        bodies: places and rows.
+        state: with the attached things.
+        s: Laplace variable, shape (n_lines,).
+        h: response without them, shape (n_lines, n_rows, n_columns).
     """
-    z = np.concatenate(
-        [
-            np.repeat(
-                dynamic_stiffness(a, bare.s)[:, None],
-                len(bodies.places[a.place].rows),
-                axis=1,
-            )
-            for a in state.attached
-        ],
-        axis=1,
-    )
+    counts = [len(bodies.places[a.place].rows) for a in state.attached]
+    stiffness = [dynamic_stiffness(a, s) for a in state.attached]
+    z = np.repeat(np.stack(stiffness, axis=1), counts, axis=1)[:, :, None]
     count = z.shape[1]
-    h = bare.response
-    here = h[:, -count:, -count:]
-    inner = np.eye(count) + z[:, :, None] * here
-    force_of_rows = np.linalg.solve(
-        inner, z[:, :, None] * h[:, :-count, -count:].transpose(0, 2, 1)
-    )
-    force_of_columns = np.linalg.solve(inner, z[:, :, None] * h[:, -count:, :-count])
-    taken = force_of_rows.transpose(0, 2, 1)
-    return Closure(
-        s=bare.s,
-        torque=bare.torque,
-        response=h[:, :-count, :-count] - h[:, :-count, -count:] @ force_of_columns,
-        left=bare.left[:, :, :-count] - bare.left[:, :, -count:] @ force_of_rows,
-        right=bare.right[:, :, :-count] - bare.right[:, :, -count:] @ force_of_columns,
-        closed_rows=bare.closed_rows[:, :-count] - taken @ bare.closed_rows[:, -count:],
-        closed_columns=bare.closed_columns[:, :, :-count]
-        - bare.closed_columns[:, :, -count:] @ force_of_columns,
+    inner = np.eye(count) + z * h[:, -count:, -count:]
+    by_row = np.linalg.solve(inner, z * h[:, :-count, -count:].transpose(0, 2, 1))
+    by_column = np.linalg.solve(inner, z * h[:, -count:, :-count])
+    return by_row, by_column
+
+
+def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> ClosedRows:
+    """Return closed rows and columns, for slopes.
+
+    Args:
+        found: closed response.
+        bodies: modes and rows.
+        state: at which it was closed.
+    """
+    rows, _ = _ends(bodies, state, np.zeros((0, bodies.omega.size)))
+    columns, joints, left = found.columns, bodies.joint_rows, found.left
+    right = np.linalg.solve(found.system, found.across)
+    in_rows = rows - left.transpose(0, 2, 1) @ joints
+    in_columns = (columns - right.transpose(0, 2, 1) @ joints).transpose(0, 2, 1)
+    if not state.attached:
+        return ClosedRows(left, right, in_rows, in_columns)
+    d = modal_receptances(bodies, state, found.s)
+    bare = _sums_over_modes(rows, columns, d) - left.transpose(0, 2, 1) @ found.across
+    by_row, by_column = _attached_forces(bodies, state, found.s, bare)
+    count = by_row.shape[1]
+    return ClosedRows(
+        left[:, :, :-count] - left[:, :, -count:] @ by_row,
+        right[:, :, :-count] - right[:, :, -count:] @ by_column,
+        in_rows[:, :-count] - by_row.transpose(0, 2, 1) @ in_rows[:, -count:],
+        in_columns[:, :, :-count] - in_columns[:, :, -count:] @ by_column,
     )
 
 
@@ -200,18 +246,19 @@ def response_slopes(
     Returns:
         By coordinate, shape (n_lines, n_rows, n_columns) each.
     """
-    slopes = _modal_slopes(found, bodies, state)
-    left = found.left.transpose(0, 2, 1)
+    ends = closed_rows(found, bodies, state)
+    slopes = _modal_slopes(found, ends, bodies, state)
+    left = ends.left.transpose(0, 2, 1)
     for name, (joints, change) in _compliance_slopes(
         found, bodies, state, layout
     ).items():
-        weighted = change[:, :, None] * found.right[:, joints]
+        weighted = change[:, :, None] * ends.right[:, joints]
         slopes[name] = left[:, :, joints] @ weighted
     return slopes
 
 
 def _modal_slopes(
-    found: Closure, bodies: JointedBodies, state: JointState
+    found: Closure, ends: ClosedRows, bodies: JointedBodies, state: JointState
 ) -> dict[str, ComplexArray]:
     """Return the slopes by modulus and mass of each body and by the damping ratio."""
     root = np.sqrt(state.modulus)[bodies.body]
@@ -222,8 +269,8 @@ def _modal_slopes(
     by_modulus = square * (state.loss * omega * s + omega**2)
 
     def across(change: ComplexArray, modes: slice) -> ComplexArray:
-        rows = found.closed_rows[:, :, modes] * change[:, None, modes]
-        return np.asarray(rows @ found.closed_columns[:, modes])
+        rows = ends.rows[:, :, modes] * change[:, None, modes]
+        return np.asarray(rows @ ends.columns[:, modes])
 
     slopes = {LOSS: across(by_loss, slice(None))}
     for k, name in enumerate(bodies.bodies):

@@ -35,7 +35,6 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
 )
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_bench.whitening import (
-    Whitening,
     directions_found,
     whitening_of,
 )
@@ -277,11 +276,11 @@ class StructureBench:
         return found
 
     def _scaled(self, count: int) -> FloatArray:
-        """Return directions over sigma, shape (n_records, n_rows, 5)."""
+        """Return directions over sigma, shape (n_records, 5, n_rows)."""
         if self.directions is None:
             raise ValueError("directions are computed by `at` first")
         rows = self.directions[..., :count] / self.sigma[:, None, :, None]
-        return rows.reshape(*rows.shape[:2], -1).transpose(0, 2, 1)
+        return rows.reshape(*rows.shape[:2], -1)
 
     def _expected(self, count: int) -> FloatArray:
         """Return the response of the expansion that its prior mean removes."""
@@ -298,12 +297,7 @@ class StructureBench:
         if self.directions is None:
             return flat
         white = self._kept(("white", count), lambda: whitening_of(self._scaled(count)))
-        return _applied(white, flat)
-
-
-def _applied(white: Whitening, flat: FloatArray) -> FloatArray:
-    """Whiten rows of shape (n_records, n, n_rows)."""
-    return white(flat.transpose(0, 2, 1)).transpose(0, 2, 1)
+        return np.asarray(white(flat))
 
 
 def record_blocks(campaign: HitCampaign) -> Blocks:

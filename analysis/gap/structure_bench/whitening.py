@@ -12,13 +12,16 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
 
+_LEAST = 1e-30
+"""Squared length below which a direction does not reach any row."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Whitening:
     """Inverse root of the covariance of each record.
 
     Attributes:
-        basis: orthonormal directions, shape (n_records, n_rows, n_directions).
+        basis: orthonormal directions, shape (n_records, n_directions, n_rows).
         taken: share of each that is removed, shape (n_records, n_directions).
     """
 
@@ -26,9 +29,10 @@ class Whitening:
     taken: FloatArray
 
     def __call__(self, rows: FloatArray) -> FloatArray:
-        """Whiten rows of records, shape (n_records, n_rows, n_columns)."""
-        inside = self.basis.transpose(0, 2, 1) @ rows
-        return np.asarray(rows - self.basis @ (self.taken[:, :, None] * inside))
+        """Whiten rows of records, shape (n_records, n, n_rows), in place."""
+        for row, basis, taken in zip(rows, self.basis, self.taken, strict=True):
+            row -= ((row @ basis.T) * taken) @ basis
+        return rows
 
 
 def whitening_of(scaled: FloatArray) -> Whitening:
@@ -36,14 +40,14 @@ def whitening_of(scaled: FloatArray) -> Whitening:
 
     Args:
         scaled: derivatives by directions of unit sd, over sigma, shape
-            (n_records, n_rows, n_directions).
+            (n_records, n_directions, n_rows).
     """
-    values, vectors = np.linalg.eigh(scaled.transpose(0, 2, 1) @ scaled)
+    values, vectors = np.linalg.eigh(scaled @ scaled.transpose(0, 2, 1))
     values = np.maximum(values, 0.0)
-    root = np.sqrt(np.maximum(values, 1e-30))
-    basis = (scaled @ vectors) / root[:, None, :]
+    root = np.sqrt(np.maximum(values, _LEAST))
+    basis = (vectors.transpose(0, 2, 1) @ scaled) / root[:, :, None]
     taken = 1.0 - 1.0 / np.sqrt(1.0 + values)
-    return Whitening(basis, np.where(values > 1e-30, taken, 0.0))
+    return Whitening(basis, np.where(values > _LEAST, taken, 0.0))
 
 
 def directions_found(scaled: FloatArray, residual: FloatArray) -> FloatArray:
@@ -56,6 +60,6 @@ def directions_found(scaled: FloatArray, residual: FloatArray) -> FloatArray:
     Returns:
         u in units of its sd.
     """
-    across = scaled.transpose(0, 2, 1)
-    inner = np.eye(scaled.shape[2]) + across @ scaled
-    return np.asarray(-np.linalg.solve(inner, across @ residual[:, :, None])[:, :, 0])
+    inner = np.eye(scaled.shape[1]) + scaled @ scaled.transpose(0, 2, 1)
+    right = np.einsum("rdn,rn->rd", scaled, residual)
+    return np.asarray(-np.linalg.solve(inner, right[:, :, None])[:, :, 0])
