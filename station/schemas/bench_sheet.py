@@ -28,7 +28,7 @@ class _Part(BaseModel):
 
 
 class _Plates(_Part):
-    E_rel_sigma: Sigma
+    modulus_sigma: Sigma = Field(alias="E_rel_sigma")
     mass_rel_sigma: Sigma
 
 
@@ -43,18 +43,18 @@ class _Sigmas(_Part):
 
 
 class _Joint(_Part):
-    kn_N_per_m: Stiffness
-    ktx_N_per_m: Stiffness
-    kty_N_per_m: Stiffness
-    cn_Ns_per_m: Positive
-    ct_Ns_per_m: Positive
+    normal: Stiffness = Field(alias="kn_N_per_m")
+    along_x: Stiffness = Field(alias="ktx_N_per_m")
+    along_y: Stiffness = Field(alias="kty_N_per_m")
+    normal_damping: Positive = Field(alias="cn_Ns_per_m")
+    tangential_damping: Positive = Field(alias="ct_Ns_per_m")
     rel_sigma: _Sigmas
     bolt_to_bolt_rel_sigma: Sigma
 
 
 class _Feet(_Part):
-    k_N_per_m: Positive
-    c_Ns_per_m: Positive
+    stiffness: Positive = Field(alias="k_N_per_m")
+    damping: Positive = Field(alias="c_Ns_per_m")
     rel_sigma: _Sigmas
 
 
@@ -63,7 +63,9 @@ class SheetFile(_Part):
 
     schema_: Literal["bench-sheet/1"] = Field(alias="schema")
     plates: _Plates
-    torques_Nm: Annotated[tuple[Positive, ...], Field(min_length=1, max_length=100)]
+    torques: Annotated[
+        tuple[Positive, ...], Field(alias="torques_Nm", min_length=1, max_length=100)
+    ]
     hammer_points: Annotated[dict[str, _Point], Field(min_length=1, max_length=100)]
     aim_sigma_mm: Positive
     tilt_sigma_deg: Positive
@@ -101,20 +103,21 @@ def _sheet(found: SheetFile) -> BenchSheet:
     joint, feet = found.joint_per_bolt, found.feet
     stiffness = [
         math.inf if k == "rigid" else k
-        for k in (joint.ktx_N_per_m, joint.kty_N_per_m, joint.kn_N_per_m)
+        for k in (joint.along_x, joint.along_y, joint.normal)
     ]
+    across, normal = joint.tangential_damping, joint.normal_damping
     return BenchSheet(
         stiffness=np.array(stiffness),
-        damping=np.array([joint.ct_Ns_per_m, joint.ct_Ns_per_m, joint.cn_Ns_per_m]),
+        damping=np.array([across, across, normal]),
         stiffness_sd=joint.rel_sigma.k,
         damping_sd=joint.rel_sigma.c,
         bolt_sd=joint.bolt_to_bolt_rel_sigma,
-        foot=(feet.k_N_per_m, feet.c_Ns_per_m),
+        foot=(feet.stiffness, feet.damping),
         foot_sd=(feet.rel_sigma.k, feet.rel_sigma.c),
         loss=(found.plate_damping_ratio, found.plate_damping_rel_sigma),
-        modulus_sd=found.plates.E_rel_sigma,
+        modulus_sd=found.plates.modulus_sigma,
         mass_sd=found.plates.mass_rel_sigma,
         aim_sd=1e-3 * found.aim_sigma_mm,
         tilt_sd=math.radians(found.tilt_sigma_deg),
-        torque_reference=float(np.median(found.torques_Nm)),
+        torque_reference=float(np.median(found.torques)),
     )

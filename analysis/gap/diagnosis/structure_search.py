@@ -34,8 +34,23 @@ SHORT = Resolution(STRUCTURE.base_windows[1])
 LONGER = Resolution(STRUCTURE.base_windows[2])
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class StructureOutcome:
+    """Outcome of a search on bolted bodies.
+
+    Attributes:
+        outcome: base, best fit and its rivals.
+        bench: on which the best fit was found.
+        base_bench: on which the base was found.
+    """
+
+    outcome: SearchOutcome
+    bench: StructureBench
+    base_bench: StructureBench
+
+
 @one_thread()
-def search_structure(bench: StructureBench, progress: Progress) -> SearchOutcome:
+def search_structure(bench: StructureBench, progress: Progress) -> StructureOutcome:
     """Fit the base, and search for a missing effect if it does not explain the hits.
 
     Args:
@@ -54,9 +69,13 @@ def search_structure(bench: StructureBench, progress: Progress) -> SearchOutcome
     screening = screen(few, near, few.candidates, resolution=SHORT)
     none = SearchOutcome(whole, base, first, screening, base, first, (), (base,))
     if first.passed:
-        return none
+        return StructureOutcome(none, whole, whole)
     carried = _carried(few, near, screening, progress)
-    return _judged(bench, none, carried, progress)
+    done = _in_whole_records(bench, base, carried, progress)
+    if not done:
+        return StructureOutcome(none, whole, whole)
+    best = done[0]
+    return StructureOutcome(_judged(none, done), best.bench, whole)
 
 
 def one_of_each(hits: HitRecords) -> IntArray:
@@ -120,9 +139,11 @@ def settled(
             landing, _ = bench.landed(fit.base, fit.terms)
         bench = bench.at(fit.base, fit.terms, landing, floor)
         before, fit = fit.cost, _whole(bench, fit.x, candidates)
-        if not near or abs(before - fit.cost) < STRUCTURE.settled_share * fit.cost:
+        least = STRUCTURE.settled_share if near else STRUCTURE.approach_share
+        if before - fit.cost < least * fit.cost:
             break
-    return bench, fit
+    problem = make_problem(bench, candidates)
+    return bench, minimise(problem, fit.x, FULL, iterations=0)
 
 
 def _whole(
@@ -210,19 +231,21 @@ class _Settled:
     acceptance: Acceptance
 
 
-def _judged(
-    bench: StructureBench, none: SearchOutcome, carried: list[Fit], progress: Progress
-) -> SearchOutcome:
-    """Fit the best candidates to whole records, and judge the best of them."""
+def _in_whole_records(
+    bench: StructureBench, base: Fit, carried: Sequence[Fit], progress: Progress
+) -> list[_Settled]:
+    """Fit the best candidates to whole records, accepted ones first."""
     done: list[_Settled] = []
     bench = replace(bench, reach=STRUCTURE.final_reach)
     for fit in _worth_it(carried):
         progress(f"{fit.candidates[0].label} in whole records")
         own, found = settled(bench, fit.x, fit.candidates, STRUCTURE.table_floor)
-        done.append(_Settled(own, found, accept_structure(own, found, none.base)))
-    if not done:
-        return none
-    done.sort(key=lambda one: (not one.acceptance.passed, one.fit.cost))
+        done.append(_Settled(own, found, accept_structure(own, found, base)))
+    return sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
+
+
+def _judged(none: SearchOutcome, done: Sequence[_Settled]) -> SearchOutcome:
+    """Compare the best fit with its rivals under one whitening."""
     best = done[0]
     fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
     fits.sort(key=lambda f: score(best.bench, f))
@@ -237,7 +260,7 @@ def _judged(
     )
 
 
-def _worth_it(carried: list[Fit]) -> list[Fit]:
+def _worth_it(carried: Sequence[Fit]) -> list[Fit]:
     """Return the fits that may be the best over whole records."""
     if not carried:
         return []

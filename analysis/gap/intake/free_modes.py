@@ -84,14 +84,13 @@ def read_bodies(
         BadData: a number is not finite.
     """
     tables = _tables(where, file)
-    bottom, top = tables
     bolts = [table.points("phi_bolts") for table in tables]
     if bolts[0].shape != bolts[1].shape:
         raise FormatError(
             f"{where} has {len(bolts[0])} bolts at the bottom and {len(bolts[1])} at "
             "the top; store the same bolts for both bodies"
         )
-    feet = bottom.points("phi_feet")
+    feet = tables[0].points("phi_feet")
     rows = [
         tables[body].rows(
             require_group(tables[body].where, tables[body].group, "phi_channel"),

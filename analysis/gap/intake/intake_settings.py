@@ -167,7 +167,7 @@ class HitSettings:
     rate_over_band: float = numerical(
         2.5, "-", "sample rate of the comparison over the band"
     )
-    stop_dB: float = numerical(70.0, "dB", "attenuation of the common filter")
+    stop_band: float = numerical(70.0, "dB", "attenuation of the common filter")
     band_of_table: float = numerical(
         0.6,
         "of the highest mode",

@@ -141,7 +141,7 @@ def make_filter(band: float, sample_rate: float) -> CommonFilter:
         return CommonFilter(np.ones(1), 1)
     half_rate = sample_rate / step / 2
     width = (half_rate - band) / (sample_rate / 2)
-    taps, beta = scipy.signal.kaiserord(HITS.stop_dB, width)
+    taps, beta = scipy.signal.kaiserord(HITS.stop_band, width)
     cut = 0.5 * (band + half_rate)
     kernel = scipy.signal.firwin(taps | 1, cut, window=("kaiser", beta), fs=sample_rate)
     return CommonFilter(np.asarray(kernel), step)

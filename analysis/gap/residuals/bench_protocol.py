@@ -132,7 +132,16 @@ class SlopedBench(Protocol):
         ...
 
 
-class MeasuredBench(Bench, Protocol):
+class NoisyBench(Bench, Protocol):
+    """A bench that states the expected noise of its residual."""
+
+    @property
+    def noise(self) -> Noise:
+        """Expected noise of the residual."""
+        ...
+
+
+class MeasuredBench(NoisyBench, Protocol):
     """A bench with the records that it compares, for views and for model error."""
 
     @property
@@ -143,11 +152,6 @@ class MeasuredBench(Bench, Protocol):
     @property
     def entries(self) -> tuple[LumpedEffect, ...]:
         """The catalogue of this run."""
-        ...
-
-    @property
-    def noise(self) -> Noise:
-        """Expected noise of the residual."""
         ...
 
     def difference(

@@ -17,6 +17,10 @@ import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
 from jointbench.analysis.gap.structure_bench.joint_state import (
+    FOOT as FOOT_STIFFNESS,
+)
+from jointbench.analysis.gap.structure_bench.joint_state import (
+    FOOT_DAMPING,
     LOSS,
     NORMAL_DAMPING,
     TANGENTIAL_DAMPING,
@@ -28,10 +32,6 @@ from jointbench.analysis.gap.structure_bench.joint_state import (
     modulus_name,
     stiffness_name,
 )
-from jointbench.analysis.gap.structure_bench.joint_state import (
-    FOOT as FOOT_STIFFNESS,
-)
-from jointbench.analysis.gap.structure_bench.joint_state import FOOT_DAMPING
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     NORMAL,
     JointedBodies,
@@ -125,6 +125,11 @@ def _sums_over_modes(one: FloatArray, two: FloatArray, d: ComplexArray) -> Compl
     return found.reshape(d.shape[0], len(one), len(two))
 
 
+def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
+    """Solve the systems of all lines."""
+    return np.asarray(np.linalg.solve(matrix, right), dtype=np.complex128)
+
+
 def close(
     bodies: JointedBodies,
     state: JointState,
@@ -148,7 +153,7 @@ def close(
     at = np.arange(len(joints))
     system[:, at, at] += joint_compliances(bodies, state, s, torque)
     across = _sums_over_modes(joints, columns, d)
-    left = np.linalg.solve(system, _sums_over_modes(joints, rows, d))
+    left = _solved(system, _sums_over_modes(joints, rows, d))
     response = _sums_over_modes(rows, columns, d)
     response -= left.transpose(0, 2, 1) @ across
     if state.attached:
@@ -187,8 +192,8 @@ def _attached_forces(
     z = np.repeat(np.stack(stiffness, axis=1), counts, axis=1)[:, :, None]
     count = z.shape[1]
     inner = np.eye(count) + z * h[:, -count:, -count:]
-    by_row = np.linalg.solve(inner, z * h[:, :-count, -count:].transpose(0, 2, 1))
-    by_column = np.linalg.solve(inner, z * h[:, -count:, :-count])
+    by_row = _solved(inner, z * h[:, :-count, -count:].transpose(0, 2, 1))
+    by_column = _solved(inner, z * h[:, -count:, :-count])
     return by_row, by_column
 
 
@@ -202,7 +207,7 @@ def closed_rows(found: Closure, bodies: JointedBodies, state: JointState) -> Clo
     """
     rows, _ = _ends(bodies, state, np.zeros((0, bodies.omega.size)))
     columns, joints, left = found.columns, bodies.joint_rows, found.left
-    right = np.linalg.solve(found.system, found.across)
+    right = _solved(found.system, found.across)
     in_rows = rows - left.transpose(0, 2, 1) @ joints
     in_columns = (columns - right.transpose(0, 2, 1) @ joints).transpose(0, 2, 1)
     if not state.attached:

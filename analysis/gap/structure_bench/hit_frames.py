@@ -20,7 +20,7 @@ class HitFrame:
         size: samples of the transform.
         s: Laplace variable of each line [rad/s], shape (n_lines,).
         force: transformed forces [N], shape (n_records, n_lines).
-        growth: factor that removes the damping, shape (count,).
+        growth: factor that removes the damping, shape (size,).
     """
 
     count: int
@@ -32,19 +32,24 @@ class HitFrame:
     def records(self, spectrum: ComplexArray) -> FloatArray:
         """Return records from their transforms, shape (..., count)."""
         values = scipy.fft.irfft(spectrum, self.size, axis=-1)[..., : self.count]
-        values *= self.growth
+        values *= self.growth[: self.count]
         return np.asarray(values)
 
     def transform(self, values: FloatArray) -> ComplexArray:
-        """Return the transforms of records, shape (..., n_lines)."""
-        return np.asarray(
-            scipy.fft.rfft(values[..., : self.count] / self.growth, self.size, axis=-1)
-        )
+        """Return the transforms of records, shape (..., n_lines).
+
+        Args:
+            values: shape (..., n_samples); more samples than the window has keep their
+                end out of it.
+        """
+        inside = values[..., : self.size]
+        damped = inside / self.growth[: inside.shape[-1]]
+        return np.asarray(scipy.fft.rfft(damped, self.size, axis=-1))
 
 
 def window_count(hits: HitRecords, window: float | None) -> int:
     """Return the samples of a window that begins with the force [s]."""
-    whole = hits.force.shape[1]
+    whole = int(hits.force.shape[1])
     if window is None:
         return whole
     return min(whole, hits.lead + int(np.ceil(window * hits.sample_rate)))
@@ -61,7 +66,13 @@ def hit_frame(hits: HitRecords, count: int) -> HitFrame:
     padded = count + max(int(share * count), least)
     size = int(scipy.fft.next_fast_len(padded, real=True))
     decay = STRUCTURE.line_damping * hits.sample_rate / size
-    growth = np.exp(decay * np.arange(count) / hits.sample_rate)
+    growth = np.exp(decay * np.arange(size) / hits.sample_rate)
     omega = 2 * np.pi * np.fft.rfftfreq(size, 1.0 / hits.sample_rate)
-    force = scipy.fft.rfft(hits.force[:, :count] / growth, size, axis=-1)
-    return HitFrame(count, size, decay + 1j * omega, np.asarray(force), growth)
+    force = scipy.fft.rfft(hits.force[:, :count] / growth[:count], size, axis=-1)
+    return HitFrame(
+        count,
+        size,
+        np.asarray(decay + 1j * omega, dtype=np.complex128),
+        np.asarray(force),
+        growth,
+    )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Responses to hits: closures by torque, force columns, and forces of laws at ports."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,10 +80,19 @@ class HitModel:
                 rows[one.records] += self._pushed(one.closure.response, forces)
         return rows
 
-    def slopes(self, weights: FloatArray, layout: BaseLayout) -> FloatArray:
+    def slopes(
+        self,
+        weights: FloatArray,
+        layout: BaseLayout,
+        changes: Sequence[ComplexArray] = (),
+    ) -> FloatArray:
         """Return the slopes by the base, shape (n_records, n_base, *shape).
 
-        The forces of laws are held fixed, but for the stiffness that scales them.
+        Args:
+            weights: of the columns of each record's point, shape (n_records, 9).
+            layout: base coordinates.
+            changes: slopes of the forces of the laws by each coordinate; if there are
+                none, those forces change with the stiffness of their ports only.
         """
         names = layout.names
         rows = np.empty((len(weights), len(names), *self.shape))
@@ -95,6 +105,8 @@ class HitModel:
                     forces = self.forces[one.records]
                     found += self._pushed(slopes[name], forces)
                     scaled = forces * self._scaling(name, layout)[:, None]
+                    if changes:
+                        scaled = changes[k][one.records]
                     if np.any(scaled):
                         found += self._pushed(one.closure.response, scaled)
                 rows[one.records, k] = found
@@ -168,7 +180,7 @@ def hit_model(
     )
     forces = None
     if state.laws is not None:
-        forces = _law_forces(campaign, state, frame, weights)
+        forces = law_forces(campaign, state, frame, weights)
     return HitModel(campaign, state, frame, closures, forces)
 
 
@@ -184,16 +196,31 @@ def _torques(campaign: HitCampaign, state: JointState) -> list[tuple[float, IntA
     ]
 
 
-def _law_forces(
+def law_forces(
     campaign: HitCampaign, state: JointState, frame: HitFrame, weights: FloatArray
 ) -> ComplexArray:
-    """Return the transformed forces of the laws, (n_records, n_ports, n_lines)."""
+    """Integrate the laws at the ports of a state.
+
+    Args:
+        campaign: hits, modes and nominal parameters.
+        state: with laws.
+        frame: transforms of the window.
+        weights: force columns of each record, shape (n_records, 9).
+
+    Returns:
+        Transformed forces across the ports, shape (n_records, n_ports, n_lines).
+    """
     hits, bodies = campaign.hits, campaign.bodies
     step = hits.filter.step
-    raw = hits.raw_force[:, : frame.count * step + hits.filter.half]
+    # Beyond the window: an end of the forces within it would ring back into it.
+    length = frame.size * step
+    raw = np.zeros((len(hits.raw_force), length))
+    known = min(length, hits.raw_force.shape[1])
+    raw[:, :known] = hits.raw_force[:, :known]
     shapes = np.stack([point_columns(p) for p in bodies.points])[hits.point]
     columns = np.einsum("rc,rcn->rn", weights, shapes)
-    found = np.empty((len(raw), len(state.laws.ports), len(frame.s)), dtype=complex)
+    ports = 0 if state.laws is None else len(state.laws.ports)
+    found = np.empty((len(raw), ports, len(frame.s)), dtype=np.complex128)
     for torque, records in _torques(campaign, state):
         forces = integrate_sliders(
             closed_modes(bodies, state, torque),

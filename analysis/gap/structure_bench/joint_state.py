@@ -155,7 +155,7 @@ def _contrasts(count: int) -> FloatArray:
     for k in range(1, count):
         columns[:k, k - 1] = 1.0
         columns[k, k - 1] = -k
-    return columns / np.linalg.norm(columns, axis=0)
+    return np.asarray(columns / np.linalg.norm(columns, axis=0))
 
 
 def state_of(

@@ -35,22 +35,18 @@ class PortLaws:
 def iwan_sliders(largest: float, power: float) -> tuple[FloatArray, FloatArray]:
     """Return slip displacements [m] and weights of sliders of one Iwan element.
 
-    Their density over the slip displacement is phi^power up to the largest one, so the
-    weight below phi is (phi / largest)^(power + 1). Cells have equal ratios; a slider
-    sits at the mean slip displacement of its cell.
+    The stiffness below a slip displacement phi is (phi / largest)^power, as in the
+    effect ``iwan`` of lumped joints. Cells are equally wide; a slider sits at the mean
+    slip displacement of its cell.
 
     Args:
         largest: slip displacement [m].
-        power: of the density [-], above -1.
+        power: chi + 2 of Segalman's density [-], above 0.
 
     Source:
-        Segalman 2005, J. Appl. Mech. 72, 752, eq. (16) to (18), without the impulse at
-        the largest slip displacement.
+        Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1).
     """
-    count = STRUCTURE.sliders
-    edges = np.concatenate([[0.0], np.geomspace(STRUCTURE.least_slip, 1.0, count)])
-    whole = edges ** (power + 1.0)
-    moment = edges ** (power + 2.0)
-    weights = np.diff(whole)
-    means = np.diff(moment) / weights * (power + 1.0) / (power + 2.0)
+    edges = np.linspace(0.0, 1.0, STRUCTURE.sliders + 1)
+    weights = np.diff(edges**power)
+    means = np.diff(edges ** (power + 1.0)) / weights * power / (power + 1.0)
     return largest * means, weights

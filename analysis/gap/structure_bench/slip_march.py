@@ -174,10 +174,21 @@ def integrate_sliders(
         instant,
         (sliders.stiffness, sliders.slips, sliders.weights),
         struck,
-        np.ascontiguousarray(force),
+        np.ascontiguousarray(_sharpened(force)),
         parts,
         found,
     )
+    return found
+
+
+def _sharpened(force: FloatArray) -> FloatArray:
+    """Return forces whose straight lines have the spectrum of the forces themselves.
+
+    Straight lines between samples reduce a harmonic by 1 - (omega h)^2 / 12, which a
+    second difference restores; without it a pulse of 1 ms is wrong by 0.05 %.
+    """
+    found = force.copy()
+    found[:, 1:-1] -= np.diff(force, 2, axis=1) / 12.0
     return found
 
 

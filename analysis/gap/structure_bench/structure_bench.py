@@ -7,18 +7,22 @@ from typing import Any
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import FloatArray, IntArray
+from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.analysis.gap.model.diagnosis_record import View
 from jointbench.analysis.gap.model.effect import Candidate, Term
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.bench_protocol import values_of
 from jointbench.analysis.gap.residuals.evaluation_resolutions import Resolution
 from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
+from jointbench.analysis.gap.residuals.noise_models import Noise
+from jointbench.analysis.gap.residuals.residual_views import slice_views
+from jointbench.analysis.gap.residuals.scatter_record import no_scatter
 from jointbench.analysis.gap.structure_bench.hit_frames import (
     HitFrame,
     hit_frame,
     window_count,
 )
-from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model
+from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model, law_forces
 from jointbench.analysis.gap.structure_bench.joint_state import (
     BaseLayout,
     JointState,
@@ -35,6 +39,7 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
 )
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_bench.whitening import (
+    Whitening,
     directions_found,
     whitening_of,
 )
@@ -110,6 +115,18 @@ class StructureBench:
         """Return the bench unchanged."""
         return self
 
+    @property
+    def noise(self) -> Noise:
+        """Noise of the sensors with the floor; the force counts as exact."""
+        return Noise(self.sigma, 0.0, no_scatter((), len(self.sigma)))
+
+    def views(self, fit: Fit) -> tuple[View, ...]:
+        """Return the residual of a fit by view."""
+        hits = self.campaign.hits
+        residual = fit.residual.reshape(self.blocks.shape)
+        names = self.campaign.bodies.channels
+        return slice_views(residual, self.blocks, names, hits.sample_rate)
+
     def phases(self, candidate: Candidate) -> int:
         """No effect fits a phase of its own."""
         return 0
@@ -131,9 +148,10 @@ class StructureBench:
     def frame(self, window: float | None) -> HitFrame:
         """Return the transforms of a window."""
         count = window_count(self.campaign.hits, window)
-        return self._kept(
+        found: HitFrame = self._kept(
             ("frame", count), lambda: hit_frame(self.campaign.hits, count)
         )
+        return found
 
     def response(
         self, base: FloatArray, terms: Sequence[Term], window: float | None
@@ -159,7 +177,8 @@ class StructureBench:
         """Return the slopes of the residual by the base, shape (n_rows, n_base)."""
         weights = landing_weights(self.landing)
         model = self._model(base, terms, resolution.window)
-        rows = model.slopes(weights, self.layout)
+        changes = self._law_slopes(model, base, terms)
+        rows = model.slopes(weights, self.layout, changes)
         white = self._whitened(rows)
         return white.transpose(0, 2, 1).reshape(-1, len(self.layout.names))
 
@@ -257,6 +276,27 @@ class StructureBench:
             self.kept[key] = make()
         return self.kept[key]
 
+    def _law_slopes(
+        self, model: HitModel, base: FloatArray, terms: Sequence[Term]
+    ) -> list[ComplexArray]:
+        """Return slopes of the forces of laws by the base, in short windows only.
+
+        Over whole records they would take most of the time of a fit that is then
+        close to its minimum.
+        """
+        samples = len(self.landing) * model.frame.count
+        if model.forces is None or samples > STRUCTURE.law_slope_samples:
+            return []
+        weights, step = landing_weights(self.landing), STRUCTURE.law_slope_step
+        changes = []
+        for k in range(base.size):
+            moved = base.copy()
+            moved[k] += step
+            state = self.state(moved, terms)
+            forces = law_forces(self.campaign, state, model.frame, weights)
+            changes.append((forces - model.forces) / step)
+        return changes
+
     def _model(
         self, base: FloatArray, terms: Sequence[Term], window: float | None
     ) -> HitModel:
@@ -265,7 +305,8 @@ class StructureBench:
         place = ("model", window_count(self.campaign.hits, window))
         last = self.kept.get(place)
         if last is not None and last[0] == key:
-            return last[1]
+            kept: HitModel = last[1]
+            return kept
         found = hit_model(
             self.campaign,
             self.state(base, terms),
@@ -293,11 +334,14 @@ class StructureBench:
     def _whitened(self, rows: FloatArray) -> FloatArray:
         """Whiten rows, (n_records, n, n_channels, count) to (n_records, n, n_rows)."""
         count = rows.shape[3]
-        flat = (rows / self.sigma[:, None, :, None]).reshape(*rows.shape[:2], -1)
+        scaled = rows / self.sigma[:, None, :, None]
+        flat: FloatArray = scaled.reshape(*rows.shape[:2], -1)
         if self.directions is None:
             return flat
-        white = self._kept(("white", count), lambda: whitening_of(self._scaled(count)))
-        return np.asarray(white(flat))
+        white: Whitening = self._kept(
+            ("white", count), lambda: whitening_of(self._scaled(count))
+        )
+        return white(flat)
 
 
 def record_blocks(campaign: HitCampaign) -> Blocks:

@@ -215,8 +215,16 @@ def _factor(values: FloatArray) -> tuple[Reported, ...]:
     return (Reported("factor", "-", float(np.exp(-values[0]))),)
 
 
+def _iwan(values: FloatArray) -> tuple[Reported, ...]:
+    return (
+        Reported("share", "-", float(values[0])),
+        Reported("phimax", "m", float(values[1])),
+        Reported("chi", "-", float(values[2] - 2.0)),
+    )
+
+
 _FAR_COMPLIANCE = (0.1, 0.3, 1.0, 3.0, 10.0)
-_SEGALMAN = "Segalman 2005, J. Appl. Mech. 72, 752, eq. (16)"
+_SEGALMAN = "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)"
 _COUPLING = "Craig and Kurdila 2006, ch. 17, closed by compliances"
 
 
@@ -354,9 +362,19 @@ STRUCTURE_CATALOGUE: tuple[StructureEffect, ...] = (
                     starts=(0.3, 1.5, 6.0),
                     transform=Transform.LOG,
                 ),
-                Parameter("chi", "-", lower=-0.9, upper=0.5, starts=(-0.4,)),
+                Parameter(
+                    "chi_plus_2",
+                    "-",
+                    lower=1.05,
+                    upper=2.2,
+                    starts=(1.6,),
+                    transform=Transform.LOG,
+                    prior=(1.6, 0.3),
+                ),
             ),
             _SEGALMAN,
+            report=_iwan,
+            has_sliders=True,
         ),
         _tangential,
         _slide,

@@ -31,16 +31,33 @@ class StructureSettings:
         "a prototype on 24 campaigns",
     )
     march_steps: int = numerical(
-        1,
+        3,
         "steps/sample",
         "steps of the time integration per raw sample",
-        "within 1e-4 of an adaptive integrator (a test)",
+        "within 1e-4 of the peak of an adaptive integrator (a test); 2 steps 1.3e-4, 1 "
+        "step 5e-4",
     )
-    least_slip: float = numerical(
-        0.01,
-        "of the largest",
-        "upper end of the first cell of slip displacements",
+    sliders: int = numerical(
+        24,
+        "sliders",
+        "sliders of an Iwan element at a port",
         "a prototype on 24 campaigns",
+    )
+    march_steps: int = numerical(
+        2,
+        "steps/sample",
+        "steps of the time integration per raw sample",
+        "1.4e-4 of the peak from an adaptive integrator; 1 step 5e-4, 4 steps 6e-5",
+    )
+    law_slope_samples: int = numerical(
+        12_000,
+        "samples",
+        "samples of all records up to which slopes of the forces of laws by the base "
+        "are computed",
+        "computing time: twenty hits in a window of 60 ms",
+    )
+    law_slope_step: float = numerical(
+        1e-5, "-", "difference step of a base coordinate for them"
     )
     coarse_floor: float = numerical(
         0.01,
@@ -83,6 +100,9 @@ class StructureSettings:
     )
     settled_share: float = numerical(
         0.01, "of the cost", "change of the cost below which these rounds end"
+    )
+    approach_share: float = numerical(
+        0.5, "of the cost", "the same while the fit is far from the records"
     )
     near_chi2: float = numerical(
         30.0,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Whitening of hits whose landing point, tilt and gain are known with a sd only.
 
-With the derivatives W of a record by its directions u ~ N(0, 1) over sigma, its residual
-has the covariance I + W W'. Multiplied by the inverse root of that, the residual is
-white, and the directions need no coordinates of their own in the fit.
+With the derivatives W of a record by its directions u ~ N(0, 1) over sigma, its
+residual has the covariance I + W W'. Multiplied by the inverse root of that, the
+residual is white, and the directions need no coordinates of their own in the fit.
 """
 
 from dataclasses import dataclass
