@@ -225,7 +225,7 @@ def _examine_campaign(
 def _examine_hits(
     paths: list[Path], wanted: GapRequest, progress: Progress
 ) -> Examined:
-    """Examine hits on bolted bodies, whose model is a bench sheet."""
+    """Examine hits on bolted bodies, whose model is nominal parameters."""
     if len(paths) > 1 or wanted.preload is not None:
         raise UsageError(
             f"'{paths[0]}' brings its own torques and is given alone; leave --preload "

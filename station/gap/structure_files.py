@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Hits on bolted bodies with their bench sheet, examined."""
+"""Hits on bolted bodies with their nominal parameters, examined."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,24 +9,24 @@ from jointbench.acquisition.file_access.quoting import visible
 from jointbench.analysis.gap.diagnosis.structure_diagnosis import diagnose_structure
 from jointbench.analysis.gap.intake.read_hit_campaign import read_hit_campaign
 from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
-from jointbench.station.schemas.bench_sheet import read_sheet
+from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 BESIDE = "sheet.json"
-"""Name of a bench sheet that is found beside its campaign."""
+"""Name of nominal parameters that is found beside its campaign."""
 
 
 def examine_structure(
     path: Path,
-    sheet: Path | None,
+    nominal: Path | None,
     *,
     without: frozenset[str],
     progress: Callable[[str], None],
 ) -> tuple[Diagnosis, tuple[str, ...]]:
-    """Read a campaign with its sheet, and diagnose it.
+    """Read a campaign with its nominal parameters, and diagnose it.
 
     Args:
         path: file of schema ``campaign/1``.
-        sheet: bench sheet (JSON); None for ``sheet.json`` beside the campaign.
+        nominal: nominal parameters (JSON); None for ``sheet.json`` beside the campaign.
         without: names of effects to leave out of the catalogue.
         progress: receives one line for each step.
 
@@ -34,16 +34,17 @@ def examine_structure(
         Verdict and evidence, and what a reader should know of the hits.
 
     Raises:
-        UsageError: there is no sheet, or `without` holds a name that no entry has.
+        UsageError: there is no file of nominal parameters, or `without` holds a name
+            that no entry has.
         BadData: a file cannot be used as it is.
     """
-    given = sheet or path.parent / BESIDE
-    if sheet is None and not given.is_file():
+    given = nominal or path.parent / BESIDE
+    if nominal is None and not given.is_file():
         raise UsageError(
             f"'{path}' holds hits on bolted bodies but no nominal parameters; give the "
-            "bench sheet with --model sheet.json"
+            "nominal parameters with --model sheet.json"
         )
-    campaign = read_hit_campaign(path, *read_sheet(given))
+    campaign = read_hit_campaign(path, *read_nominal(given))
     done = diagnose_structure(campaign, without=without, progress=progress)
     remarks = [
         f"hits landed {done.landing_mm:.2g} mm (rms) beside their points, tilted by "

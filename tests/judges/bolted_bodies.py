@@ -19,7 +19,7 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     HitPoint,
     HitRecords,
     JointedBodies,
-    Place,
+    MassPlace,
 )
 
 RATE = 32_768.0
@@ -41,7 +41,7 @@ def random_bodies(
     on = [np.where(body == k, 1.0, 0.0) for k in (0, 1)]
     shapes = 0.3 * rng.standard_normal((BOLTS, 3, n))
     hit = 0.3 * rng.standard_normal((3, n)) * on[1]
-    place = Place("P1", hit)
+    place = MassPlace("P1", hit)
     point = HitPoint(
         "P1",
         np.array([0.0, 0.0, -1.0]),

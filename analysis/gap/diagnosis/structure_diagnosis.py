@@ -205,7 +205,7 @@ def _base_estimates(bench: StructureBench, fit: Fit) -> tuple[Estimate, ...]:
     widened = max(fit.chi2 / bench.blocks.dof, 1.0)
     sd = np.sqrt(np.maximum(np.diag(fit.covariance)[: fit.n_base] * widened, 0.0))
     campaign, layout = bench.campaign, bench.layout
-    nominal = nominal_values(campaign.bodies, campaign.sheet, layout)
+    nominal = nominal_values(campaign.bodies, campaign.nominal, layout)
     values = nominal * np.exp(fit.base)
     return tuple(
         Estimate(name, float(v), float(v * s), unit)

@@ -223,7 +223,7 @@ def _starts(
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Settled:
+class _WholeFit:
     """A fit to whole records on its own bench, with its acceptance."""
 
     bench: StructureBench
@@ -233,18 +233,18 @@ class _Settled:
 
 def _in_whole_records(
     bench: StructureBench, base: Fit, carried: Sequence[Fit], progress: Progress
-) -> list[_Settled]:
+) -> list[_WholeFit]:
     """Fit the best candidates to whole records, accepted ones first."""
-    done: list[_Settled] = []
+    done: list[_WholeFit] = []
     bench = replace(bench, reach=STRUCTURE.final_reach)
     for fit in _worth_it(carried):
         progress(f"{fit.candidates[0].label} in whole records")
         own, found = settled(bench, fit.x, fit.candidates, STRUCTURE.table_floor)
-        done.append(_Settled(own, found, accept_structure(own, found, base)))
+        done.append(_WholeFit(own, found, accept_structure(own, found, base)))
     return sorted(done, key=lambda one: (not one.acceptance.passed, one.fit.cost))
 
 
-def _judged(none: SearchOutcome, done: Sequence[_Settled]) -> SearchOutcome:
+def _judged(none: SearchOutcome, done: Sequence[_WholeFit]) -> SearchOutcome:
     """Compare the best fit with its rivals under one whitening."""
     best = done[0]
     fits = [best.fit, *(_alike(best, one.fit) for one in done[1:])]
@@ -272,7 +272,7 @@ def _worth_it(carried: Sequence[Fit]) -> list[Fit]:
     ]
 
 
-def _alike(best: _Settled, fit: Fit) -> Fit:
+def _alike(best: _WholeFit, fit: Fit) -> Fit:
     """Return a rival under the whitening of the best fit."""
     problem = make_problem(best.bench, fit.candidates)
     return minimise(problem, fit.x, FULL, iterations=3, exact_slopes=False)
@@ -291,14 +291,15 @@ def accept_structure(bench: StructureBench, fit: Fit, base: Fit) -> Acceptance:
     """
     dof = bench.blocks.dof
     chi2 = fit.chi2 / dof
-    allowed = STRUCTURE.chi2_allowed
+    policy = bench.policy
+    allowed = policy.floor_chi2
     if fit.candidates:
-        allowed += STRUCTURE.chi2_share * max(base.chi2 / dof - 1.0, 0.0)
+        allowed += policy.floor_chi2_share * max(base.chi2 / dof - 1.0, 0.0)
     deviation = float(np.abs(fit.prior_deviations).max())
     reason = ""
     if chi2 > allowed:
         reason = f"chi2/dof is {chi2:.4g}, the limit is {allowed:.4g}"
-    elif deviation > STRUCTURE.prior_limit:
+    elif deviation > policy.floor_prior_limit:
         worst = bench.base_names[int(np.argmax(np.abs(fit.prior_deviations)))]
         reason = f"{worst} is {deviation:.1f} sd from its nominal value"
     return Acceptance(

@@ -12,7 +12,7 @@ from jointbench.analysis.gap.intake.raw_hits import (
     QuietHit,
     bad_hit,
     band_of,
-    force_gate,
+    contact_samples,
     mains_frequency,
     make_filter,
     quieted,
@@ -67,7 +67,7 @@ class RawHits:
 
 
 def filter_hits(raw: RawHits, bodies: JointedBodies) -> HitRecords:
-    """Leave out bad hits, gate the forces, and filter force and responses alike.
+    """Leave out bad hits, cut out the contacts, and filter force and responses alike.
 
     Args:
         raw: records as stored.
@@ -107,12 +107,13 @@ def _filtered(
     rejected: tuple[RejectedHit, ...],
 ) -> HitRecords:
     force = np.stack([h.values[0] for _, h in good])
-    gates = np.stack([force_gate(h.values[0], float(h.noise[0])) for _, h in good])
-    force = np.where(gates, force, 0.0)
+    found = [contact_samples(h.values[0], float(h.noise[0])) for _, h in good]
+    contacts = np.stack(found)
+    force = np.where(contacts, force, 0.0)
     highest = HITS.band_of_table * float(bodies.omega.max()) / (2 * np.pi)
     band = min(band_of(force, raw.sample_rate), highest)
     decimate = make_filter(band, raw.sample_rate)
-    first = int(np.flatnonzero(gates.any(axis=0))[0])
+    first = int(np.flatnonzero(contacts.any(axis=0))[0])
     start = max(first - decimate.half, 0)
     noise = np.stack([h.noise[1:] for _, h in good])
     response = [decimate(h.values[1:], start) for _, h in good]

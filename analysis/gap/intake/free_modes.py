@@ -15,7 +15,7 @@ from jointbench.analysis.gap.intake.typed_hdf5 import finite_array, require_grou
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     HitPoint,
     JointedBodies,
-    Place,
+    MassPlace,
 )
 
 BODIES = ("bottom", "top")
@@ -113,7 +113,7 @@ def read_bodies(
             *_places("bottom bolt", bolts[0]),
             *_places("top bolt", bolts[1]),
             *_places("foot", feet),
-            *(Place(point.name, point.rows) for point in hit_points),
+            *(MassPlace(point.name, point.rows) for point in hit_points),
             *_sensor_places(sensors, rows),
         ),
         rigid=(bool(rigid[0]), bool(rigid[1]), bool(rigid[2])),
@@ -154,7 +154,7 @@ def _hit_point(
     if body not in BODIES:
         raise FormatError(
             f"hammer point {visible(name)} is on body {shown(body)}; write "
-            f"{' or '.join(BODIES)} into the sheet"
+            f"{' or '.join(BODIES)} into the nominal parameters"
         )
     table = tables[BODIES.index(body)]
     shapes = require_group(table.where, table.group, "phi_hit")
@@ -168,18 +168,18 @@ def _hit_point(
     )
 
 
-def _places(name: str, rows: FloatArray) -> list[Place]:
-    return [Place(f"{name} {k}", one) for k, one in enumerate(rows)]
+def _places(name: str, rows: FloatArray) -> list[MassPlace]:
+    return [MassPlace(f"{name} {k}", one) for k, one in enumerate(rows)]
 
 
 def _sensor_places(
     sensors: Sequence[_Sensor], rows: Sequence[FloatArray]
-) -> list[Place]:
+) -> list[MassPlace]:
     """Return a place for each sensor position, with all directions measured there."""
     groups: dict[tuple[object, ...], list[int]] = {}
     for k, (name, body, position) in enumerate(sensors):
         groups.setdefault((body, position or name), []).append(k)
     return [
-        Place(sensors[own[0]][0], np.array([rows[k] for k in own]))
+        MassPlace(sensors[own[0]][0], np.array([rows[k] for k in own]))
         for own in groups.values()
     ]

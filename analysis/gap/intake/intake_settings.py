@@ -131,13 +131,13 @@ class HitSettings:
         "step of that search",
         "over a quiet start of 20 ms it turns the phase by 0.7 degrees",
     )
-    gate_noise_sd: float = numerical(
+    contact_noise_sd: float = numerical(
         5.0, "sd", "force above which a sample belongs to a contact"
     )
-    gate_share: float = numerical(
+    contact_share: float = numerical(
         0.003, "of the peak", "force above which a sample belongs to a contact"
     )
-    gate_padding: int = numerical(
+    contact_padding: int = numerical(
         4, "samples", "samples kept on both sides of a contact"
     )
     full_share: float = numerical(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Raw hits: quiet start, force gate, bad hits, common filter and decimation."""
+"""Raw hits: quiet start, contact, bad hits, common filter and decimation."""
 
 from dataclasses import dataclass
 
@@ -71,17 +71,17 @@ def quieted(
     return QuietHit(left, np.sqrt(np.sum(left[:, :quiet] ** 2, axis=1) / dof))
 
 
-def force_gate(force: FloatArray, noise: float) -> BoolArray:
+def contact_samples(force: FloatArray, noise: float) -> BoolArray:
     """Return the samples that belong to a contact, shape (n_samples,).
 
     Args:
         force: of one hit [N], shape (n_samples,).
         noise: its sd [N].
     """
-    limit = max(HITS.gate_noise_sd * noise, HITS.gate_share * float(force.max()))
+    limit = max(HITS.contact_noise_sd * noise, HITS.contact_share * float(force.max()))
     strong = force > limit
     strong[1:-1] &= strong[:-2] | strong[2:]
-    kernel = np.ones(2 * HITS.gate_padding + 1)
+    kernel = np.ones(2 * HITS.contact_padding + 1)
     return np.asarray(np.convolve(strong, kernel, mode="same") > 0.5)
 
 
@@ -110,7 +110,7 @@ def bad_hit(hit: QuietHit, volts: FloatArray, full_scale: float, aimed: float) -
 def _contacts(force: FloatArray, limit: float) -> int:
     """Count the contacts of the hammer: peaks with an opening between them."""
     peaks, _ = scipy.signal.find_peaks(
-        force, height=limit, prominence=limit, distance=HITS.gate_padding
+        force, height=limit, prominence=limit, distance=HITS.contact_padding
     )
     return max(len(peaks), 1)
 

@@ -24,8 +24,8 @@ from jointbench.analysis.gap.intake.typed_hdf5 import (
     require_group,
 )
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
-    BenchSheet,
     HitCampaign,
+    NominalBench,
 )
 
 HIT_SCHEMA = "campaign/1"
@@ -34,7 +34,7 @@ FORCE, ACCELERATION = "force", "acceleration"
 
 @dataclass(frozen=True, slots=True)
 class PlannedPoint:
-    """A hammer point of the sheet.
+    """A hammer point of the nominal parameters.
 
     Attributes:
         direction: of an exact hit, a unit vector.
@@ -46,7 +46,7 @@ class PlannedPoint:
 
 
 @dataclass(frozen=True, slots=True)
-class Channel:
+class RawChannel:
     """One row of the data.
 
     Attributes:
@@ -69,13 +69,13 @@ class Channel:
 
 
 def read_hit_campaign(
-    path: Path, sheet: BenchSheet, points: dict[str, PlannedPoint]
+    path: Path, nominal: NominalBench, points: dict[str, PlannedPoint]
 ) -> HitCampaign:
     """Read a campaign of hits on bolted bodies.
 
     Args:
         path: HDF5 file of schema ``campaign/1``.
-        sheet: nominal parameters.
+        nominal: nominal parameters.
         points: hammer points by name.
 
     Raises:
@@ -85,7 +85,7 @@ def read_hit_campaign(
     """
     with open_guarded(path) as file:
         try:
-            return _campaign(path, file, sheet, points)
+            return _campaign(path, file, nominal, points)
         except (OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
             raise FormatError(
                 f"{named(path)} cannot be read as {HIT_SCHEMA} ({shown(error)}); "
@@ -96,7 +96,7 @@ def read_hit_campaign(
 def _campaign(
     path: Path,
     file: h5py.File,
-    sheet: BenchSheet,
+    nominal: NominalBench,
     points: dict[str, PlannedPoint],
 ) -> HitCampaign:
     where = named(path)
@@ -110,13 +110,13 @@ def _campaign(
     raw = _raw_hits(where, file, channels, tuple(points))
     directions = {name: (p.direction, p.body) for name, p in points.items()}
     sensors = [(c.name, c.body, c.position) for c in channels[1:]]
-    rigid = np.isinf(sheet.stiffness)
+    rigid = np.isinf(nominal.stiffness)
     bodies = read_bodies(where, file, sensors, directions, rigid)
     hits = filter_hits(raw, bodies)
-    return HitCampaign(path.stem, bodies, sheet, hits)
+    return HitCampaign(path.stem, bodies, nominal, hits)
 
 
-def _channels(where: str, file: h5py.File) -> tuple[Channel, ...]:
+def _channels(where: str, file: h5py.File) -> tuple[RawChannel, ...]:
     """Return the rows of the data: the hammer first, then accelerometers."""
     text = read_attribute(file, "channels")
     try:
@@ -144,7 +144,7 @@ def _channels(where: str, file: h5py.File) -> tuple[Channel, ...]:
     return found
 
 
-def _channel(where: str, index: int, entry: Any) -> Channel:
+def _channel(where: str, index: int, entry: Any) -> RawChannel:
     if not isinstance(entry, dict) or not isinstance(entry.get("name"), str):
         raise FormatError(
             f"{where} has channel {index} of {shown(entry)}, an object with a 'name' "
@@ -156,7 +156,7 @@ def _channel(where: str, index: int, entry: Any) -> Channel:
         raise FormatError(
             f"{place} sits on body {shown(body)}; write 0 for the bottom, 1 for the top"
         )
-    return Channel(
+    return RawChannel(
         name=entry["name"],
         quantity=str(entry.get("quantity")),
         volts=positive_number(place, "counts_to_V", entry.get("counts_to_V")),
@@ -181,7 +181,7 @@ def _vector(place: str, name: str, value: Any) -> tuple[float, ...] | None:
 
 
 def _raw_hits(
-    where: str, file: h5py.File, channels: Sequence[Channel], points: tuple[str, ...]
+    where: str, file: h5py.File, channels: Sequence[RawChannel], points: tuple[str, ...]
 ) -> RawHits:
     """Return the raw records; samples are read after all other parts are checked."""
     group = require_group(where, file, "records")
@@ -246,8 +246,8 @@ def _hit(place: str, name: str, record: h5py.Group, points: tuple[str, ...]) -> 
     point = read_attribute(record, "point")
     if point not in points:
         raise FormatError(
-            f"{place} was hit at {shown(point)}, the sheet has "
-            f"{visible(', '.join(points))}; add the point to the sheet"
+            f"{place} was hit at {shown(point)}, the nominal parameters have "
+            f"{visible(', '.join(points))}; add the point to the nominal parameters"
         )
     return RawHit(
         name=name,

@@ -21,7 +21,7 @@ from jointbench.analysis.gap.structure_bench.joint_state import (
 )
 from jointbench.analysis.gap.structure_bench.jointed_bodies import HitCampaign
 from jointbench.analysis.gap.structure_bench.landing import COLUMNS, point_columns
-from jointbench.analysis.gap.structure_bench.slip_march import (
+from jointbench.analysis.gap.structure_bench.port_integration import (
     closed_modes,
     integrate_sliders,
     port_sliders,
@@ -189,7 +189,7 @@ def _torques(campaign: HitCampaign, state: JointState) -> list[tuple[float, IntA
     torque = campaign.hits.torque
     if state.exponent == 0.0:
         return [(1.0, np.arange(torque.size))]
-    reference = campaign.sheet.torque_reference
+    reference = campaign.nominal.torque_reference
     return [
         (float((one / reference) ** state.exponent), np.flatnonzero(torque == one))
         for one in np.unique(torque)

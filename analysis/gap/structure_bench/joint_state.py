@@ -13,8 +13,8 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     DIRECTIONS,
     NORMAL,
-    BenchSheet,
     JointedBodies,
+    NominalBench,
 )
 from jointbench.analysis.gap.structure_bench.port_laws import PortLaws
 
@@ -126,7 +126,7 @@ def bolt_name(number: int) -> str:
     return f"bolt contrast {number}"
 
 
-def base_layout(bodies: JointedBodies, sheet: BenchSheet) -> BaseLayout:
+def base_layout(bodies: JointedBodies, nominal: NominalBench) -> BaseLayout:
     """Return the base coordinates with their priors.
 
     The scatter from bolt to bolt enters as contrasts, orthogonal to the mean: a factor
@@ -134,17 +134,17 @@ def base_layout(bodies: JointedBodies, sheet: BenchSheet) -> BaseLayout:
     """
     count = bodies.bolts.shape[0]
     compliant = tuple(d for d in range(3) if not bodies.rigid[d])
-    common = float(np.hypot(sheet.stiffness_sd, sheet.bolt_sd / np.sqrt(count)))
+    common = float(np.hypot(nominal.stiffness_sd, nominal.bolt_sd / np.sqrt(count)))
     rows: list[tuple[str, float, str]] = []
-    rows += [(modulus_name(b), sheet.modulus_sd, "-") for b in bodies.bodies]
-    rows += [(mass_name(b), sheet.mass_sd, "-") for b in bodies.bodies]
-    rows.append((LOSS, sheet.loss[1], "-"))
+    rows += [(modulus_name(b), nominal.modulus_sd, "-") for b in bodies.bodies]
+    rows += [(mass_name(b), nominal.mass_sd, "-") for b in bodies.bodies]
+    rows.append((LOSS, nominal.loss[1], "-"))
     rows += [(stiffness_name(d), common, "N/m") for d in compliant]
-    rows.append((TANGENTIAL_DAMPING, sheet.damping_sd, "N s/m"))
-    rows.append((NORMAL_DAMPING, sheet.damping_sd, "N s/m"))
-    rows.append((FOOT, sheet.foot_sd[0], "N/m"))
-    rows.append((FOOT_DAMPING, sheet.foot_sd[1], "N s/m"))
-    rows += [(bolt_name(k + 1), sheet.bolt_sd, "-") for k in range(count - 1)]
+    rows.append((TANGENTIAL_DAMPING, nominal.damping_sd, "N s/m"))
+    rows.append((NORMAL_DAMPING, nominal.damping_sd, "N s/m"))
+    rows.append((FOOT, nominal.foot_sd[0], "N/m"))
+    rows.append((FOOT_DAMPING, nominal.foot_sd[1], "N s/m"))
+    rows += [(bolt_name(k + 1), nominal.bolt_sd, "-") for k in range(count - 1)]
     names, sd, units = zip(*rows, strict=True)
     return BaseLayout(names, np.array(sd), units, compliant, _contrasts(count))
 
@@ -159,40 +159,40 @@ def _contrasts(count: int) -> FloatArray:
 
 
 def state_of(
-    bodies: JointedBodies, sheet: BenchSheet, layout: BaseLayout, base: FloatArray
+    bodies: JointedBodies, nominal: NominalBench, layout: BaseLayout, base: FloatArray
 ) -> JointState:
     """Return the state at base coordinates, without any effect."""
     factor = dict(zip(layout.names, np.exp(base), strict=True))
     compliance = np.zeros(3)
     for d in layout.compliant:
-        compliance[d] = 1.0 / (sheet.stiffness[d] * factor[stiffness_name(d)])
+        compliance[d] = 1.0 / (nominal.stiffness[d] * factor[stiffness_name(d)])
     across = factor[TANGENTIAL_DAMPING]
-    damping = sheet.damping * np.array([across, across, factor[NORMAL_DAMPING]])
+    damping = nominal.damping * np.array([across, across, factor[NORMAL_DAMPING]])
     channels = len(bodies.channels)
     contrast = base[layout.sd.size - layout.contrasts.shape[1] :]
     return JointState(
         modulus=np.array([factor[modulus_name(b)] for b in bodies.bodies]),
         mass=np.array([factor[mass_name(b)] for b in bodies.bodies]),
-        loss=sheet.loss[0] * factor[LOSS],
+        loss=nominal.loss[0] * factor[LOSS],
         compliance=compliance,
         damping=damping,
         bolt=np.exp(layout.contrasts @ contrast),
-        foot=(sheet.foot[0] * factor[FOOT], sheet.foot[1] * factor[FOOT_DAMPING]),
+        foot=(nominal.foot[0] * factor[FOOT], nominal.foot[1] * factor[FOOT_DAMPING]),
         gain=np.zeros(channels),
         delay=np.zeros(channels),
     )
 
 
 def nominal_values(
-    bodies: JointedBodies, sheet: BenchSheet, layout: BaseLayout
+    bodies: JointedBodies, nominal: NominalBench, layout: BaseLayout
 ) -> FloatArray:
     """Return the value of each coordinate at 0, in its unit."""
     known = {
-        LOSS: sheet.loss[0],
-        TANGENTIAL_DAMPING: float(sheet.damping[0]),
-        NORMAL_DAMPING: float(sheet.damping[NORMAL]),
-        FOOT: sheet.foot[0],
-        FOOT_DAMPING: sheet.foot[1],
+        LOSS: nominal.loss[0],
+        TANGENTIAL_DAMPING: float(nominal.damping[0]),
+        NORMAL_DAMPING: float(nominal.damping[NORMAL]),
+        FOOT: nominal.foot[0],
+        FOOT_DAMPING: nominal.foot[1],
     }
-    known |= {stiffness_name(d): float(sheet.stiffness[d]) for d in layout.compliant}
+    known |= {stiffness_name(d): float(nominal.stiffness[d]) for d in layout.compliant}
     return np.array([known.get(name, 1.0) for name in layout.names])

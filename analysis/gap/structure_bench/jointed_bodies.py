@@ -14,7 +14,7 @@ NORMAL = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Place:
+class MassPlace:
     """A point of a body at which a mass or an oscillator may sit.
 
     Attributes:
@@ -79,7 +79,7 @@ class JointedBodies:
     channels: tuple[str, ...]
     sensors: FloatArray
     points: tuple[HitPoint, ...]
-    places: tuple[Place, ...]
+    places: tuple[MassPlace, ...]
     rigid: tuple[bool, bool, bool]
 
     def __post_init__(self) -> None:
@@ -94,7 +94,7 @@ class JointedBodies:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class BenchSheet:
+class NominalBench:
     """Nominal parameters of the bench and their uncertainty.
 
     Attributes:
@@ -190,13 +190,13 @@ class HitCampaign:
     Attributes:
         name: of the campaign.
         bodies: modes and rows.
-        sheet: nominal parameters.
+        nominal: nominal parameters.
         hits: filtered records.
         remarks: what a reader should know of the file, a line each.
     """
 
     name: str
     bodies: JointedBodies
-    sheet: BenchSheet
+    nominal: NominalBench
     hits: HitRecords
     remarks: tuple[str, ...] = ()

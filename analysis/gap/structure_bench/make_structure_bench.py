@@ -42,7 +42,7 @@ def make_structure_bench(
     peak = np.abs(hits.response).max(axis=2)
     return StructureBench(
         campaign=campaign,
-        layout=base_layout(campaign.bodies, campaign.sheet),
+        layout=base_layout(campaign.bodies, campaign.nominal),
         entries=entries,
         candidates=structure_candidates(entries, campaign),
         floor=STRUCTURE.coarse_floor,
@@ -59,12 +59,12 @@ def make_structure_bench(
 
 def _scales(campaign: HitCampaign) -> dict[str, float]:
     """Return the sizes that scale starts and bounds of effects."""
-    bodies, sheet, hits = campaign.bodies, campaign.sheet, campaign.hits
+    bodies, nominal, hits = campaign.bodies, campaign.nominal, campaign.hits
     # The rigid motions of a mass-normalised table: phi = 1 / sqrt(mass) along an axis.
     rigid = bodies.omega < 1e-3 * bodies.omega.max()
     motion = np.sum(bodies.points[0].rows[:, rigid] ** 2, axis=1)
     mass = 1.0 / float(np.min(motion))
-    known = sheet.stiffness[np.isfinite(sheet.stiffness)]
+    known = nominal.stiffness[np.isfinite(nominal.stiffness)]
     inside = (0.5 * np.pi * hits.band) ** 2 * mass / 2 / bodies.bolts.shape[0]
     stiffness = float(np.exp(np.mean(np.log(known)))) if known.size else inside
     force = float(np.abs(hits.raw_force).max())

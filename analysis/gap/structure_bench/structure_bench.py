@@ -22,7 +22,11 @@ from jointbench.analysis.gap.structure_bench.hit_frames import (
     hit_frame,
     window_count,
 )
-from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model, law_forces
+from jointbench.analysis.gap.structure_bench.hit_response import (
+    HitModel,
+    hit_model,
+    law_forces,
+)
 from jointbench.analysis.gap.structure_bench.joint_state import (
     BaseLayout,
     JointState,
@@ -39,7 +43,7 @@ from jointbench.analysis.gap.structure_bench.structure_effects import (
 )
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 from jointbench.analysis.gap.structure_bench.whitening import (
-    Whitening,
+    HitWhitening,
     directions_found,
     whitening_of,
 )
@@ -141,7 +145,7 @@ class StructureBench:
 
     def state(self, base: FloatArray, terms: Sequence[Term]) -> JointState:
         """Return the state of the model at base coordinates with effects."""
-        bare = state_of(self.campaign.bodies, self.campaign.sheet, self.layout, base)
+        bare = state_of(self.campaign.bodies, self.campaign.nominal, self.layout, base)
         values = [values_of(self, term) for term in terms]
         return structure_state(self.entries, self.campaign, bare, terms, values)
 
@@ -245,8 +249,9 @@ class StructureBench:
     @property
     def direction_sd(self) -> FloatArray:
         """Prior sd of two tilts [rad], two offsets [m] and the gain, shape (5,)."""
-        sheet = self.campaign.sheet
-        return np.array([*[sheet.tilt_sd] * 2, *[sheet.aim_sd] * 2, STRUCTURE.gain_sd])
+        nominal = self.campaign.nominal
+        tilt, aim = nominal.tilt_sd, nominal.aim_sd
+        return np.array([tilt, tilt, aim, aim, STRUCTURE.gain_sd])
 
     def chosen(self, records: IntArray) -> "StructureBench":
         """Return the bench of some of its records."""
@@ -338,7 +343,7 @@ class StructureBench:
         flat: FloatArray = scaled.reshape(*rows.shape[:2], -1)
         if self.directions is None:
             return flat
-        white: Whitening = self._kept(
+        white: HitWhitening = self._kept(
             ("white", count), lambda: whitening_of(self._scaled(count))
         )
         return white(flat)

@@ -67,7 +67,7 @@ def structure_state(
 
     Args:
         entries: the catalogue.
-        campaign: model and sheet.
+        campaign: model and nominal.
         bare: state without effects.
         terms: effects.
         values: of their parameters [SI].
@@ -223,14 +223,14 @@ def _iwan(values: FloatArray) -> tuple[Reported, ...]:
     )
 
 
-_FAR_COMPLIANCE = (0.1, 0.3, 1.0, 3.0, 10.0)
 _SEGALMAN = "Segalman 2005, J. Appl. Mech. 72, 752, eq. (14), stiffness ~ phi^(chi+1)"
 _COUPLING = "Craig and Kurdila 2006, ch. 17, closed by compliances"
 
 
 def _compliance(name: str) -> Parameter:
+    far = (0.1, 0.3, 1.0, 3.0, 10.0)
     return Parameter(
-        name, "m/N", "compliance", lower=0.0, upper=300.0, off=0.0, far=_FAR_COMPLIANCE
+        name, "m/N", "compliance", lower=0.0, upper=300.0, off=0.0, far=far
     )
 
 
@@ -253,7 +253,7 @@ STRUCTURE_CATALOGUE: tuple[StructureEffect, ...] = (
             "stiffness",
             (
                 _compliance("compliance_x"),
-                replace(_compliance("compliance_y"), starts=_FAR_COMPLIANCE),
+                replace(_compliance("compliance_y"), starts=(0.1, 0.3, 1.0, 3.0, 10.0)),
             ),
             _COUPLING,
             report=_stiffness_of("ktx", "kty"),

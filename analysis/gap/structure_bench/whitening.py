@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whitening of hits whose landing point, tilt and gain are known with a sd only.
+"""HitWhitening of hits whose landing point, tilt and gain are known with a sd only.
 
 With the derivatives W of a record by its directions u ~ N(0, 1) over sigma, its
 residual has the covariance I + W W'. Multiplied by the inverse root of that, the
@@ -11,13 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import FloatArray
-
-_LEAST = 1e-30
-"""Squared length below which a direction does not reach any row."""
+from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Whitening:
+class HitWhitening:
     """Inverse root of the covariance of each record.
 
     Attributes:
@@ -35,7 +33,7 @@ class Whitening:
         return rows
 
 
-def whitening_of(scaled: FloatArray) -> Whitening:
+def whitening_of(scaled: FloatArray) -> HitWhitening:
     """Return the whitening for directions.
 
     Args:
@@ -44,10 +42,10 @@ def whitening_of(scaled: FloatArray) -> Whitening:
     """
     values, vectors = np.linalg.eigh(scaled @ scaled.transpose(0, 2, 1))
     values = np.maximum(values, 0.0)
-    root = np.sqrt(np.maximum(values, _LEAST))
+    root = np.sqrt(np.maximum(values, STRUCTURE.least_direction))
     basis = (vectors.transpose(0, 2, 1) @ scaled) / root[:, :, None]
     taken = 1.0 - 1.0 / np.sqrt(1.0 + values)
-    return Whitening(basis, np.where(values > _LEAST, taken, 0.0))
+    return HitWhitening(basis, np.where(values > STRUCTURE.least_direction, taken, 0.0))
 
 
 def directions_found(scaled: FloatArray, residual: FloatArray) -> FloatArray:

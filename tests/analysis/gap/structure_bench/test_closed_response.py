@@ -16,8 +16,8 @@ from jointbench.analysis.gap.structure_bench.joint_state import (
     state_of,
 )
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
-    BenchSheet,
     HitCampaign,
+    NominalBench,
 )
 from jointbench.analysis.gap.structure_bench.landing import (
     landing_weights,
@@ -25,7 +25,7 @@ from jointbench.analysis.gap.structure_bench.landing import (
 )
 from jointbench.analysis.gap.structure_bench.port_laws import PortLaws, iwan_sliders
 
-SHEET = BenchSheet(
+NOMINAL = NominalBench(
     stiffness=np.array([3e6, 4e6, 8e6]),
     damping=np.array([60.0, 60.0, 90.0]),
     stiffness_sd=0.1,
@@ -45,16 +45,16 @@ LANDING = np.array([[0.02, -0.01, 8e-4, -5e-4], [0.0, 0.0, 0.0, 0.0]])
 
 def campaign(rigid: tuple[bool, bool, bool] = (False, False, False)) -> HitCampaign:
     """Return two hits on random bodies."""
-    stiffness = np.where(rigid, np.inf, SHEET.stiffness)
-    sheet = replace(SHEET, stiffness=stiffness)
-    return HitCampaign("made", random_bodies(rigid=rigid), sheet, smooth_hits())
+    stiffness = np.where(rigid, np.inf, NOMINAL.stiffness)
+    nominal = replace(NOMINAL, stiffness=stiffness)
+    return HitCampaign("made", random_bodies(rigid=rigid), nominal, smooth_hits())
 
 
 def state_at(made: HitCampaign, seed: int = 3) -> JointState:
     """Return a state with all base coordinates moved."""
-    layout = base_layout(made.bodies, made.sheet)
+    layout = base_layout(made.bodies, made.nominal)
     base = 0.5 * layout.sd * np.random.default_rng(seed).standard_normal(layout.sd.size)
-    return state_of(made.bodies, made.sheet, layout, base)
+    return state_of(made.bodies, made.nominal, layout, base)
 
 
 def model_of(made: HitCampaign, state: JointState) -> HitModel:
@@ -115,15 +115,15 @@ def test_slopes_are_those_of_differences(
 ) -> None:
     """Every base coordinate has the slope of a central difference."""
     made = campaign(rigid)
-    layout = base_layout(made.bodies, made.sheet)
+    layout = base_layout(made.bodies, made.nominal)
     base = 0.3 * layout.sd
     weights = landing_weights(LANDING)
 
     def response(x: FloatArray) -> FloatArray:
-        bare = state_of(made.bodies, made.sheet, layout, x)
+        bare = state_of(made.bodies, made.nominal, layout, x)
         return model_of(made, replace(bare, attached=attached)).response(weights)
 
-    bare = state_of(made.bodies, made.sheet, layout, base)
+    bare = state_of(made.bodies, made.nominal, layout, base)
     slopes = model_of(made, replace(bare, attached=attached)).slopes(weights, layout)
     for k, name in enumerate(layout.names):
         step = np.zeros(layout.sd.size)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The bench sheet: what is known of two bolted plates before the hits (JSON)."""
+"""The nominal parameters: what is known of two bolted plates before the hits (JSON)."""
 
 import math
 from pathlib import Path
@@ -11,38 +11,38 @@ from pydantic import BaseModel, ConfigDict, Field
 from jointbench.acquisition.basics.errors import BadData
 from jointbench.acquisition.file_access.quoting import named, visible
 from jointbench.analysis.gap.intake.read_hit_campaign import PlannedPoint
-from jointbench.analysis.gap.structure_bench.jointed_bodies import BenchSheet
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NominalBench
 from jointbench.station.files.json_file import read_json
 
-SHEET_SCHEMA = "bench-sheet/1"
+NOMINAL_SCHEMA = "bench-sheet/1"
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Sigma = Annotated[float, Field(gt=0, le=3, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Stiffness = Positive | Literal["rigid"]
 
 
-class _Part(BaseModel):
-    """A part of the sheet; keys that are not used here are allowed."""
+class _NominalPart(BaseModel):
+    """A part of the nominal parameters; keys that are not used here are allowed."""
 
     model_config = ConfigDict(extra="ignore", frozen=True)
 
 
-class _Plates(_Part):
+class _Plates(_NominalPart):
     modulus_sigma: Sigma = Field(alias="E_rel_sigma")
     mass_rel_sigma: Sigma
 
 
-class _Point(_Part):
+class _NominalPoint(_NominalPart):
     direction: tuple[Finite, Finite, Finite]
     body: str
 
 
-class _Sigmas(_Part):
+class _Sigmas(_NominalPart):
     k: Sigma
     c: Sigma
 
 
-class _Joint(_Part):
+class _Joint(_NominalPart):
     normal: Stiffness = Field(alias="kn_N_per_m")
     along_x: Stiffness = Field(alias="ktx_N_per_m")
     along_y: Stiffness = Field(alias="kty_N_per_m")
@@ -52,21 +52,23 @@ class _Joint(_Part):
     bolt_to_bolt_rel_sigma: Sigma
 
 
-class _Feet(_Part):
+class _Feet(_NominalPart):
     stiffness: Positive = Field(alias="k_N_per_m")
     damping: Positive = Field(alias="c_Ns_per_m")
     rel_sigma: _Sigmas
 
 
-class SheetFile(_Part):
-    """The sheet as written."""
+class NominalFile(_NominalPart):
+    """the nominal parameters as written."""
 
     schema_: Literal["bench-sheet/1"] = Field(alias="schema")
     plates: _Plates
     torques: Annotated[
         tuple[Positive, ...], Field(alias="torques_Nm", min_length=1, max_length=100)
     ]
-    hammer_points: Annotated[dict[str, _Point], Field(min_length=1, max_length=100)]
+    hammer_points: Annotated[
+        dict[str, _NominalPoint], Field(min_length=1, max_length=100)
+    ]
     aim_sigma_mm: Positive
     tilt_sigma_deg: Positive
     joint_per_bolt: _Joint
@@ -75,8 +77,8 @@ class SheetFile(_Part):
     feet: _Feet
 
 
-def read_sheet(path: Path) -> tuple[BenchSheet, dict[str, PlannedPoint]]:
-    """Read a bench sheet.
+def read_nominal(path: Path) -> tuple[NominalBench, dict[str, PlannedPoint]]:
+    """Read nominal parameters.
 
     Returns:
         Nominal parameters, and hammer points by name.
@@ -85,7 +87,7 @@ def read_sheet(path: Path) -> tuple[BenchSheet, dict[str, PlannedPoint]]:
         BadData: the file is missing, no JSON, or breaks a rule; the message names the
             key, the value and the rule.
     """
-    found = read_json(path, SheetFile)
+    found = read_json(path, NominalFile)
     points = {}
     for name, point in found.hammer_points.items():
         length = math.hypot(*point.direction)
@@ -96,17 +98,17 @@ def read_sheet(path: Path) -> tuple[BenchSheet, dict[str, PlannedPoint]]:
             )
         x, y, z = (v / length for v in point.direction)
         points[name] = PlannedPoint((x, y, z), point.body)
-    return _sheet(found), points
+    return _nominal(found), points
 
 
-def _sheet(found: SheetFile) -> BenchSheet:
+def _nominal(found: NominalFile) -> NominalBench:
     joint, feet = found.joint_per_bolt, found.feet
     stiffness = [
         math.inf if k == "rigid" else k
         for k in (joint.along_x, joint.along_y, joint.normal)
     ]
     across, normal = joint.tangential_damping, joint.normal_damping
-    return BenchSheet(
+    return NominalBench(
         stiffness=np.array(stiffness),
         damping=np.array([across, across, normal]),
         stiffness_sd=joint.rel_sigma.k,

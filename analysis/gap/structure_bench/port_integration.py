@@ -18,8 +18,6 @@ from jointbench.analysis.gap.structure_bench.joint_state import JointState
 from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
-_SQUARE_ROOT_OF_ROUNDING = 1e-9
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ClosedModes:
@@ -96,7 +94,7 @@ def _null_space(rows: FloatArray) -> FloatArray:
     """Return an orthonormal basis of the motions without any of the rows."""
     if not len(rows):
         return np.eye(rows.shape[1])
-    return np.asarray(scipy.linalg.null_space(rows, rcond=_SQUARE_ROOT_OF_ROUNDING))
+    return np.asarray(scipy.linalg.null_space(rows, rcond=STRUCTURE.constraint_rank))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -153,7 +151,7 @@ def integrate_sliders(
         Force across each port beyond its linear spring [N], shape
         (n_records, n_ports, n_samples).
     """
-    parts = STRUCTURE.march_steps
+    parts = STRUCTURE.integration_steps
     h = 1.0 / (parts * sample_rate)
     z = modes.poles * h
     grown = np.expm1(z)
@@ -164,7 +162,7 @@ def integrate_sliders(
     instant = np.ascontiguousarray(np.real((across * a1) @ push))
     struck = np.ascontiguousarray((modes.inputs @ columns.T).T)
     found = np.empty((len(force), len(sliders.rows), force.shape[1]))
-    _march(
+    _integrate(
         (np.exp(z), a0, a1),
         (
             np.ascontiguousarray(across.real),
@@ -193,7 +191,7 @@ def _sharpened(force: FloatArray) -> FloatArray:
 
 
 @compiled(fastmath=True)
-def _march(
+def _integrate(
     steps: tuple[ComplexArray, ComplexArray, ComplexArray],
     ports: tuple[FloatArray, FloatArray, ComplexArray],
     instant: FloatArray,
@@ -203,7 +201,7 @@ def _march(
     parts: int,
     found: FloatArray,
 ) -> None:
-    """March all records; `found` receives the deviations.
+    """Integrate all records; `found` receives the deviations.
 
     Args:
         steps: E, a0 and a1 of each pole, shape (n_poles,) each.
