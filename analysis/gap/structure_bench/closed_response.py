@@ -16,22 +16,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.analysis.gap.structure_bench.joint_state import (
-    FOOT as FOOT_STIFFNESS,
-)
-from jointbench.analysis.gap.structure_bench.joint_state import (
-    FOOT_DAMPING,
-    LOSS,
-    NORMAL_DAMPING,
-    TANGENTIAL_DAMPING,
-    Attached,
+from jointbench.analysis.gap.structure_bench.base_layout import (
     BaseLayout,
-    JointState,
+    BaseName,
     bolt_name,
     mass_name,
     modulus_name,
     stiffness_name,
 )
+from jointbench.analysis.gap.structure_bench.joint_state import Attached, JointState
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     NORMAL,
     JointedBodies,
@@ -277,7 +270,7 @@ def _modal_slopes(
         rows = ends.rows[:, :, modes] * change[:, None, modes]
         return np.asarray(rows @ ends.columns[:, modes])
 
-    slopes = {LOSS: across(by_loss, slice(None))}
+    slopes: dict[str, ComplexArray] = {BaseName.LOSS: across(by_loss, slice(None))}
     for k, name in enumerate(bodies.bodies):
         own = np.flatnonzero(bodies.body == k)
         modes = slice(int(own[0]), int(own[-1]) + 1)
@@ -307,7 +300,11 @@ def _compliance_slopes(
     every = slice(0, 3 * count)
     normal, tangential = by_damping.copy(), by_damping.copy()
     normal[:, :NORMAL], tangential[:, NORMAL] = 0.0, 0.0
-    for name, one in ((TANGENTIAL_DAMPING, tangential), (NORMAL_DAMPING, normal)):
+    by_name = {
+        BaseName.TANGENTIAL_DAMPING: tangential,
+        BaseName.NORMAL_DAMPING: normal,
+    }
+    for name, one in by_name.items():
         change = one[:, None, :] / factor[:, :, None]
         slopes[name] = every, change.reshape(s.size, -1)
     whole = (a / yielding)[:, None, :] / factor[:, :, None]
@@ -318,6 +315,6 @@ def _compliance_slopes(
     stiffness, damping = state.foot
     foot = -1.0 / (stiffness + damping * s) ** 2
     wide = np.ones((1, 3 * bodies.feet.shape[0]))
-    slopes[FOOT_STIFFNESS] = feet, foot * stiffness * wide
-    slopes[FOOT_DAMPING] = feet, foot * damping * s * wide
+    slopes[BaseName.FOOT] = feet, foot * stiffness * wide
+    slopes[BaseName.FOOT_DAMPING] = feet, foot * damping * s * wide
     return slopes

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, IntArray
+from jointbench.analysis.gap.structure_bench.base_layout import (
+    BaseLayout,
+    bolt_name,
+    stiffness_name,
+)
 from jointbench.analysis.gap.structure_bench.closed_response import (
     Closure,
     close,
     response_slopes,
 )
 from jointbench.analysis.gap.structure_bench.hit_frames import HitFrame
-from jointbench.analysis.gap.structure_bench.joint_state import (
-    BaseLayout,
-    JointState,
-    bolt_name,
-    stiffness_name,
-)
+from jointbench.analysis.gap.structure_bench.joint_state import JointState
 from jointbench.analysis.gap.structure_bench.jointed_bodies import HitCampaign
 from jointbench.analysis.gap.structure_bench.landing import COLUMNS, point_columns
 from jointbench.analysis.gap.structure_bench.port_integration import (

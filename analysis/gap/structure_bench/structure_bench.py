@@ -17,6 +17,7 @@ from jointbench.analysis.gap.residuals.fit_records import Blocks, Fit
 from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
+from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
 from jointbench.analysis.gap.structure_bench.hit_frames import (
     HitFrame,
     hit_frame,
@@ -27,11 +28,7 @@ from jointbench.analysis.gap.structure_bench.hit_response import (
     hit_model,
     law_forces,
 )
-from jointbench.analysis.gap.structure_bench.joint_state import (
-    BaseLayout,
-    JointState,
-    state_of,
-)
+from jointbench.analysis.gap.structure_bench.joint_state import JointState, state_of
 from jointbench.analysis.gap.structure_bench.jointed_bodies import HitCampaign
 from jointbench.analysis.gap.structure_bench.landing import (
     landing_slopes,
@@ -334,7 +331,8 @@ class StructureBench:
             raise ValueError("directions are computed by `at` first")
         moved = np.zeros((len(self.landing), 5))
         moved[:, :4] = self.landing / self.direction_sd[:4]
-        return np.einsum("rd,rdct->rct", moved, self.directions[..., :count])
+        shown = self.directions[..., :count]
+        return np.asarray(np.einsum("rd,rdct->rct", moved, shown))
 
     def _whitened(self, rows: FloatArray) -> FloatArray:
         """Whiten rows, (n_records, n, n_channels, count) to (n_records, n, n_rows)."""

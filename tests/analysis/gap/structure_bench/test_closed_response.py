@@ -7,12 +7,12 @@ import pytest
 from bolted_bodies import FILTER, integrated, random_bodies, smooth_hits
 
 from jointbench.acquisition.basics.arrays import FloatArray
+from jointbench.analysis.gap.structure_bench.base_layout import base_layout
 from jointbench.analysis.gap.structure_bench.hit_frames import hit_frame
 from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model
 from jointbench.analysis.gap.structure_bench.joint_state import (
     Attached,
     JointState,
-    base_layout,
     state_of,
 )
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
