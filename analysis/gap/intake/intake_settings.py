@@ -128,7 +128,7 @@ class HitSettings:
     mains_step: float = numerical(
         0.1,
         "Hz",
-        "step of that search",
+        "step of the search for the mains frequency",
         "over a quiet start of 20 ms it turns the phase by 0.7 degrees",
     )
     contact_noise_sd: float = numerical(
