@@ -14,10 +14,10 @@ import scipy.signal
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.structure_bench.common_filter import CommonFilter
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords
 from jointbench.analysis.gap.structure_bench.joint_state import JointState
 from jointbench.analysis.gap.structure_bench.jointed_bodies import (
     HitPoint,
-    HitRecords,
     JointedBodies,
     MassPlace,
 )

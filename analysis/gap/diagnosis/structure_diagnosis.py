@@ -27,11 +27,11 @@ from jointbench.analysis.gap.model.effect import words_of
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.residuals.fit_records import Fit
 from jointbench.analysis.gap.search.selection_round import Progress, score
-from jointbench.analysis.gap.structure_bench.joint_state import nominal_values
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
+from jointbench.analysis.gap.structure_bench.hit_campaign import (
     HitCampaign,
     RejectedHit,
 )
+from jointbench.analysis.gap.structure_bench.joint_state import nominal_values
 from jointbench.analysis.gap.structure_bench.make_structure_bench import (
     make_structure_bench,
 )

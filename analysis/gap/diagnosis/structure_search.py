@@ -26,7 +26,7 @@ from jointbench.analysis.gap.search.candidate_starts import CandidateFit, along
 from jointbench.analysis.gap.search.descent import cost_at, minimise
 from jointbench.analysis.gap.search.screening import Screening, screen, start_grid
 from jointbench.analysis.gap.search.selection_round import Progress, score
-from jointbench.analysis.gap.structure_bench.jointed_bodies import HitRecords
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords
 from jointbench.analysis.gap.structure_bench.structure_bench import StructureBench
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 

@@ -17,11 +17,8 @@ from jointbench.analysis.gap.intake.raw_hits import (
     make_filter,
     quieted,
 )
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
-    HitRecords,
-    JointedBodies,
-    RejectedHit,
-)
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords, RejectedHit
+from jointbench.analysis.gap.structure_bench.jointed_bodies import JointedBodies
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -23,10 +23,8 @@ from jointbench.analysis.gap.intake.typed_hdf5 import (
     positive_number,
     require_group,
 )
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
-    HitCampaign,
-    NominalBench,
-)
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NominalBench
 
 HIT_SCHEMA = "campaign/1"
 FORCE, ACCELERATION = "force", "acceleration"

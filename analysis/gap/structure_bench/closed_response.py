@@ -25,10 +25,7 @@ from jointbench.analysis.gap.structure_bench.base_layout import (
     stiffness_name,
 )
 from jointbench.analysis.gap.structure_bench.joint_state import Attached, JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
-    NORMAL,
-    JointedBodies,
-)
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL, JointedBodies
 
 
 @dataclass(frozen=True, slots=True, eq=False)

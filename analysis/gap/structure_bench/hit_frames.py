@@ -7,7 +7,7 @@ import numpy as np
 import scipy.fft
 
 from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray
-from jointbench.analysis.gap.structure_bench.jointed_bodies import HitRecords
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitRecords
 from jointbench.analysis.gap.structure_bench.structure_settings import STRUCTURE
 
 

@@ -17,9 +17,9 @@ from jointbench.analysis.gap.structure_bench.closed_response import (
     close,
     response_slopes,
 )
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.hit_frames import HitFrame
 from jointbench.analysis.gap.structure_bench.joint_state import JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import HitCampaign
 from jointbench.analysis.gap.structure_bench.landing import COLUMNS, point_columns
 from jointbench.analysis.gap.structure_bench.port_integration import (
     closed_modes,

@@ -5,7 +5,7 @@ import numpy as np
 
 from jointbench.analysis.gap.model.policy import STANDARD, Policy
 from jointbench.analysis.gap.structure_bench.base_layout import base_layout
-from jointbench.analysis.gap.structure_bench.jointed_bodies import HitCampaign
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.structure_bench import (
     StructureBench,
     record_blocks,

@@ -18,6 +18,7 @@ from jointbench.analysis.gap.residuals.noise_models import Noise
 from jointbench.analysis.gap.residuals.residual_views import slice_views
 from jointbench.analysis.gap.residuals.scatter_record import no_scatter
 from jointbench.analysis.gap.structure_bench.base_layout import BaseLayout
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.hit_frames import (
     HitFrame,
     hit_frame,
@@ -29,7 +30,6 @@ from jointbench.analysis.gap.structure_bench.hit_response import (
     law_forces,
 )
 from jointbench.analysis.gap.structure_bench.joint_state import JointState, state_of
-from jointbench.analysis.gap.structure_bench.jointed_bodies import HitCampaign
 from jointbench.analysis.gap.structure_bench.landing import (
     landing_slopes,
     landing_weights,

@@ -14,11 +14,9 @@ from jointbench.analysis.gap.model.effect_parameter import (
     Reported,
     Transform,
 )
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.joint_state import Attached, JointState
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
-    NORMAL,
-    HitCampaign,
-)
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NORMAL
 from jointbench.analysis.gap.structure_bench.port_laws import PortLaws, iwan_sliders
 
 _Change = Callable[[JointState, HitCampaign, Site, FloatArray], JointState]

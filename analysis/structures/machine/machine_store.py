@@ -13,6 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from jointbench.acquisition.file_access.array_cache import (
+    Arrays,
+    read_arrays,
+    write_arrays,
+)
 from jointbench.analysis.structures.machine.body_geometry import Surface
 from jointbench.analysis.structures.machine.machine_parts import (
     JointSetting,
@@ -29,11 +34,8 @@ from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.reduction.assembled import assemble_components
 from jointbench.analysis.structures.reduction.port_joints import PortJoint
 from jointbench.analysis.structures.reduction.reduction_cache import (
-    Arrays,
     component_arrays,
     component_of,
-    read_arrays,
-    write_arrays,
 )
 
 

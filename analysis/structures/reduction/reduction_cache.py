@@ -3,14 +3,17 @@
 
 import hashlib
 import json
-import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from jointbench.acquisition.file_access.array_cache import (
+    Arrays,
+    read_arrays,
+    write_arrays,
+)
 from jointbench.analysis.structures.matrices.element_assembly import Sparse
 from jointbench.analysis.structures.matrices.structure import Structure
 from jointbench.analysis.structures.reduction.component import (
@@ -32,7 +35,6 @@ CACHE_VERSION = 5
 """Of the files: part of every key."""
 _COMPONENT = ("stiffness", "loss", "damping", "basis")
 _MODEL = ("stiffness", "loss", "damping", "strains")
-Arrays = dict[str, NDArray[Any]]
 
 
 def content_key(structure: Structure, *options: object) -> str:
@@ -132,29 +134,6 @@ def cached(
     model = make()
     write_arrays(folder, key, _model_arrays(model))
     return model
-
-
-def write_arrays(
-    folder: Path | None, key: str, arrays: Mapping[str, NDArray[Any]]
-) -> None:
-    """Write the arrays of a key; without a folder nothing is written."""
-    if folder is None:
-        return
-    folder.mkdir(parents=True, exist_ok=True)
-    part = folder / f"{key}.part.npz"
-    np.savez(part, allow_pickle=False, **arrays)
-    os.replace(part, folder / f"{key}.npz")  # noqa: PTH105 - replaces on Windows too
-
-
-def read_arrays(folder: Path | None, key: str) -> Arrays | None:
-    """Return the arrays of a file; None if there is none, or it is truncated."""
-    if folder is None or not (folder / f"{key}.npz").is_file():
-        return None
-    try:
-        with np.load(folder / f"{key}.npz", allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except (OSError, ValueError, KeyError, EOFError):
-        return None
 
 
 def component_arrays(start: str, body: Component) -> Arrays:

@@ -8,6 +8,7 @@ from bolted_bodies import FILTER, integrated, random_bodies, smooth_hits
 
 from jointbench.acquisition.basics.arrays import FloatArray
 from jointbench.analysis.gap.structure_bench.base_layout import base_layout
+from jointbench.analysis.gap.structure_bench.hit_campaign import HitCampaign
 from jointbench.analysis.gap.structure_bench.hit_frames import hit_frame
 from jointbench.analysis.gap.structure_bench.hit_response import HitModel, hit_model
 from jointbench.analysis.gap.structure_bench.joint_state import (
@@ -15,10 +16,7 @@ from jointbench.analysis.gap.structure_bench.joint_state import (
     JointState,
     state_of,
 )
-from jointbench.analysis.gap.structure_bench.jointed_bodies import (
-    HitCampaign,
-    NominalBench,
-)
+from jointbench.analysis.gap.structure_bench.jointed_bodies import NominalBench
 from jointbench.analysis.gap.structure_bench.landing import (
     landing_weights,
     point_columns,
