@@ -104,7 +104,7 @@ def integrated(
         mass += one.mass * place.T @ place
     inverse = np.linalg.inv(mass)
     stiff = state.mass[bodies.body] * omega**2
-    lossy = state.mass[bodies.body] * 2 * state.loss * omega
+    lossy = state.mass[bodies.body] * 2 * state.loss[bodies.body] * omega
     rows = bodies.bolts.reshape(-1, n)
     k = np.repeat(state.bolt, 3) / np.tile(state.compliance, len(state.bolt))
     c = np.repeat(state.bolt, 3) * np.tile(state.damping, len(state.bolt))

@@ -17,7 +17,6 @@ from jointbench.analysis.gap.structure_bench.jointed_bodies import (
 class BaseName(StrEnum):
     """Names of coordinates that every structure has once."""
 
-    LOSS = "damping ratio"
     TANGENTIAL_DAMPING = "bolt damping tangential"
     NORMAL_DAMPING = "bolt damping normal"
     FOOT = "foot stiffness"
@@ -62,6 +61,11 @@ def modulus_name(body: str) -> str:
     return f"modulus {body}"
 
 
+def loss_name(body: str) -> str:
+    """Return the name of the damping coordinate of a body."""
+    return f"damping ratio {body}"
+
+
 def mass_name(body: str) -> str:
     """Return the name of the mass coordinate of a body."""
     return f"mass {body}"
@@ -84,7 +88,7 @@ def base_layout(bodies: JointedBodies, nominal: NominalBench) -> BaseLayout:
     rows: list[tuple[str, float, str]] = []
     rows += [(modulus_name(b), nominal.modulus_sd, "-") for b in bodies.bodies]
     rows += [(mass_name(b), nominal.mass_sd, "-") for b in bodies.bodies]
-    rows.append((BaseName.LOSS, nominal.loss[1], "-"))
+    rows += [(loss_name(b), nominal.loss[1], "-") for b in bodies.bodies]
     rows += [(stiffness_name(d), common, "N/m") for d in compliant]
     rows.append((BaseName.TANGENTIAL_DAMPING, nominal.damping_sd, "N s/m"))
     rows.append((BaseName.NORMAL_DAMPING, nominal.damping_sd, "N s/m"))

@@ -20,6 +20,7 @@ from jointbench.analysis.gap.structure_bench.base_layout import (
     BaseLayout,
     BaseName,
     bolt_name,
+    loss_name,
     mass_name,
     modulus_name,
     stiffness_name,
@@ -75,7 +76,7 @@ def modal_receptances(
     """Return the displacement of each free mode per modal force, (n_lines, n_modes)."""
     omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
     s = s[:, None]
-    dynamic = s**2 + 2.0 * state.loss * omega * s + omega**2
+    dynamic = s**2 + 2.0 * state.loss[bodies.body] * omega * s + omega**2
     return np.asarray(1.0 / (dynamic * state.mass[bodies.body]))
 
 
@@ -260,18 +261,20 @@ def _modal_slopes(
     omega, s = bodies.omega * root, found.s[:, None]
     d = modal_receptances(bodies, state, found.s)
     square = -(d**2) * state.mass[bodies.body]
-    by_loss = square * 2.0 * state.loss * omega * s
-    by_modulus = square * (state.loss * omega * s + omega**2)
+    loss = state.loss[bodies.body]
+    by_loss = square * 2.0 * loss * omega * s
+    by_modulus = square * (loss * omega * s + omega**2)
 
     def across(change: ComplexArray, modes: slice) -> ComplexArray:
         rows = ends.rows[:, :, modes] * change[:, None, modes]
         return np.asarray(rows @ ends.columns[:, modes])
 
-    slopes: dict[str, ComplexArray] = {BaseName.LOSS: across(by_loss, slice(None))}
+    slopes: dict[str, ComplexArray] = {}
     for k, name in enumerate(bodies.bodies):
         own = np.flatnonzero(bodies.body == k)
         modes = slice(int(own[0]), int(own[-1]) + 1)
         slopes[modulus_name(name)] = across(by_modulus, modes)
+        slopes[loss_name(name)] = across(by_loss, modes)
         slopes[mass_name(name)] = across(-d, modes)
     return slopes
 

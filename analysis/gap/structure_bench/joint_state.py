@@ -13,6 +13,7 @@ from jointbench.acquisition.basics.arrays import FloatArray, freeze
 from jointbench.analysis.gap.structure_bench.base_layout import (
     BaseLayout,
     BaseName,
+    loss_name,
     mass_name,
     modulus_name,
     stiffness_name,
@@ -49,7 +50,7 @@ class JointState:
     Attributes:
         modulus: factor on the modulus of each body [-].
         mass: factor on the mass of each body [-].
-        loss: damping ratio of the free modes [-].
+        loss: damping ratio of the free modes of each body [-].
         compliance: of a bolt along x, y, z [m/N]; 0 if rigid, shape (3,).
         damping: of a bolt along x, y, z [N s/m], shape (3,).
         bolt: factor on stiffness and damping of each bolt [-], shape (n_bolts,).
@@ -63,7 +64,7 @@ class JointState:
 
     modulus: FloatArray
     mass: FloatArray
-    loss: float
+    loss: FloatArray
     compliance: FloatArray
     damping: FloatArray
     bolt: FloatArray
@@ -76,7 +77,7 @@ class JointState:
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
-        freeze(self, "modulus", "mass", "compliance", "damping", "bolt")
+        freeze(self, "modulus", "mass", "loss", "compliance", "damping", "bolt")
         freeze(self, "gain", "delay")
 
 
@@ -96,7 +97,7 @@ def state_of(
     return JointState(
         modulus=np.array([factor[modulus_name(b)] for b in bodies.bodies]),
         mass=np.array([factor[mass_name(b)] for b in bodies.bodies]),
-        loss=nominal.loss[0] * factor[BaseName.LOSS],
+        loss=nominal.loss[0] * np.array([factor[loss_name(b)] for b in bodies.bodies]),
         compliance=compliance,
         damping=nominal.damping * np.array([across, across, along]),
         bolt=np.exp(layout.contrasts @ contrast),
@@ -111,11 +112,11 @@ def nominal_values(
 ) -> FloatArray:
     """Return the value of each coordinate at 0, in its unit."""
     known: dict[str, float] = {
-        BaseName.LOSS: nominal.loss[0],
         BaseName.TANGENTIAL_DAMPING: float(nominal.damping[0]),
         BaseName.NORMAL_DAMPING: float(nominal.damping[NORMAL]),
         BaseName.FOOT: nominal.foot[0],
         BaseName.FOOT_DAMPING: nominal.foot[1],
     }
+    known |= {loss_name(b): nominal.loss[0] for b in bodies.bodies}
     known |= {stiffness_name(d): float(nominal.stiffness[d]) for d in layout.compliant}
     return np.array([known.get(name, 1.0) for name in layout.names])

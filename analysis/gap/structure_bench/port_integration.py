@@ -71,7 +71,7 @@ def _matrices(
     omega = bodies.omega * np.sqrt(state.modulus)[bodies.body]
     mass = state.mass[bodies.body]
     m = np.diag(mass)
-    c = np.diag(2.0 * state.loss * omega * mass)
+    c = np.diag(2.0 * state.loss[bodies.body] * omega * mass)
     k = np.diag(omega**2 * mass)
     for i, bolt in enumerate(bodies.bolts):
         factor = state.bolt[i] * torque
