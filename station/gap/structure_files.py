@@ -12,7 +12,7 @@ from jointbench.analysis.gap.model.diagnosis_record import Diagnosis
 from jointbench.station.schemas.nominal_bench_file import read_nominal
 
 BESIDE = "sheet.json"
-"""Name of nominal parameters that is found beside its campaign."""
+"""Nominal parameters beside a campaign: NAME.sheet.json, or this for the folder."""
 
 
 def examine_structure(
@@ -26,7 +26,8 @@ def examine_structure(
 
     Args:
         path: file of schema ``campaign/1``.
-        nominal: nominal parameters (JSON); None for ``sheet.json`` beside the campaign.
+        nominal: nominal parameters (JSON); None for ``NAME.sheet.json`` or
+            ``sheet.json`` beside the campaign ``NAME.h5``.
         without: names of effects to leave out of the catalogue.
         progress: receives one line for each step.
 
@@ -38,13 +39,7 @@ def examine_structure(
             that no entry has.
         BadData: a file cannot be used as it is.
     """
-    given = nominal or path.parent / BESIDE
-    if nominal is None and not given.is_file():
-        raise UsageError(
-            f"'{path}' holds hits on bolted bodies but no nominal parameters; give the "
-            "nominal parameters with --model sheet.json"
-        )
-    campaign = read_hit_campaign(path, *read_nominal(given))
+    campaign = read_hit_campaign(path, *read_nominal(nominal or _beside(path)))
     done = diagnose_structure(campaign, without=without, progress=progress)
     remarks = [
         f"hits landed {done.landing_mm:.2g} mm (rms) beside their points, tilted by "
@@ -52,3 +47,15 @@ def examine_structure(
         *(f"left out {visible(hit.name)}: {hit.reason}" for hit in done.rejected),
     ]
     return done.found, tuple(remarks)
+
+
+def _beside(path: Path) -> Path:
+    """Return the nominal parameters that stand beside a campaign."""
+    places = (path.with_suffix(f".{BESIDE}"), path.with_name(BESIDE))
+    for place in places:
+        if place.is_file():
+            return place
+    raise UsageError(
+        f"'{path}' holds hits on bolted bodies but no nominal parameters, and there is "
+        f"no '{places[0].name}' or '{BESIDE}' beside it; add --model SHEET.json"
+    )

@@ -106,6 +106,7 @@ def _show(campaign: FlexibleCampaign, out: Path, json_target: str | None) -> Non
     screen.print(table(f"{out}", ("campaign", "content"), rows))
     for words, suffix in (("nominal values", NOMINAL), ("truth", TRUTH)):
         screen.print(f"{words}: {out.with_suffix(suffix)}", soft_wrap=True)
+    screen.print(f"\nnext: jointbench gap {out}", soft_wrap=True)
     write_json(
         json_target,
         {

@@ -206,3 +206,25 @@ def test_an_effect_that_is_taken_out_is_not_named(complete: tuple[Path, Path]) -
         examine_structure(
             path, nominal, without=frozenset({"loose"}), progress=lambda line: None
         )
+
+
+def test_nominal_parameters_are_found_beside_the_campaign(
+    complete: tuple[Path, Path], tmp_path: Path
+) -> None:
+    """NAME.sheet.json of `record` goes before sheet.json of the folder."""
+    campaign = tmp_path / "hits.h5"
+    campaign.write_bytes(complete[0].read_bytes())
+
+    def examine() -> None:
+        examine_structure(
+            campaign, None, without=frozenset({"-"}), progress=lambda line: None
+        )
+
+    with pytest.raises(UsageError, match=r"no 'hits\.sheet\.json' or 'sheet\.json'"):
+        examine()
+    (tmp_path / "sheet.json").write_bytes(complete[1].read_bytes())
+    with pytest.raises(UsageError, match="loose_bolt"):
+        examine()
+    (tmp_path / "hits.sheet.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(BadData, match=r"hits\.sheet\.json"):
+        examine()
