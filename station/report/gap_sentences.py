@@ -172,7 +172,8 @@ def why_lost(one: Ranked, found: Diagnosis) -> str:
         return "not distinguishable from the best"
     if set(best.effects) < set(one.effects):
         return "the best with one effect more, which explains nothing further"
-    return "fits, but less well"
+    # Without the limits of the campaign it is not known whether it fits at all.
+    return "fits, but less well" if found.evidence is not None else "fits less well"
 
 
 def _not_distinguished(one: Ranked, found: Diagnosis) -> str:

@@ -18,14 +18,12 @@ class PortLaws:
         share: share of the linear stiffness of the port held by sliders [-].
         slips: displacement at which each slider slips [m], shape (n_sliders,).
         weights: share of each slider in them; they sum to 1, shape (n_sliders,).
-        cubic: force over displacement cubed [N/m^3].
     """
 
     ports: tuple[int, ...]
     share: float
     slips: FloatArray
     weights: FloatArray
-    cubic: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
