@@ -152,7 +152,7 @@ class HitModel:
         """Return the transfer from displacement to each channel."""
         s = self.frame.s[:, None]
         return np.asarray(
-            s**2 * (1.0 + self.state.gain) * np.exp(-s * self.state.delay)
+            s**2 * (1.0 + self.state.gain) * np.exp(-s * self.state.lag)
         )
 
 

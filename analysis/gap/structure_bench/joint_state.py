@@ -58,7 +58,7 @@ class JointState:
         exponent: power of stiffness and damping of the bolts in their torque [-].
         attached: masses and oscillators.
         gain: relative gain of each channel less 1 [-], shape (n_channels,).
-        delay: of each channel [s], shape (n_channels,).
+        lag: of each channel [s], shape (n_channels,).
         laws: nonlinear laws at the bolts, or None.
     """
 
@@ -70,7 +70,7 @@ class JointState:
     bolt: FloatArray
     foot: tuple[float, float]
     gain: FloatArray
-    delay: FloatArray
+    lag: FloatArray
     exponent: float = 0.0
     attached: tuple[Attached, ...] = ()
     laws: PortLaws | None = None
@@ -78,7 +78,7 @@ class JointState:
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         freeze(self, "modulus", "mass", "loss", "compliance", "damping", "bolt")
-        freeze(self, "gain", "delay")
+        freeze(self, "gain", "lag")
 
 
 def state_of(
@@ -103,7 +103,7 @@ def state_of(
         bolt=np.exp(layout.contrasts @ contrast),
         foot=(nominal.foot[0] * foot[0], nominal.foot[1] * foot[1]),
         gain=np.zeros(channels),
-        delay=np.zeros(channels),
+        lag=np.zeros(channels),
     )
 
 

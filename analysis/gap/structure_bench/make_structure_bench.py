@@ -74,5 +74,5 @@ def _scales(campaign: HitCampaign) -> dict[str, float]:
         "compliance": 1.0 / stiffness,
         "travel": force / stiffness / bodies.bolts.shape[0],
         "band": hits.band,
-        "delay": 1.0 / hits.sample_rate,
+        "sample time": 1.0 / hits.sample_rate,
     }

@@ -176,9 +176,9 @@ def _amplify(
 def _postpone(
     state: JointState, campaign: HitCampaign, site: Site, values: FloatArray
 ) -> JointState:
-    delay = state.delay.copy()
-    delay[campaign.bodies.channels.index(site.name)] += values[0]
-    return replace(state, delay=delay)
+    lag = state.lag.copy()
+    lag[campaign.bodies.channels.index(site.name)] += values[0]
+    return replace(state, lag=lag)
 
 
 def tangential_ports(state: JointState) -> tuple[int, ...]:
@@ -339,7 +339,7 @@ STRUCTURE_CATALOGUE: tuple[StructureEffect, ...] = (
         Effect(
             "delay",
             "sensor",
-            (Parameter("tau", "s", "delay", lower=-20.0, upper=20.0, off=0.0),),
+            (Parameter("tau", "s", "sample time", lower=-20.0, upper=20.0, off=0.0),),
             "ISO 7626-5:2019, 8.3",
         ),
         _channels,

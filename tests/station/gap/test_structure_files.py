@@ -182,7 +182,7 @@ def test_a_campaign_without_nominal_parameters_asks_for_one(
     """Without a file of nominal parameters the message names the option."""
     path = tmp_path / "hits.h5"
     shutil.copy(complete[0], path)
-    with pytest.raises(UsageError, match=r"--model sheet\.json"):
+    with pytest.raises(UsageError, match=r"add --model SHEET\.json"):
         run_gap(path, without=None, report=None, json_target=None)
 
 
