@@ -151,9 +151,7 @@ class HitModel:
     def _channels(self) -> ComplexArray:
         """Return the transfer from displacement to each channel."""
         s = self.frame.s[:, None]
-        return np.asarray(
-            s**2 * (1.0 + self.state.gain) * np.exp(-s * self.state.lag)
-        )
+        return np.asarray(s**2 * (1.0 + self.state.gain) * np.exp(-s * self.state.lag))
 
 
 def hit_model(
