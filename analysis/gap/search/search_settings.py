@@ -157,7 +157,7 @@ class SearchSettings:
         "cost below which a start explains the records in a selection round",
         "what is left is scatter, which is estimated later",
     )
-    hopeless_ratio: float = numerical(
+    round_pruning_ratio: float = numerical(
         30.0,
         "of the best cost",
         "cost above which a start of another family than one that explains the "

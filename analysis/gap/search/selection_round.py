@@ -115,7 +115,7 @@ def _run_rounds(
         candidate_fits = _best_of_each(
             _keep(_round(candidate_fits, iterations, progress), keep), alike
         )
-        candidate_fits = _not_hopeless(bench, candidate_fits)
+        candidate_fits = _without_pruned(bench, candidate_fits)
     best: float | None = None
     done: list[CandidateFit] = []
     for r in candidate_fits:
@@ -134,7 +134,7 @@ def _run_rounds(
     return sorted(fits, key=lambda f: score(bench, f))
 
 
-def _not_hopeless(
+def _without_pruned(
     bench: Bench, candidate_fits: Sequence[CandidateFit]
 ) -> list[CandidateFit]:
     """Drop starts far above one that explains the records.
@@ -151,7 +151,7 @@ def _not_hopeless(
         r
         for k, r in enumerate(candidate_fits)
         if k < SEARCH.rivals_kept
-        or r.cost < SEARCH.hopeless_ratio * best.cost
+        or r.cost < SEARCH.round_pruning_ratio * best.cost
         or r.problem.candidates[-1].effect.family == family
     ]
 
