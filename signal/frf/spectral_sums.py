@@ -11,7 +11,7 @@ Source:
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -25,6 +25,7 @@ from jointbench.acquisition.basics.arrays import (
 from jointbench.acquisition.records.recordings import Quantity, Recording
 from jointbench.signal.frf.excited_band import excited_band_of
 from jointbench.signal.frf.level_slope import LevelSlope, LevelUpdate
+from jointbench.signal.frf.record_end import RecordEnd, record_end
 from jointbench.signal.hits.hit_pairs import LabelledHits, Pair, pair_up
 from jointbench.signal.hits.hit_spectra import (
     HitSpectra,
@@ -175,6 +176,7 @@ class SpectralSums:
         level_lines: of the regression on level, None where it is not asked for.
         level: of each hit on these lines [N s]; empty without them.
         hits: indices of the hits of each pair.
+        end: of the blocks, None where hits differ in it or it is not known.
     """
 
     frequency: FloatArray
@@ -189,6 +191,7 @@ class SpectralSums:
     level_lines: LevelLines | None
     level: FloatArray
     hits: tuple[IntArray, ...]
+    end: RecordEnd | None = None
 
 
 @dataclass(slots=True, eq=False)
@@ -295,7 +298,8 @@ def sum_hits(
         force = force_spectrum(recording, hit, window, plan.block)
         responses = response_spectra(recording, hit, window, plan.block)
         adder.add(force, responses, labels, hit.point)
-    return _sums(adder, plan, [force_variance(*one) for one in plan.chosen])
+    sums = _sums(adder, plan, [force_variance(*one) for one in plan.chosen])
+    return replace(sums, end=record_end(plan, window))
 
 
 def _level_lines(plan: SpectraPlan, window: HammerWindow) -> LevelLines:

@@ -119,12 +119,20 @@ def modal_basis(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
 
 def modal_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     """Return the columns of Re and Im of each residue, shape (n_lines, 2 n_modes)."""
-    s = lines.laplace
-    own, mirrored = (1.0 / (s[:, None] - p) for p in (pole, pole.conj()))
-    columns = np.empty((s.size, 2 * pole.size), complex)
+    own, mirrored = (_mode_columns(lines, p) for p in (pole, pole.conj()))
+    columns = np.empty((own.shape[0], 2 * pole.size), complex)
     columns[:, ::2] = own + mirrored
     columns[:, 1::2] = 1j * (own - mirrored)
-    return np.asarray(columns * (s**lines.derivatives)[:, None])
+    return columns
+
+
+def _mode_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
+    """Return what a residue of 1 of each pole adds, shape (n_lines, n_modes)."""
+    s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
+    if lines.end is None:
+        return np.asarray(power / (s - pole))
+    left, _ = lines.end.left(lines.laplace, pole)
+    return np.asarray((power - pole**lines.derivatives * left) / (s - pole))
 
 
 def _residual_terms(lines: FrfLines) -> ComplexArray:

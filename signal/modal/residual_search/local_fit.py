@@ -14,7 +14,7 @@ what its residues could have explained by chance.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -123,10 +123,10 @@ def group_around(
     else:
         part = kept
     residual = whole.residual[:, part]
-    lines = FrfLines(whole.lines.laplace[part], residual, whole.lines.derivatives)
+    lines = replace(whole.lines, laplace=whole.lines.laplace[part], response=residual)
     own = _contribution(whole, index, lines)
     return Group(
-        FrfLines(lines.laplace, residual + own, lines.derivatives),
+        replace(lines, response=residual + own),
         whole.noise[:, part],
         whole.variance[:, part],
         residual,
