@@ -34,11 +34,13 @@ class RecordEnd:
         length: of the block [s].
         time: of the samples of the pulse from the start of the block [s], shape (n,).
         force: on them, windowed, sum over the hits [N], shape (n,).
+        start: of what the window keeps [s].
     """
 
     length: float
     time: FloatArray
     force: FloatArray
+    start: float = 0.0
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -59,15 +61,32 @@ class RecordEnd:
             (n_lines, n_modes) each.
         """
         added = float(laplace[0].real)
-        pulse = np.exp(np.multiply.outer(added - laplace, self.time)) @ self.force
-        strong = np.abs(pulse) > _NO_FORCE * np.abs(pulse).max()
-        inverse = np.where(strong, 1.0 / np.where(strong, pulse, 1.0), 0.0)
+        inverse = self._over_force(laplace)
         away = self.length - self.time
         rest = self.force * np.exp(np.multiply.outer(pole - added, away))
         return (
             np.multiply.outer(inverse, rest.sum(axis=1)),
             np.multiply.outer(inverse, rest @ away),
         )
+
+    def offset(self, laplace: ComplexArray) -> ComplexArray:
+        """Return what an offset of the response adds to an FRF, in any unit.
+
+        The mean over a cut decay is no offset: what is subtracted too much is a step
+        where the window begins.
+
+        Args:
+            laplace: s of the lines [rad/s], shape (n_lines,).
+        """
+        added = float(laplace[0].real)
+        whole = np.exp(-laplace * self.start) - np.exp(-added * self.length)
+        return np.asarray(whole / laplace * self._over_force(laplace))
+
+    def _over_force(self, laplace: ComplexArray) -> ComplexArray:
+        added = float(laplace[0].real)
+        pulse = np.exp(np.multiply.outer(added - laplace, self.time)) @ self.force
+        strong = np.abs(pulse) > _NO_FORCE * np.abs(pulse).max()
+        return np.asarray(np.where(strong, 1.0 / np.where(strong, pulse, 1.0), 0.0))
 
 
 def record_end(plan: SpectraPlan, window: HammerWindow) -> RecordEnd | None:
@@ -89,4 +108,7 @@ def record_end(plan: SpectraPlan, window: HammerWindow) -> RecordEnd | None:
         return None
     pulse = slice(int(strong[0]), int(strong[-1]) + 1)
     time = np.arange(plan.block)[pulse] / plan.rate
-    return RecordEnd(plan.block / plan.rate, time, total[pulse])
+    (place,) = places
+    lead = place / plan.rate if window.lead is None else window.lead
+    start = max(0, int(np.ceil(place - lead * plan.rate))) / plan.rate
+    return RecordEnd(plan.block / plan.rate, time, total[pulse], start)

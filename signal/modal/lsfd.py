@@ -145,14 +145,17 @@ def _residual_terms(lines: FrfLines) -> ComplexArray:
         s = lines.laplace
         scale, power = np.abs(s[s.size // 2]), s**lines.derivatives
         terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
+        if lines.end is not None:
+            terms.append(lines.end.offset(s))
         rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
         known = _ORTHONORMAL[lines] = _unstacked(np.linalg.qr(rows)[0])
     return known
 
 
-def modal_size(pole: ComplexArray) -> int:
+def modal_size(lines: FrfLines, pole: ComplexArray) -> int:
     """Return how many columns `modal_basis` has for these poles."""
-    return 2 * pole.size + len(_RESIDUAL_POWERS)
+    more = len(_RESIDUAL_POWERS) + (lines.end is not None)
+    return 2 * pole.size + more
 
 
 def _unstacked(rows: FloatArray) -> ComplexArray:

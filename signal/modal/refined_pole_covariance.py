@@ -279,7 +279,7 @@ def _evaluate(lines: FrfLines, pole: ComplexArray, variance: FloatArray) -> _Poi
     rotated and scaled by its residue, so that each FRF needs one weighted product of
     fixed columns.
     """
-    n_linear, n_poles = modal_size(pole), 2 * pole.size
+    n_linear, n_poles = modal_size(lines, pole), 2 * pole.size
     columns = np.hstack((modal_basis(lines, pole), pole_slopes(lines, pole)))
     weight = 2.0 / variance
     products = gram_matrices(columns, weight)

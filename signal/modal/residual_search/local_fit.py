@@ -331,7 +331,7 @@ def _projected(
         Residues, shape (n_frf, 2 n_poles); products of the other columns with the
         response, shape (n_frf, n), and among each other, shape (n_frf, n, n).
     """
-    n_linear = modal_size(pole)
+    n_linear = modal_size(lines, pole)
     columns = np.hstack(
         (
             modal_basis(lines, pole),
