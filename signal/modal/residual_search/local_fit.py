@@ -247,11 +247,15 @@ def try_poles(
             2.0 / size**2,
         )
         rest = (gram - sums.gram) * unit + _ROUNDING * np.eye(n_own)
+        # Exact data can leave nothing but rounding: such a trial is ruled out.
+        sound = np.linalg.slogdet(rest)[0] > 0.0
+        rest[~sound] = np.eye(n_own)
         later = np.linalg.inv(rest) * unit
         drive = force - sums.force
         moved = np.einsum("tij,tj->ti", later, drive)
         gain = sums.gain + np.einsum("ti,ti->t", drive, moved) - force @ still
         factor = gain + sums.log_volume + np.linalg.slogdet(later)[1] - volume
+        factor = np.where(sound, factor, -np.inf)
         spread = np.diagonal(later, axis1=1, axis2=2)
         found.append((*_checked(0.5 * factor, moved - still, spread, leash), gain))
     log_factor, change, spread, gain = (
