@@ -16,7 +16,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from jointbench.acquisition.basics.arrays import ComplexArray, FloatArray, freeze
+from jointbench.acquisition.basics.arrays import (
+    ComplexArray,
+    FloatArray,
+    IntArray,
+    freeze,
+)
 from jointbench.signal.hits.hit_spectra import SpectraPlan, windowed_force
 from jointbench.signal.hits.windows import HammerWindow
 
@@ -46,47 +51,66 @@ class RecordEnd:
         """Make the arrays read-only."""
         freeze(self, "time", "force")
 
-    def left(
-        self, laplace: ComplexArray, pole: ComplexArray
-    ) -> tuple[ComplexArray, ComplexArray]:
-        """Return the share of each mode's receptance numerator that is left out.
+    def on(self, laplace: ComplexArray) -> "EndOnLines":
+        """Return the end with the force on lines.
 
         Args:
             laplace: s of the lines [rad/s], with the decay rate of the exponential
                 window as real part, shape (n_lines,).
-            pole: without that rate [rad/s], shape (n_modes,).
+        """
+        added = float(laplace[0].real)
+        pulse = np.exp(np.multiply.outer(added - laplace, self.time)) @ self.force
+        strong = np.abs(pulse) > _NO_FORCE * np.abs(pulse).max()
+        inverse = np.where(strong, 1.0 / np.where(strong, pulse, 1.0), 0.0)
+        return EndOnLines(self, laplace, inverse)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EndOnLines:
+    """The end of a record, on the lines of a fit.
+
+    Attributes:
+        end: of the record.
+        laplace: s of the lines [rad/s], shape (n_lines,).
+        inverse: 1 over the force on them [1/N], 0 where there is none, same shape.
+    """
+
+    end: RecordEnd
+    laplace: ComplexArray
+    inverse: ComplexArray
+
+    def at(self, part: slice | IntArray) -> "EndOnLines":
+        """Return the same on some of the lines."""
+        return EndOnLines(self.end, self.laplace[part], self.inverse[part])
+
+    def left(self, pole: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return the share of each mode's receptance numerator that is left out.
+
+        Args:
+            pole: without the decay rate of the window [rad/s], shape (n_modes,).
 
         Returns:
             The share [-] and its derivative with respect to the pole [s], shape
             (n_lines, n_modes) each.
         """
-        added = float(laplace[0].real)
-        inverse = self._over_force(laplace)
-        away = self.length - self.time
-        rest = self.force * np.exp(np.multiply.outer(pole - added, away))
+        added = float(self.laplace[0].real)
+        away = self.end.length - self.end.time
+        rest = self.end.force * np.exp(np.multiply.outer(pole - added, away))
         return (
-            np.multiply.outer(inverse, rest.sum(axis=1)),
-            np.multiply.outer(inverse, rest @ away),
+            np.multiply.outer(self.inverse, rest.sum(axis=1)),
+            np.multiply.outer(self.inverse, rest @ away),
         )
 
-    def offset(self, laplace: ComplexArray) -> ComplexArray:
+    def offset(self) -> ComplexArray:
         """Return what an offset of the response adds to an FRF, in any unit.
 
         The mean over a cut decay is no offset: what is subtracted too much is a step
         where the window begins.
-
-        Args:
-            laplace: s of the lines [rad/s], shape (n_lines,).
         """
-        added = float(laplace[0].real)
-        whole = np.exp(-laplace * self.start) - np.exp(-added * self.length)
-        return np.asarray(whole / laplace * self._over_force(laplace))
-
-    def _over_force(self, laplace: ComplexArray) -> ComplexArray:
-        added = float(laplace[0].real)
-        pulse = np.exp(np.multiply.outer(added - laplace, self.time)) @ self.force
-        strong = np.abs(pulse) > _NO_FORCE * np.abs(pulse).max()
-        return np.asarray(np.where(strong, 1.0 / np.where(strong, pulse, 1.0), 0.0))
+        added = float(self.laplace[0].real)
+        whole = np.exp(-self.laplace * self.end.start)
+        whole -= np.exp(-added * self.end.length)
+        return np.asarray(whole / self.laplace * self.inverse)
 
 
 def record_end(plan: SpectraPlan, window: HammerWindow) -> RecordEnd | None:

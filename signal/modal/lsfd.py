@@ -131,7 +131,7 @@ def _mode_columns(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
     if lines.end is None:
         return np.asarray(power / (s - pole))
-    left, _ = lines.end.left(lines.laplace, pole)
+    left, _ = lines.end.left(pole)
     return np.asarray((power - pole**lines.derivatives * left) / (s - pole))
 
 
@@ -146,7 +146,7 @@ def _residual_terms(lines: FrfLines) -> ComplexArray:
         scale, power = np.abs(s[s.size // 2]), s**lines.derivatives
         terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
         if lines.end is not None:
-            terms.append(lines.end.offset(s))
+            terms.append(lines.end.offset())
         rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
         known = _ORTHONORMAL[lines] = _unstacked(np.linalg.qr(rows)[0])
     return known

@@ -322,7 +322,7 @@ def _own_slopes(lines: FrfLines, pole: ComplexArray) -> ComplexArray:
     s, power = lines.laplace[:, None], (lines.laplace**lines.derivatives)[:, None]
     if lines.end is None:
         return np.asarray(power / (s - pole) ** 2)
-    left, change = lines.end.left(lines.laplace, pole)
+    left, change = lines.end.left(pole)
     own, q = pole**lines.derivatives, lines.derivatives
     moved = own * change + (q * pole ** (q - 1) * left if q else 0.0)
     return np.asarray(((power - own * left) / (s - pole) - moved) / (s - pole))

@@ -123,7 +123,13 @@ def group_around(
     else:
         part = kept
     residual = whole.residual[:, part]
-    lines = replace(whole.lines, laplace=whole.lines.laplace[part], response=residual)
+    end = whole.lines.end
+    lines = replace(
+        whole.lines,
+        laplace=whole.lines.laplace[part],
+        response=residual,
+        end=None if end is None else end.at(part),
+    )
     own = _contribution(whole, index, lines)
     return Group(
         replace(lines, response=residual + own),
