@@ -13,7 +13,9 @@ read, or where a mode differs by more than the limits of the page.
 """
 
 import argparse
+import re
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,6 +41,8 @@ SD, ALIKE = 3.0, (1e-6, 1e-4)
 """Differences that count as equal: standard deviations of both fits, or these shares of
 frequency and damping, far below what a second measurement repeats."""
 STRONG = 0.02
+# Numbers of a remark that are frequencies.
+_PLACE = re.compile(r"(\d+(?:\.\d+)?)(?=[\d., ]*Hz)")
 """Modes compared: peaks of at least this share of the highest one."""
 HEAD = """\
 # FRFs of other programs
@@ -65,7 +69,8 @@ runs code: save frequency and FRF as arrays of an .npz file.
 
 The peers take whole records without a window; for the samples jointbench applies a
 force window and leaves the quiet end out. So FRFs of the same hits differ, on the real
-hits by 0.6 to 2.6 % around the resonances. A mode that only the samples show is named.
+hits by 0.6 to 2.6 % around the resonances. A mode that only the samples show is
+named, and whether a remark of the file's fit names it.
 """
 
 
@@ -76,7 +81,7 @@ class Row:
     Attributes:
         words: what wrote the file.
         state: ``"read"``, or the error.
-        missing: modes of the samples that it lacks [Hz].
+        missing: modes of the samples that it lacks, and whether a remark names them.
         found: modes of the samples that the file has as well.
         total: modes of the samples.
         frequency: largest relative difference [-].
@@ -104,7 +109,7 @@ class Row:
         if self.state != "read":
             return f"| {self.words} | {self.state} | | | | |"
         state = "equal" if self.equal else "differs"
-        state += f", without {self.missing} Hz" if self.missing else ""
+        state += f", without {self.missing}" if self.missing else ""
         return (
             f"| {self.words} | {state} | {self.found} of {self.total} | "
             f"{1e6 * self.frequency:.2g} | {100 * self.damping:.2g} | "
@@ -137,8 +142,14 @@ def _label(node: int) -> str:
     return f"{node}+z"
 
 
-def compared(words: str, reference: ModalModel, other: ModalModel) -> Row:
+def compared(
+    words: str,
+    reference: ModalModel,
+    other: ModalModel,
+    remarks: Sequence[str] = (),
+) -> Row:
     """Return how far the modes of a file are from those of the samples."""
+    places = [float(n) for remark in remarks for n in _PLACE.findall(remark)]
     size = np.abs(reference.residues).max(axis=(1, 2)) / np.abs(reference.poles.real)
     kept = np.flatnonzero(size >= STRONG * size.max())
     differences, found, missing = [], 0, []
@@ -147,8 +158,11 @@ def compared(words: str, reference: ModalModel, other: ModalModel) -> Row:
         own = reference.natural_frequency[mode], reference.damping_ratio[mode]
         near = int(np.argmin(np.abs(other.natural_frequency - own[0])))
         away = other.natural_frequency[near] - own[0]
-        if abs(away) > width:
-            missing.append(f"{own[0]:.1f}")
+        back = np.abs(reference.natural_frequency - other.natural_frequency[near])
+        # A mode of the file stands for one of the samples, the nearest.
+        if abs(away) > width or int(np.argmin(back)) != mode:
+            remarked = any(abs(place - own[0]) < width for place in places)
+            missing.append(f"{own[0]:.1f} Hz" + " (in a remark)" * remarked)
             continue
         found += 1
         change = other.damping_ratio[near] - own[1]
@@ -179,11 +193,11 @@ def rows_of(hits: Hits, folder: Path) -> tuple[list[Row], list[str]]:
             if frf is None:
                 rows.append(Row(words, "not recognised"))
                 continue
-            model = frf_chain(frf, settings, StageRun()).result.model
+            result = frf_chain(frf, settings, StageRun()).result
         except JointbenchError as error:
             rows.append(Row(words, str(error).replace(str(folder), "")))
             continue
-        rows.append(compared(words, chain.result.model, model))
+        rows.append(compared(words, chain.result.model, result.model, result.remarks))
     return rows, _way_back(chain, folder, settings)
 
 

@@ -83,8 +83,9 @@ def separate_repeated(
             along = around[found.stayed].tolist()
             left -= {*own.tolist(), *along, *gone}
             # One split a cluster: what else may be hidden in it is only remarked on.
-            others = found.modes.pole[used][2 * found.count :]
-            frequency = np.abs(others) / (2.0 * np.pi)
+            frequency = np.abs(found.modes.pole[used]) / (2.0 * np.pi)
+            pairs, frequency = np.split(frequency, [2 * found.count])
+            hints.extend([] if found.complete else pairs.tolist())
             hints.extend(
                 float(f)
                 for f, n in zip(frequency, along, strict=True)

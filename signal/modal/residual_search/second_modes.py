@@ -89,6 +89,7 @@ class SecondModes:
         count: how many members that are.
         gain: chi-squared gained by each second mode [-].
         left: chi-squared that is left, over the number of values [-].
+        over_noise: the same without the residual of the whole fit as noise [-].
         accepted: whether the lines need both.
         possible: whether they hint at both.
         members: indices of the mode and of those around that were fitted along.
@@ -101,11 +102,17 @@ class SecondModes:
     count: int
     gain: float
     left: float
+    over_noise: float
     accepted: bool
     possible: bool
     members: IntArray
     stayed: BoolArray
     replaced: IntArray
+
+    @property
+    def complete(self) -> bool:
+        """Whether the modes leave no more than a few times the noise."""
+        return self.over_noise < _EXPLAINED
 
 
 def peak_members(lines: FrfLines, pole: ComplexArray, place: int) -> IntArray:
@@ -190,6 +197,7 @@ def _doubled(
     share = float(np.min(size[:, 1] / size[:, 0]))
     left = double.cost / (2.0 * peak.response.size)
     gain = cost - double.cost
+    factor = max(1.0, float(sides.poles.inflation[members[0]]))
     better = cost > _GAIN * double.cost and left < _EXPLAINED
     aimed = _aimed_share(sides, members[:count])
     gained = gain > limit and share > max(aimed, _LEAST_SHARE)
@@ -199,6 +207,7 @@ def _doubled(
         count,
         gain / count,
         left,
+        left * factor,
         accepted=bool(gained and stays[: 2 * count].all() and better),
         possible=bool(size[0, 1] > _LEAST_SHARE * size[0, 0]),
         members=members,
