@@ -101,6 +101,11 @@ class EndOnLines:
             np.multiply.outer(self.inverse, rest @ away),
         )
 
+    @property
+    def sees_offset(self) -> bool:
+        """True where an offset changes more than the line at zero."""
+        return self.end.start > 0.0 or float(self.laplace[0].real) > 0.0
+
     def offset(self) -> ComplexArray:
         """Return what an offset of the response adds to an FRF, in any unit.
 

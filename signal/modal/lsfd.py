@@ -145,7 +145,7 @@ def _residual_terms(lines: FrfLines) -> ComplexArray:
         s = lines.laplace
         scale, power = np.abs(s[s.size // 2]), s**lines.derivatives
         terms = [(s / scale) ** k * power for k in _RESIDUAL_POWERS]
-        if lines.end is not None:
+        if lines.end is not None and lines.end.sees_offset:
             terms.append(lines.end.offset())
         rows = stacked(np.array([t / np.linalg.norm(t) for t in terms]).T)
         known = _ORTHONORMAL[lines] = _unstacked(np.linalg.qr(rows)[0])
@@ -154,8 +154,8 @@ def _residual_terms(lines: FrfLines) -> ComplexArray:
 
 def modal_size(lines: FrfLines, pole: ComplexArray) -> int:
     """Return how many columns `modal_basis` has for these poles."""
-    more = len(_RESIDUAL_POWERS) + (lines.end is not None)
-    return 2 * pole.size + more
+    offset = lines.end is not None and lines.end.sees_offset
+    return 2 * pole.size + len(_RESIDUAL_POWERS) + offset
 
 
 def _unstacked(rows: FloatArray) -> ComplexArray:
